@@ -11,10 +11,12 @@ namespace handsel::sim {
 namespace {
 
 constexpr std::uint64_t kCatchUp =
-    5;  // steps at most in one tick, well below the gap that stops the robot; what is then missing is slip, shown in real_time_factor
+    5;  // steps at most in one tick, well below the gap that stops the robot; what is then missing
+        // is slip, shown in real_time_factor
 
 constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, while time stands still
-// Set-points are applied in their order, one a step; one that is older than this and has a successor as old is left out.
+// Set-points are applied in their order, one a step; one that is older than this and has a
+// successor as old is left out.
 constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
 
 }  // namespace
@@ -40,17 +42,21 @@ Node::Node(Bus& bus, const NodeContext& context)
     clock_out_ = bus.advertise<SimClock>();
     clock_.incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
     bus.subscribe<ClockReached>([this](const ClockReached& m, const Receipt&) {
-      if (!visible_.contains(m.incarnation)) visible_[m.incarnation] = process_state(static_cast<pid_t>(m.incarnation)) != 'X';
+      if (!visible_.contains(m.incarnation))
+        visible_[m.incarnation] = process_state(static_cast<pid_t>(m.incarnation)) != 'X';
       keeper_->answered(m.component, m.incarnation, m.sequence);
     });
   }
-  if (world_->follows()) bus.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
+  if (world_->follows())
+    bus.subscribe<HumanObservation>(
+        [this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
   bus.every(from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
 }
 
 void Node::restart() {
-  world_ = std::make_unique<SimWorld>(*context_.robot, context_.objects, scenario_, settings_, context_.seed);
+  world_ = std::make_unique<SimWorld>(*context_.robot, context_.objects, scenario_, settings_,
+                                      context_.seed);
   steps_ = 0;
   started_ = false;
   output_.reset();
@@ -74,7 +80,9 @@ void Node::on_control(const SimControl& control) {
   }
 }
 
-Stamp Node::stamp_now() const { return keeper_ ? bus_.stamp_now() - (bus_.now() - keeper_->time()).count() : bus_.stamp_now(); }
+Stamp Node::stamp_now() const {
+  return keeper_ ? bus_.stamp_now() - (bus_.now() - keeper_->time()).count() : bus_.stamp_now();
+}
 
 bool Node::runs(std::uint64_t process) const {
   const auto visible = visible_.find(process);
@@ -101,7 +109,8 @@ void Node::step_when_granted(TimePoint now) {
   while (keeper_->may_step(paused_ || !set_points_.empty())) {
     if (keeper_->takes_setpoint() && !set_points_.empty()) {
       const Stamp oldest = stamp_now() - kMaxSetPointAge.count();
-      while (set_points_.size() > 1 && set_points_[1].message.stamp < oldest) set_points_.pop_front();
+      while (set_points_.size() > 1 && set_points_[1].message.stamp < oldest)
+        set_points_.pop_front();
       const SetPoint& next = set_points_.front();
       world_->command(next.message, next.writer, to_seconds(keeper_->time().time_since_epoch()));
       set_points_.pop_front();

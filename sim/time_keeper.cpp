@@ -7,9 +7,11 @@ namespace handsel::sim {
 namespace {
 
 constexpr std::int64_t kGrantsAhead = 2;
-constexpr Duration kStopped = std::chrono::milliseconds(50);  // the ticks that a process then misses are too many to be made up for
+constexpr Duration kStopped = std::chrono::milliseconds(
+    50);  // the ticks that a process then misses are too many to be made up for
 constexpr Duration kLook = std::chrono::milliseconds(10);
-constexpr Duration kOwnTurn = std::chrono::milliseconds(10);  // between two turns, when the simulator gets its processor
+constexpr Duration kOwnTurn =
+    std::chrono::milliseconds(10);  // between two turns, when the simulator gets its processor
 
 }  // namespace
 
@@ -18,9 +20,11 @@ TimeKeeper::TimeKeeper(const SimSettings& settings)
       clock_period_(from_seconds(settings.clock_period)),
       max_lag_(from_seconds(settings.max_lag)),
       max_wait_(from_seconds(settings.max_wait)),
-      per_setpoint_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(settings.robot_side.period / settings.step)))) {}
+      per_setpoint_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(
+                                                   settings.robot_side.period / settings.step)))) {}
 
-void TimeKeeper::answered(const std::string& component, std::uint64_t process, std::uint64_t grant) {
+void TimeKeeper::answered(const std::string& component, std::uint64_t process,
+                          std::uint64_t grant) {
   answers_[component] = {process, grant};
 }
 
@@ -43,11 +47,13 @@ void TimeKeeper::turn(TimePoint wall) {
 }
 
 bool TimeKeeper::everybody_answered() const {
-  return std::all_of(answers_.begin(), answers_.end(), [&](const auto& answer) { return answer.second.grant >= grant_; });
+  return std::all_of(answers_.begin(), answers_.end(),
+                     [&](const auto& answer) { return answer.second.grant >= grant_; });
 }
 
 void TimeKeeper::stop_waiting(const std::function<bool(const Answer&)>& selected) {
-  if (std::erase_if(answers_, [&](const auto& answer) { return selected(answer.second); }) > 0) setpoints_flow_ = false;
+  if (std::erase_if(answers_, [&](const auto& answer) { return selected(answer.second); }) > 0)
+    setpoints_flow_ = false;
 }
 
 bool TimeKeeper::may_step(bool has_setpoint) {
@@ -61,7 +67,9 @@ bool TimeKeeper::may_step(bool has_setpoint) {
   }
   if (takes_setpoint()) setpoints_flow_ = setpoints_flow_ || has_setpoint;
   const bool at_boundary = time() >= start_ + clock_period_ * static_cast<std::int64_t>(grant_);
-  if ((takes_setpoint() && setpoints_flow_ && !has_setpoint) || (at_boundary && !everybody_answered())) return false;
+  if ((takes_setpoint() && setpoints_flow_ && !has_setpoint) ||
+      (at_boundary && !everybody_answered()))
+    return false;
   if (at_boundary) ++grant_;
   blocked_ = checked_ = Duration::zero();
   return true;
@@ -70,7 +78,9 @@ bool TimeKeeper::may_step(bool has_setpoint) {
 void TimeKeeper::stepped() { ++steps_; }
 
 TimeGrant TimeKeeper::grant() const {
-  return {.incarnation = 0, .until = start_ + clock_period_ * (static_cast<std::int64_t>(grant_) - 1 + kGrantsAhead), .waited = waited_};
+  return {.incarnation = 0,
+          .until = start_ + clock_period_ * (static_cast<std::int64_t>(grant_) - 1 + kGrantsAhead),
+          .waited = waited_};
 }
 
 }  // namespace handsel::sim

@@ -24,10 +24,11 @@ namespace {
 
 constexpr double kReach = 0.001;         // contacts closer than this touch [m]
 constexpr double kCollisionForce = 0.5;  // [N]
-constexpr double kFingersMeet = 0.002;   // the person's hand and the robot's overlap by more, before both have the object [m]
-constexpr double kMostHelped = 1.0;      // [kg] the constraint helps to hold no more than this
-constexpr double kPush = 0.2;            // so long after the last touch a push still moves the arm [s]
-constexpr double kFloorHeight = 0.02;    // an object's origin lower than this lies on the floor [m]
+constexpr double kFingersMeet =
+    0.002;  // the person's hand and the robot's overlap by more, before both have the object [m]
+constexpr double kMostHelped = 1.0;  // [kg] the constraint helps to hold no more than this
+constexpr double kPush = 0.2;        // so long after the last touch a push still moves the arm [s]
+constexpr double kFloorHeight = 0.02;  // an object's origin lower than this lies on the floor [m]
 
 /// Where a source looks that looks elsewhere, from where it looked [m].
 const Vector3 kElsewhere(100.0, 100.0, 0.0);
@@ -48,8 +49,8 @@ struct Hash {
 }  // namespace
 
 struct SimWorld::Impl {
-  Impl(const RobotModel& robot_model, const ObjectLibrary& library, const config::Scenario& scenario, const SimSettings& s,
-       std::uint64_t seed)
+  Impl(const RobotModel& robot_model, const ObjectLibrary& library,
+       const config::Scenario& scenario, const SimSettings& s, std::uint64_t seed)
       : model(robot_model),
         settings(s),
         setup(set_up(scenario, robot_model, library, s.coverage, s.data_root, seed)),
@@ -63,10 +64,12 @@ struct SimWorld::Impl {
     settings.constraint = settings.constraint && !setup.no_weld;
     dynamics.setGravity(btVector3(0, 0, -9.81));
     dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
-    dynamics.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // with one, a contact slides freely across it
+    dynamics.getSolverInfo().m_solverMode |=
+        SOLVER_USE_2_FRICTION_DIRECTIONS;  // with one, a contact slides freely across it
     build_fixed();
-    robot = std::make_unique<RobotBody>(model, setup.T_world_base, setup.start, settings.servo, settings.pad,
-                                        BodyWorld{dynamics, shapes, kRobot, kObject | kFixed | kPerson});
+    robot = std::make_unique<RobotBody>(
+        model, setup.T_world_base, setup.start, settings.servo, settings.pad,
+        BodyWorld{dynamics, shapes, kRobot, kObject | kFixed | kPerson});
     for (int i = 0; i < robot->bodies(); ++i) {
       btMultiBodyLinkCollider* collider = robot->collider(i);
       if (collider == nullptr) continue;
@@ -76,17 +79,22 @@ struct SimWorld::Impl {
     for (const Manipulator& hand : hands_of(model)) add_hand(hand);
     if (hands.empty()) add_hand({});
     if (setup.never_releases) stuck_hand.emplace(finger_axes());
-    for (const StartObject& start : setup.objects) objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
+    for (const StartObject& start : setup.objects)
+      objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
     people = std::make_unique<People>(setup, settings, objects, shapes, dynamics);
     prepare_sight();
     std::uint64_t salt = seed;
-    for (const SensorSettings& sensor : setup.human_sensors) human_sensors.emplace_back(sensor, salt += 0x1000193);
-    for (const SensorSettings& sensor : setup.object_sensors) object_sensors.emplace_back(sensor, salt += 0x1000193);
+    for (const SensorSettings& sensor : setup.human_sensors)
+      human_sensors.emplace_back(sensor, salt += 0x1000193);
+    for (const SensorSettings& sensor : setup.object_sensors)
+      object_sensors.emplace_back(sensor, salt += 0x1000193);
     watched = object_index(objects, setup.watched);
     if (watched >= 0) {
       const bool from_person =
-          std::any_of(setup.people.begin(), setup.people.end(), [&](const StartPerson& p) { return p.holds == setup.watched; });
-      handover = std::make_unique<HandoverOracle>(objects[watched].state().T_world_body.translation().z(), from_person);
+          std::any_of(setup.people.begin(), setup.people.end(),
+                      [&](const StartPerson& p) { return p.holds == setup.watched; });
+      handover = std::make_unique<HandoverOracle>(
+          objects[watched].state().T_world_body.translation().z(), from_person);
     }
     ssm_every = std::max(1, static_cast<int>(std::lround(0.01 / settings.step)));
   }
@@ -101,14 +109,18 @@ struct SimWorld::Impl {
   std::vector<int> finger_axes() const {
     std::vector<int> axes;
     for (const Hand& hand : hands)
-      if (hand.fingers != nullptr) axes.insert(axes.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
+      if (hand.fingers != nullptr)
+        axes.insert(axes.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
     return axes;
   }
 
   void add_hand(const Manipulator& hand) {
-    hands.push_back({hand.arm, hand.fingers, hand.palm,
-                     RobotGrasp(hand.palm, *robot, settings.touch_force, settings.grasp_time, settings.lose_time),
-                     Grip(settings.robot_grip), HandMeasure(model.dof(), settings.wrench_filter, settings.step, hands.empty())});
+    hands.push_back(
+        {hand.arm, hand.fingers, hand.palm,
+         RobotGrasp(hand.palm, *robot, settings.touch_force, settings.grasp_time,
+                    settings.lose_time),
+         Grip(settings.robot_grip),
+         HandMeasure(model.dof(), settings.wrench_filter, settings.step, hands.empty())});
   }
 
   double now() const { return static_cast<double>(steps) * settings.step; }
@@ -126,7 +138,8 @@ struct SimWorld::Impl {
   void build_fixed() {
     add_fixed(&floor, Pose::Identity(), Owner::floor, 0);
     for (std::size_t i = 0; i < setup.boxes.size(); ++i) {
-      add_fixed(shapes.convex(Box{setup.boxes[i].size}), setup.boxes[i].T_world_box, Owner::fixed, static_cast<int>(i));
+      add_fixed(shapes.convex(Box{setup.boxes[i].size}), setup.boxes[i].T_world_box, Owner::fixed,
+                static_cast<int>(i));
     }
   }
 
@@ -151,13 +164,15 @@ struct SimWorld::Impl {
   void hold_with(Hand& hand) {
     if (hand.gripped < 0 || !helped(hand.gripped)) return;
     ObjectBody& object = objects[hand.gripped];
-    const Wrench w = hand.grip.update(tool_state(hand), object.state(), object.model().mass, object.min_inertia(), settings.step);
+    const Wrench w = hand.grip.update(tool_state(hand), object.state(), object.model().mass,
+                                      object.min_inertia(), settings.step);
     if (!hand.grip.holding()) {
       release(hand);
       return;
     }
     object.push(w);
-    robot->push(hand.grasp.palm(), object.state().T_world_body.translation(), {-w.force, -w.torque});
+    robot->push(hand.grasp.palm(), object.state().T_world_body.translation(),
+                {-w.force, -w.torque});
   }
 
   static void release(Hand& hand) {
@@ -166,17 +181,23 @@ struct SimWorld::Impl {
     hand.gripped = -1;
   }
 
-  /// What is heavy is held by contact alone: a spring in proportion to it is stiffer than hand and wrist can answer within a step.
-  bool helped(int object) const { return settings.constraint && objects[object].model().mass <= kMostHelped; }
+  /// What is heavy is held by contact alone: a spring in proportion to it is stiffer than hand and
+  /// wrist can answer within a step.
+  bool helped(int object) const {
+    return settings.constraint && objects[object].model().mass <= kMostHelped;
+  }
 
   bool grips(int object) const {
-    return std::any_of(hands.begin(), hands.end(), [&](const Hand& hand) { return hand.gripped == object; });
+    return std::any_of(hands.begin(), hands.end(),
+                       [&](const Hand& hand) { return hand.gripped == object; });
   }
   bool grips_something() const {
-    return std::any_of(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
+    return std::any_of(hands.begin(), hands.end(),
+                       [](const Hand& hand) { return hand.gripped >= 0; });
   }
   bool of_hand(int body) const {
-    return std::any_of(hands.begin(), hands.end(), [&](const Hand& hand) { return hand.grasp.chain_of(body) >= 0; });
+    return std::any_of(hands.begin(), hands.end(),
+                       [&](const Hand& hand) { return hand.grasp.chain_of(body) >= 0; });
   }
 
   void update_grasp(Hand& hand) {
@@ -188,11 +209,14 @@ struct SimWorld::Impl {
         if (pressure > most) most = pressure, candidate = i;
       }
     }
-    const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero()) : objects[candidate].state().T_world_body.translation();
+    const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero())
+                                         : objects[candidate].state().T_world_body.translation();
     const bool held = hand.grasp.update(touches, candidate, centre, settings.step);
     if (hand.gripped < 0 && held) {
       hand.gripped = candidate;
-      if (helped(candidate)) hand.grip.hold(tool_state(hand).T_world_body.inverse() * objects[candidate].state().T_world_body);
+      if (helped(candidate))
+        hand.grip.hold(tool_state(hand).T_world_body.inverse() *
+                       objects[candidate].state().T_world_body);
     } else if (hand.gripped >= 0 && !held) {
       release(hand);
     }
@@ -229,7 +253,8 @@ struct SimWorld::Impl {
       const bool by_hand = of_hand(t.index_a);
       if (t.b == Owner::object && by_hand) continue;
       const bool yields = t.b == Owner::person && people->yields(t.index_b);
-      const bool fingers_meet = yields && by_hand && t.distance < -kFingersMeet && handover && !handover->shared();
+      const bool fingers_meet =
+          yields && by_hand && t.distance < -kFingersMeet && handover && !handover->shared();
       if (!fingers_meet && (yields || t.normal_force < kCollisionForce)) continue;
       if (!collided) {
         last_collision = robot->name_of(t.index_a) + " hits " +
@@ -247,21 +272,26 @@ struct SimWorld::Impl {
     min_separation = std::min(min_separation, near.distance);
     if (near.link >= 0 && near.distance < 0.5) {
       const Vector3 n = (near.on_person - near.on_robot).stableNormalized();
-      const Vector3 v = robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
+      const Vector3 v =
+          robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
       closing.add(v.dot(n));
     }
     const bool given_way = gives_way();
-    if (steps % ssm_every == 0 && !given_way && separations.violates(near, *robot, reference.velocity, reference.acceleration))
+    if (steps % ssm_every == 0 && !given_way &&
+        separations.violates(near, *robot, reference.velocity, reference.acceleration))
       ssm_violations += ssm_every;
 
     if (watched >= 0) handover->observe(situation(), settings.step);
     add_to_hash();
   }
 
-  /// A person pushes the robot, or has just done so, and it does not press against them: from the touch on it is the push that says where
-  /// it goes, and the volumes that stand for hand and arm overlap.
+  /// A person pushes the robot, or has just done so, and it does not press against them: from the
+  /// touch on it is the push that says where it goes, and the volumes that stand for hand and arm
+  /// overlap.
   bool gives_way() {
-    const auto person = [](const Touch& t) { return t.a == Owner::robot && t.b == Owner::person && t.normal_force > 0; };
+    const auto person = [](const Touch& t) {
+      return t.a == Owner::robot && t.b == Owner::person && t.normal_force > 0;
+    };
     if (std::any_of(touches.begin(), touches.end(), person)) {
       pushed_at = now();
       pushes.clear();
@@ -277,7 +307,8 @@ struct SimWorld::Impl {
     s.robot_grips = grips(watched);
     s.on_floor = object.T_world_object().translation().z() < kFloorHeight;
     for (const Touch& t : touches) {
-      if (t.a == Owner::robot && t.b == Owner::object && t.index_b == watched && t.normal_force > 0) s.robot_touches = true;
+      if (t.a == Owner::robot && t.b == Owner::object && t.index_b == watched && t.normal_force > 0)
+        s.robot_touches = true;
       if (t.a != Owner::object || t.index_a != watched) continue;
       if (t.b == Owner::floor) s.on_floor = true;
       if (t.b == Owner::fixed && setup.boxes[t.index_b].supports) s.on_surface = true;
@@ -323,7 +354,8 @@ struct SimWorld::Impl {
       sight.bodies.push_back(people->capsules(p));
     }
     for (const ObjectBody& object : objects)
-      sight.objects.push_back({object.start().id, object.start().model_name, object.T_world_object()});
+      sight.objects.push_back(
+          {object.start().id, object.start().model_name, object.T_world_object()});
     for (std::size_t i = 0; i < hiding_links.size(); ++i) {
       const LinkCapsule& c = hiding_links[i];
       const Pose& T = robot->T_world_link(c.link);
@@ -342,7 +374,8 @@ struct SimWorld::Impl {
   }
 
   void step() {
-    while (next_disturbance < setup.disturbances.size() && setup.disturbances[next_disturbance].at <= now() + 1e-9) {
+    while (next_disturbance < setup.disturbances.size() &&
+           setup.disturbances[next_disturbance].at <= now() + 1e-9) {
       control(setup.disturbances[next_disturbance++].control);
     }
     side.step(now(), settings.step);
@@ -352,7 +385,8 @@ struct SimWorld::Impl {
     reference.effort = side.effort();
     if (stuck_hand) stuck_hand->apply(settings.step, grips_something(), reference);
     robot->drive(reference.position, reference.velocity, reference.acceleration, reference.effort);
-    const auto holding = std::find_if(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
+    const auto holding = std::find_if(hands.begin(), hands.end(),
+                                      [](const Hand& hand) { return hand.gripped >= 0; });
     const Hand& offering = holding != hands.end() ? *holding : hands.front();
     people->move(settings.step, tool_state(offering), offering.gripped);
     for (Hand& hand : hands) hold_with(hand);
@@ -368,7 +402,8 @@ struct SimWorld::Impl {
     sense();
   }
 
-  /// `how`: empty: by a person; "protective": by the robot's own protection, which ends by itself; "unannounced": without saying so.
+  /// `how`: empty: by a person; "protective": by the robot's own protection, which ends by itself;
+  /// "unannounced": without saying so.
   std::string stop_robot(const std::string& how) {
     if (how.empty())
       side.user_stop();
@@ -377,7 +412,8 @@ struct SimWorld::Impl {
     else if (how == "unannounced")
       side.stop(DriveMode::enabled);
     else
-      return "robot_stop is protective, unannounced or, without a subject, by a person; not \"" + how + "\"";
+      return "robot_stop is protective, unannounced or, without a subject, by a person; not \"" +
+             how + "\"";
     return "";
   }
 
@@ -397,7 +433,8 @@ struct SimWorld::Impl {
       bool any = false;
       for (std::size_t p = 0; p < people->size(); ++p) {
         if (!c.subject.empty() && people->model(p).id() != c.subject) continue;
-        const bool any_may = c.action == SimAction::person_freeze || c.action == SimAction::person_unfreeze;
+        const bool any_may =
+            c.action == SimAction::person_freeze || c.action == SimAction::person_unfreeze;
         if (!any_may && !people->model(p).source().empty()) continue;
         act(people->model(p));
         any = true;
@@ -435,7 +472,9 @@ struct SimWorld::Impl {
       case SimAction::human_empty:
         return disturb(c.subject, {SensorFaultKind::repeated_empty, now(), until - now()});
       case SimAction::human_late:
-        return disturb(c.subject, {SensorFaultKind::late, now(), std::numeric_limits<double>::infinity(), Vector3::Zero(), c.value});
+        return disturb(c.subject,
+                       {SensorFaultKind::late, now(), std::numeric_limits<double>::infinity(),
+                        Vector3::Zero(), c.value});
       case SimAction::human_elsewhere:
         return disturb(c.subject, {SensorFaultKind::elsewhere, now(), until - now(), kElsewhere});
       case SimAction::restore:
@@ -470,8 +509,9 @@ struct SimWorld::Impl {
   RobotSide side;
   Reference reference;
   std::optional<StuckHand> stuck_hand;
-  std::vector<Hand> hands;         // never empty; the first is that of the tool
-  bool constraint_carries{false};  // the constraints' force on what is held is larger than that of the hands' contacts
+  std::vector<Hand> hands;  // never empty; the first is that of the tool
+  bool constraint_carries{
+      false};  // the constraints' force on what is held is larger than that of the hands' contacts
   double held_time{0}, constraint_time{0};
   int watched{-1}, ssm_every{10};
   std::uint64_t steps{0}, state_sequence{0};
@@ -488,7 +528,8 @@ struct SimWorld::Impl {
   LimitsOracle limits;
   SeparationOracle separations;
   std::unique_ptr<HandoverOracle> handover;
-  TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(),
+                      Vector3::Zero()};
   double min_separation{std::numeric_limits<double>::infinity()};
   PeakSpeed closing;
   std::uint64_t collisions{0}, ssm_violations{0};
@@ -496,7 +537,8 @@ struct SimWorld::Impl {
   Hash hash;
 };
 
-SimWorld::SimWorld(const RobotModel& robot, const ObjectLibrary& library, const config::Scenario& scenario, const SimSettings& settings,
+SimWorld::SimWorld(const RobotModel& robot, const ObjectLibrary& library,
+                   const config::Scenario& scenario, const SimSettings& settings,
                    std::uint64_t seed)
     : impl_(std::make_unique<Impl>(robot, library, scenario, settings, seed)) {}
 SimWorld::~SimWorld() = default;
@@ -523,19 +565,24 @@ bool SimWorld::robot_state(RobotState& out) {
   out.sequence = ++w.state_sequence;
   out.T_world_base = w.setup.T_world_base;
   out.position = w.robot->position();
-  for (Eigen::Index i = 0; i < out.position.size(); ++i) out.position[i] += w.noise(w.settings.position_noise);
+  for (Eigen::Index i = 0; i < out.position.size(); ++i)
+    out.position[i] += w.noise(w.settings.position_noise);
   out.velocity = w.robot->velocity();
   out.effort = w.robot->effort();
   w.side.report(out.reference);
   out.external_torque = w.hands.front().measured.external_torque();
-  for (std::size_t i = 1; i < w.hands.size(); ++i) out.external_torque += w.hands[i].measured.external_torque();
+  for (std::size_t i = 1; i < w.hands.size(); ++i)
+    out.external_torque += w.hands[i].measured.external_torque();
   for (std::size_t i = 0; i < w.hands.size(); ++i) {
     const Impl::Hand& hand = w.hands[i];
-    if (!(w.side.payload(i) > 0) || hand.palm < 0) continue;  // what it was told to hold is part of the robot's own model
+    if (!(w.side.payload(i) > 0) || hand.palm < 0)
+      continue;  // what it was told to hold is part of the robot's own model
     const Wrench weight{Vector3(0, 0, 9.81 * w.side.payload(i)), Vector3::Zero()};
-    w.robot->project(w.robot->body_of(hand.palm), w.tool_state(hand).T_world_body.translation(), weight, out.external_torque);
+    w.robot->project(w.robot->body_of(hand.palm), w.tool_state(hand).T_world_body.translation(),
+                     weight, out.external_torque);
   }
-  for (Eigen::Index i = 0; i < out.external_torque.size(); ++i) out.external_torque[i] += w.noise(0.1 * w.settings.force_noise);
+  for (Eigen::Index i = 0; i < out.external_torque.size(); ++i)
+    out.external_torque[i] += w.noise(0.1 * w.settings.force_noise);
   const auto feel = [&w](const Impl::Hand& hand, Wrench& wrench, double& effort, double& payload) {
     wrench = hand.measured.wrist_wrench();
     for (int i = 0; i < 3; ++i) {
@@ -596,10 +643,12 @@ void SimWorld::ground_truth(GroundTruth& out) const {
   out.hash = w.hash.value;
   out.robot_moving = false;
   const auto of_arm = [](const Impl::Hand& hand, Eigen::Index axis) {
-    return hand.arm == nullptr || std::find(hand.arm->axes.begin(), hand.arm->axes.end(), axis) != hand.arm->axes.end();
+    return hand.arm == nullptr ||
+           std::find(hand.arm->axes.begin(), hand.arm->axes.end(), axis) != hand.arm->axes.end();
   };
   for (Eigen::Index i = 0; i < w.robot->velocity().size(); ++i) {
-    const bool counts = std::any_of(w.hands.begin(), w.hands.end(), [&](const Impl::Hand& hand) { return of_arm(hand, i); });
+    const bool counts = std::any_of(w.hands.begin(), w.hands.end(),
+                                    [&](const Impl::Hand& hand) { return of_arm(hand, i); });
     if (counts && std::abs(w.robot->velocity()[i]) > 1e-3) out.robot_moving = true;
   }
   out.person.clear();
@@ -620,16 +669,23 @@ bool SimWorld::robot_grips() const { return impl_->grips_something(); }
 double SimWorld::robot_pressure() const {
   double sum = 0;
   if (impl_->watched >= 0)
-    for (const Impl::Hand& hand : impl_->hands) sum += hand.grasp.pressure(impl_->touches, impl_->watched);
+    for (const Impl::Hand& hand : impl_->hands)
+      sum += hand.grasp.pressure(impl_->touches, impl_->watched);
   return sum;
 }
-double SimWorld::constraint_fraction() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }
+double SimWorld::constraint_fraction() const {
+  return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0;
+}
 const Pose& SimWorld::T_world_object(const std::string& id) const {
   const int i = object_index(impl_->objects, id);
   if (i < 0) throw std::out_of_range("no object " + id);
   return impl_->objects[i].T_world_object();
 }
-const Person& SimWorld::person(std::size_t index) const { return impl_->people->model(index).body(); }
-PersonPhase SimWorld::person_phase(std::size_t index) const { return impl_->people->model(index).phase(); }
+const Person& SimWorld::person(std::size_t index) const {
+  return impl_->people->model(index).body();
+}
+PersonPhase SimWorld::person_phase(std::size_t index) const {
+  return impl_->people->model(index).phase();
+}
 
 }  // namespace handsel::sim

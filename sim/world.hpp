@@ -18,7 +18,8 @@ class SimWorld {
  public:
   /// Keeps references to robot and library. Throws ConfigError or MissingError naming what is
   /// wrong.
-  SimWorld(const RobotModel&, const ObjectLibrary&, const config::Scenario&, const SimSettings&, std::uint64_t seed);
+  SimWorld(const RobotModel&, const ObjectLibrary&, const config::Scenario&, const SimSettings&,
+           std::uint64_t seed);
   ~SimWorld();
   SimWorld(SimWorld&&) noexcept;
 
@@ -50,10 +51,10 @@ class SimWorld {
   const std::string& last_limit_violation() const;  ///< one sentence; empty: none
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
   DriveMode mode() const;                           ///< as the emulated robot reports it
-  bool robot_grips() const;                         ///< whether any hand of the robot holds an object
-  const std::vector<Touch>& touches() const;        ///< of the last step; robot bodies by number
-  const std::string& robot_body(int body) const;    ///< name of its link
-  double robot_pressure() const;                    ///< normal force of its hands on the watched object [N]
+  bool robot_grips() const;                       ///< whether any hand of the robot holds an object
+  const std::vector<Touch>& touches() const;      ///< of the last step; robot bodies by number
+  const std::string& robot_body(int body) const;  ///< name of its link
+  double robot_pressure() const;  ///< normal force of its hands on the watched object [N]
   /// Returns the fraction of the time the robot held something in which the grasp constraints
   /// carried more than the contacts; 0 if nothing was held yet.
   double constraint_fraction() const;

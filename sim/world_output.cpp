@@ -7,7 +7,9 @@
 namespace handsel::sim {
 namespace {
 
-std::uint64_t steps_per(double rate, double step) { return std::max<std::uint64_t>(1, std::llround(1 / (rate * step))); }
+std::uint64_t steps_per(double rate, double step) {
+  return std::max<std::uint64_t>(1, std::llround(1 / (rate * step)));
+}
 
 }  // namespace
 
@@ -19,7 +21,8 @@ WorldOutput::WorldOutput(Bus& bus, const SimSettings& settings)
       steps_per_state_(steps_per(settings.state_rate, settings.step)),
       steps_per_ground_truth_(steps_per(settings.ground_truth_rate, settings.step)) {}
 
-void WorldOutput::publish(SimWorld& world, std::uint64_t steps, const std::function<Stamp()>& stamp_now, double factor) {
+void WorldOutput::publish(SimWorld& world, std::uint64_t steps,
+                          const std::function<Stamp()>& stamp_now, double factor) {
   if (steps % steps_per_state_ == 0 && world.robot_state(state_)) {
     state_.stamp = stamp_now();
     state_out_->publish(state_);
@@ -29,12 +32,15 @@ void WorldOutput::publish(SimWorld& world, std::uint64_t steps, const std::funct
 }
 
 void WorldOutput::publish_observations(SimWorld& world, const std::function<Stamp()>& stamp_now) {
-  const auto stamp_of = [&](double seen) { return stamp_now() - from_seconds(world.time() - seen).count(); };
+  const auto stamp_of = [&](double seen) {
+    return stamp_now() - from_seconds(world.time() - seen).count();
+  };
   human_due_.clear();
   world.human_observations(human_due_);
   for (auto& delivery : human_due_) {
     Stamped& last = stamped_[delivery.message.source];
-    if (last.stamp == 0 || last.seen != delivery.seen) last = {delivery.seen, stamp_of(delivery.seen)};
+    if (last.stamp == 0 || last.seen != delivery.seen)
+      last = {delivery.seen, stamp_of(delivery.seen)};
     delivery.message.stamp = last.stamp;
     human_out_->publish(delivery.message);
   }
@@ -46,11 +52,13 @@ void WorldOutput::publish_observations(SimWorld& world, const std::function<Stam
   }
 }
 
-void WorldOutput::publish_ground_truth(SimWorld& world, const std::function<Stamp()>& stamp_now, double factor) {
+void WorldOutput::publish_ground_truth(SimWorld& world, const std::function<Stamp()>& stamp_now,
+                                       double factor) {
   const std::uint64_t before = ground_truth_.limit_violations;
   world.ground_truth(ground_truth_);
   if (before == 0 && ground_truth_.limit_violations > 0)
-    std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world.time(), world.last_limit_violation().c_str());
+    std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world.time(),
+                 world.last_limit_violation().c_str());
   ground_truth_.stamp = stamp_now();
   ground_truth_.real_time_factor = factor;
   ground_truth_out_->publish(ground_truth_);

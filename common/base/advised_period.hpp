@@ -24,10 +24,14 @@ class AdvisedPeriod {
   /// Returns whether the last advice still holds.
   bool is_advised(TimePoint now) const { return now - advised_at_ <= kHeard; }
   /// Returns the period in force [s]: the advised one within [fastest, slowest], else the fastest.
-  double period(TimePoint now) const { return is_advised(now) ? std::clamp(advised_, fastest_, slowest_) : fastest_; }
+  double period(TimePoint now) const {
+    return is_advised(now) ? std::clamp(advised_, fastest_, slowest_) : fastest_;
+  }
   /// Returns whether the period has passed since done(), up to half a tick early; true before the
   /// first done().
-  bool due(TimePoint now) const { return !begun_ || to_seconds(now - done_) + slack_ >= period(now); }
+  bool due(TimePoint now) const {
+    return !begun_ || to_seconds(now - done_) + slack_ >= period(now);
+  }
   /// Starts the period anew: the work was done at `now`.
   void done(TimePoint now) {
     begun_ = true;

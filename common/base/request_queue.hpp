@@ -31,7 +31,8 @@ template <class Reply>
 class RequestQueue {
  public:
   using Id = decltype(Reply::id);
-  explicit RequestQueue(Newer newer, const RequestLimits& limits = {}) : newer_(newer), limits_(limits) {}
+  explicit RequestQueue(Newer newer, const RequestLimits& limits = {})
+      : newer_(newer), limits_(limits) {}
 
   enum class Admission {
     fresh,       ///< new: to be worked on
@@ -80,11 +81,15 @@ class RequestQueue {
   /// Returns the reply that is kept for the request, valid until the next close(); nullptr if there
   /// is none.
   const Reply* answer(const Id& id) const {
-    const auto found = std::find_if(answers_.begin(), answers_.end(), [&id](const Reply& reply) { return reply.id == id; });
+    const auto found = std::find_if(answers_.begin(), answers_.end(),
+                                    [&id](const Reply& reply) { return reply.id == id; });
     return found == answers_.end() ? nullptr : &*found;
   }
   /// Returns the reason for Admission::full, one sentence.
-  std::string why_full() const { return std::to_string(limits_.open) + " requests wait already, which is the limit; ask again later"; }
+  std::string why_full() const {
+    return std::to_string(limits_.open) +
+           " requests wait already, which is the limit; ask again later";
+  }
   /// Returns the number of requests that are admitted and not answered.
   std::size_t open() const { return open_.size(); }
   /// Returns the number of clients that are remembered.
@@ -97,7 +102,8 @@ class RequestQueue {
   };
   using Clients = std::vector<Client>;
   typename Clients::const_iterator find(std::uint64_t id) const {
-    return std::find_if(clients_.begin(), clients_.end(), [id](const Client& client) { return client.id == id; });
+    return std::find_if(clients_.begin(), clients_.end(),
+                        [id](const Client& client) { return client.id == id; });
   }
   /// The client, last in the list from now on.
   Client& client_of(const Id& id) {

@@ -19,8 +19,8 @@ namespace handsel {
 
 /// Circumstances of a sample's arrival.
 struct Receipt {
-  TimePoint arrival{};     ///< receiver's monotonic clock
-  Duration age{};          ///< age at arrival: stamp offset - least offset seen from that writer (>= 0)
+  TimePoint arrival{};  ///< receiver's monotonic clock
+  Duration age{};  ///< age at arrival: stamp offset - least offset seen from that writer (>= 0)
   std::uint64_t writer{};  ///< distinguishes writers (handle), stable while the writer lives
 };
 
@@ -31,11 +31,11 @@ struct SubscriptionStatus {
   std::uint64_t deadline_misses{};  ///< silences longer than the topic's deadline, one each
   std::uint64_t writers_lost{};     ///< writers that died, left or lost their lease
   int writers{};                    ///< alive and matched now
-  TimePoint last_arrival{};         ///< arrival of the last valid sample; the epoch while there was none
-  Duration last_age{};              ///< age at arrival of the last sample
-  std::string last_rejection;       ///< one sentence
-  std::uint64_t left_out{};         ///< malformed elements of lists that were left out of valid samples
-  std::string last_left_out;        ///< one sentence
+  TimePoint last_arrival{};    ///< arrival of the last valid sample; the epoch while there was none
+  Duration last_age{};         ///< age at arrival of the last sample
+  std::string last_rejection;  ///< one sentence
+  std::uint64_t left_out{};    ///< malformed elements of lists that were left out of valid samples
+  std::string last_left_out;   ///< one sentence
   /// Samples of another writer than the accepted one, on a topic with one writer.
   std::uint64_t refused{};
   std::string second_writer;  ///< identity of that other writer while it is there; else empty
@@ -44,7 +44,9 @@ struct SubscriptionStatus {
   bool never_seen() const { return received == 0; }
   /// Returns the age of the newest sample now: time since arrival + age at arrival; Duration::max()
   /// without any sample.
-  Duration age(TimePoint now) const { return never_seen() ? Duration::max() : now - last_arrival + last_age; }
+  Duration age(TimePoint now) const {
+    return never_seen() ? Duration::max() : now - last_arrival + last_age;
+  }
 };
 
 /// Punctuality of a timer. Lives as long as the bus.
@@ -121,9 +123,14 @@ class Bus {
   /// Calls `on_sample` on the executor thread with each valid sample; malformed ones are counted,
   /// logged once per source and dropped. The message is valid during the call only.
   template <class M>
-  const SubscriptionStatus& subscribe(std::function<void(const M&, const Receipt&)> on_sample, const SubscribeOptions& options = {}) {
+  const SubscriptionStatus& subscribe(std::function<void(const M&, const Receipt&)> on_sample,
+                                      const SubscribeOptions& options = {}) {
     return subscribe_any(
-        message_type<M>(), [f = std::move(on_sample)](const void* m, const Receipt& r) { f(*static_cast<const M*>(m), r); }, options);
+        message_type<M>(),
+        [f = std::move(on_sample)](const void* m, const Receipt& r) {
+          f(*static_cast<const M*>(m), r);
+        },
+        options);
   }
   /// Returns the age of the newest sample of a subscribed topic; Duration::max() without any sample
   /// or subscription.
@@ -136,8 +143,9 @@ class Bus {
   virtual std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) = 0;
   /// As subscribe(), for a type known at run time only; `on_sample` receives a pointer to its
   /// domain struct.
-  virtual const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
-                                                  const SubscribeOptions& options) = 0;
+  virtual const SubscriptionStatus& subscribe_any(
+      const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+      const SubscribeOptions& options) = 0;
   /// As lag(); the smallest age when the component subscribed more than once.
   virtual Duration lag_any(const MessageType& type) const = 0;
 
@@ -149,7 +157,8 @@ class Bus {
   /// Runs long work: `work` runs off the executor (LocalBus: at once, finishing `modelled` later),
   /// then `done` on the executor, always, cancelled or not. `work` returns the modelled compute
   /// time for LocalBus. Jobs of a bus run one after the other.
-  virtual CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) = 0;
+  virtual CancelToken run_job(std::function<Duration(const CancelToken&)> work,
+                              std::function<void()> done) = 0;
   /// Returns the component's time: all ages, timers and deadlines refer to it.
   virtual TimePoint now() const = 0;
   /// Returns the system clock [ns, UTC] at now().

@@ -21,7 +21,8 @@ namespace handsel {
 namespace {
 
 #define HANDSEL_ROW(type, topic, profile, rate, deadline, largest, writers, readers) \
-  handsel_topic{#type, "handsel/" topic, rate, deadline, largest, writers, readers, &handsel_##type##_desc},
+  handsel_topic{#type,   "handsel/" topic, rate,    deadline,                        \
+                largest, writers,          readers, &handsel_##type##_desc},
 const handsel_topic kClientTopics[] = {HANDSEL_TOPICS(HANDSEL_ROW)};
 #undef HANDSEL_ROW
 
@@ -31,27 +32,35 @@ const TopicRow* row_of(const char* topic) {
   return row;
 }
 
-/// Of the installed tree this library lies in; the folder may be missing when the library was not installed.
+/// Of the installed tree this library lies in; the folder may be missing when the library was not
+/// installed.
 std::filesystem::path dds_folder() {
   Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&handsel_participant), &info) == 0 || !info.dli_fname) return {};
+  if (dladdr(reinterpret_cast<const void*>(&handsel_participant), &info) == 0 || !info.dli_fname)
+    return {};
   std::error_code error;
-  return std::filesystem::canonical(info.dli_fname, error).parent_path().parent_path() / "share/handsel/dds";
+  return std::filesystem::canonical(info.dli_fname, error).parent_path().parent_path() /
+         "share/handsel/dds";
 }
 
 dds_entity_t told(dds_entity_t entity, const char* what, const char* topic) {
-  if (entity < 0) std::fprintf(stderr, "handsel: no %s of %s: %s\n", what, topic, dds_strretcode(-entity));
+  if (entity < 0)
+    std::fprintf(stderr, "handsel: no %s of %s: %s\n", what, topic, dds_strretcode(-entity));
   return entity;
 }
 
-using MakeEnd = dds_entity_t (*)(dds_entity_t, dds_entity_t, const dds_qos_t*, const dds_listener_t*);
+using MakeEnd = dds_entity_t (*)(dds_entity_t, dds_entity_t, const dds_qos_t*,
+                                 const dds_listener_t*);
 
-dds_entity_t endpoint(dds_entity_t participant, const char* topic, Qos (*qos)(const TopicRow&), MakeEnd make, const char* what) {
+dds_entity_t endpoint(dds_entity_t participant, const char* topic, Qos (*qos)(const TopicRow&),
+                      MakeEnd make, const char* what) {
   const TopicRow* row = row_of(topic);
   if (!row) return DDS_RETCODE_BAD_PARAMETER;
   const Qos of_topic = topic_qos(*row);
-  const dds_entity_t entity = told(
-      dds_create_topic(participant, kClientTopics[row - kTopics].descriptor, row->topic, of_topic.get(), nullptr), "topic", row->topic);
+  const dds_entity_t entity =
+      told(dds_create_topic(participant, kClientTopics[row - kTopics].descriptor, row->topic,
+                            of_topic.get(), nullptr),
+           "topic", row->topic);
   if (entity < 0) return entity;
   const Qos of_end = qos(*row);
   return told(make(participant, entity, of_end.get(), nullptr), what, row->topic);
@@ -87,8 +96,8 @@ dds_entity_t handsel_participant(const char* component) {
     const Qos qos(dds_create_qos(), &dds_delete_qos);
     dds_qset_entity_name(qos.get(), component);
     const int domain = default_domain();
-    return told(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr), "participant",
-                ("domain " + std::to_string(domain)).c_str());
+    return told(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr),
+                "participant", ("domain " + std::to_string(domain)).c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "handsel: %s\n", error.what());
     return DDS_RETCODE_BAD_PARAMETER;
@@ -97,7 +106,8 @@ dds_entity_t handsel_participant(const char* component) {
 
 dds_entity_t handsel_writer(dds_entity_t participant, const char* topic) {
   return endpoint(
-      participant, topic, [](const TopicRow& row) { return writer_qos(row); }, &dds_create_writer, "writer");
+      participant, topic, [](const TopicRow& row) { return writer_qos(row); }, &dds_create_writer,
+      "writer");
 }
 
 dds_entity_t handsel_reader(dds_entity_t participant, const char* topic) {

@@ -18,10 +18,14 @@
 namespace handsel {
 namespace {
 constexpr Duration kJobSilence = std::chrono::seconds(2);
-// A process that the simulator waits for is less behind: the simulator grants two periods of 10 ms ahead.
+// A process that the simulator waits for is less behind: the simulator grants two periods of 10 ms
+// ahead.
 constexpr Duration kLongestBurst = std::chrono::milliseconds(40);
 
-timespec to_timespec(Duration d) { return {static_cast<time_t>(d.count() / 1'000'000'000), static_cast<long>(d.count() % 1'000'000'000)}; }
+timespec to_timespec(Duration d) {
+  return {static_cast<time_t>(d.count() / 1'000'000'000),
+          static_cast<long>(d.count() % 1'000'000'000)};
+}
 }  // namespace
 
 TimePoint monotonic_now() {
@@ -51,7 +55,9 @@ Executor::Executor(Log log) : log_(std::move(log)) {
     event.data.fd = fd;
     watched = watched && fd >= 0 && epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0;
   }
-  if (!watched) throw MissingError(std::string("executor: no descriptor for the event loop: ") + std::strerror(errno));
+  if (!watched)
+    throw MissingError(std::string("executor: no descriptor for the event loop: ") +
+                       std::strerror(errno));
 }
 
 Executor::~Executor() {
@@ -90,13 +96,15 @@ bool Executor::grant(const TimeGrant& grant) {
   if (!clock_.grant(grant, wall)) return false;
   const TimePoint after = clock_.at(wall);
   if (after >= before) return true;
-  for (const auto& timer : timers_)  // the first grant: time goes back, what is to be waited for stays
+  for (const auto& timer :
+       timers_)  // the first grant: time goes back, what is to be waited for stays
     if (!timer->real) timer->due -= before - after;
   last_ = after;
   return true;
 }
 
-Executor::Timer& Executor::add_timer(TimePoint now, Duration period, Duration first, std::function<void(TimePoint)> on_tick) {
+Executor::Timer& Executor::add_timer(TimePoint now, Duration period, Duration first,
+                                     std::function<void(TimePoint)> on_tick) {
   auto timer = std::make_unique<Timer>();
   timer->period = period;
   timer->due = now + std::max(first, Duration(1));
@@ -122,11 +130,14 @@ void Executor::serve_timers() {
   const TimePoint wall = monotonic_now();
   const bool paced = clock_.paced();
   const TimePoint time = clock_.at(wall);
-  if (paced && !clock_.paced()) return wake();  // what has come meanwhile is heard before time continues
+  if (paced && !clock_.paced())
+    return wake();  // what has come meanwhile is heard before time continues
   while (true) {
     auto next = timers_.end();
     for (auto timer = timers_.begin(); timer != timers_.end(); ++timer)
-      if ((*timer)->due <= ((*timer)->real ? wall : time) && (next == timers_.end() || (*timer)->due < (*next)->due)) next = timer;
+      if ((*timer)->due <= ((*timer)->real ? wall : time) &&
+          (next == timers_.end() || (*timer)->due < (*next)->due))
+        next = timer;
     if (next == timers_.end()) return;
     const bool once = (*next)->period == Duration::zero();
     serve(**next, time);
@@ -134,14 +145,16 @@ void Executor::serve_timers() {
   }
 }
 
-/// With granted time every tick is made up for, at the instant it was due at. After a jump of time, when the simulator has not waited for
-/// this process, only the newest tick is served: what the older ones would have done is no longer of use.
+/// With granted time every tick is made up for, at the instant it was due at. After a jump of time,
+/// when the simulator has not waited for this process, only the newest tick is served: what the
+/// older ones would have done is no longer of use.
 void Executor::serve(Timer& timer, TimePoint time) {
   const bool granted = clock_.paced() && !timer.real;
   const TimePoint present = timer.real ? monotonic_now() : granted ? time : this->now();
   const Duration late = present - timer.due;
   const bool made_up = granted && late < kLongestBurst;
-  const std::int64_t skipped = made_up || timer.period == Duration::zero() ? 0 : late / timer.period;
+  const std::int64_t skipped =
+      made_up || timer.period == Duration::zero() ? 0 : late / timer.period;
   if (granted) due_ = last_ = std::max(last_, timer.due + timer.period * skipped);
   if (timer.period > Duration::zero()) {
     ++timer.status.cycles;
@@ -158,7 +171,8 @@ void Executor::arm() {
   if (timers_.empty()) return;
   const TimePoint wall = monotonic_now();
   TimePoint first = TimePoint::max();
-  for (const auto& timer : timers_) first = std::min(first, timer->real ? timer->due : clock_.look_at(timer->due, wall));
+  for (const auto& timer : timers_)
+    first = std::min(first, timer->real ? timer->due : clock_.look_at(timer->due, wall));
   if (first == armed_) return;
   const itimerspec spec{{}, to_timespec(std::max(first.time_since_epoch(), Duration(1)))};
   timerfd_settime(timer_fd_, TFD_TIMER_ABSTIME, &spec, nullptr);
@@ -211,7 +225,8 @@ bool Executor::run_until(const std::function<bool()>& done, Duration limit) {
   return true;
 }
 
-CancelToken Executor::run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) {
+CancelToken Executor::run_job(std::function<Duration(const CancelToken&)> work,
+                              std::function<void()> done) {
   CancelToken token;
   {
     const std::lock_guard lock(jobs_mutex_);

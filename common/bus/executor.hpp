@@ -87,7 +87,8 @@ class Executor {
   void serve(Timer& timer, TimePoint time);
   /// Sets the descriptor of the timers to the earliest.
   void arm();
-  Timer& add_timer(TimePoint now, Duration period, Duration first, std::function<void(TimePoint)> on_tick);
+  Timer& add_timer(TimePoint now, Duration period, Duration first,
+                   std::function<void(TimePoint)> on_tick);
   void work_loop();
   void finish_jobs();
 

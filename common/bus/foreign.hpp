@@ -11,6 +11,8 @@ namespace handsel {
 
 /// Returns whether the row is one of the table. Types of other rows are not compared: their writers
 /// may not announce them.
-inline bool in_table(const TopicRow& row) { return !std::less<>()(&row, std::begin(kTopics)) && std::less<>()(&row, std::end(kTopics)); }
+inline bool in_table(const TopicRow& row) {
+  return !std::less<>()(&row, std::begin(kTopics)) && std::less<>()(&row, std::end(kTopics));
+}
 
 }  // namespace handsel

@@ -39,7 +39,10 @@ Duration AgeEstimator::update(Stamp stamp, TimePoint arrival, std::string_view k
 }
 
 Intake::Intake(const MessageType& message, Callback callback, Duration period, Log log)
-    : type_(message), callback_(std::move(callback)), log_(std::move(log)), message_(message.new_message()) {
+    : type_(message),
+      callback_(std::move(callback)),
+      log_(std::move(log)),
+      message_(message.new_message()) {
   if (has_one_writer(type_.row())) pin_.emplace(type_.row());
   if (type_.row().deadline > 0) deadline_ = from_seconds(type_.row().deadline) + period;
 }
@@ -51,15 +54,18 @@ void Intake::deliver(const void* wire, std::uint64_t writer, TimePoint arrival) 
   if (!type_.from_wire(wire, message_.get(), why, left_out)) {
     ++status_.rejected;
     status_.last_rejection = why;
-    if (logged_.size() < kMostWriters && logged_.insert(writer).second) log_("rejected a sample: " + why);
+    if (logged_.size() < kMostWriters && logged_.insert(writer).second)
+      log_("rejected a sample: " + why);
     return;
   }
   if (left_out.count > 0) {
     status_.left_out += left_out.count;
     status_.last_left_out = left_out.why;
-    if (logged_.size() < kMostWriters && logged_.insert(writer).second) log_("left out of a sample: " + left_out.why);
+    if (logged_.size() < kMostWriters && logged_.insert(writer).second)
+      log_("left out of a sample: " + left_out.why);
   }
-  if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ && arrival - status_.last_arrival > deadline_)
+  if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ &&
+      arrival - status_.last_arrival > deadline_)
     ++status_.deadline_misses;
   silence_counted_ = false;
   if (ages_.size() >= kMostWriters && !ages_.contains(writer)) ages_.clear();
@@ -78,7 +84,8 @@ void Intake::watch(TimePoint now) {
     pin_->watch(now);
     name_second_writer();
   }
-  if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ && now - status_.last_arrival > deadline_) {
+  if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ &&
+      now - status_.last_arrival > deadline_) {
     ++status_.deadline_misses;
     silence_counted_ = true;
   }
@@ -115,7 +122,8 @@ void Intake::contend(std::uint64_t writer, TimePoint now) {
 void Intake::name_second_writer() {
   if (status_.second_writer == pin_->second_writer()) return;
   status_.second_writer = pin_->second_writer();
-  if (!status_.second_writer.empty()) log_(second_writer_sentence(status_.second_writer, type_.row().topic));
+  if (!status_.second_writer.empty())
+    log_(second_writer_sentence(status_.second_writer, type_.row().topic));
 }
 
 void SecondWriters::add(const Intake& intake) {
@@ -130,7 +138,8 @@ std::string SecondWriters::reason() const {
   std::string reason;
   std::size_t names = 0;
   for (const auto& [name, topics] : topics_)
-    if (names++ < kMaxNames) reason += (reason.empty() ? "" : "; ") + second_writer_sentence(name, topics);
+    if (names++ < kMaxNames)
+      reason += (reason.empty() ? "" : "; ") + second_writer_sentence(name, topics);
   return reason;
 }
 
@@ -147,7 +156,8 @@ TopicHealth Intake::health(TimePoint now) const {
   if (window_filled_ > 0) {
     const std::size_t oldest = window_filled_ < window_.size() ? 0 : window_next_;
     const double span = to_seconds(now - window_times_[oldest]);
-    if (span > 0) out.rate = std::min(1e6, static_cast<double>(status_.received - window_[oldest]) / span);
+    if (span > 0)
+      out.rate = std::min(1e6, static_cast<double>(status_.received - window_[oldest]) / span);
   }
   return out;
 }

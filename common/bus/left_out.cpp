@@ -23,7 +23,8 @@ std::vector<NamedCount> LeftOutCounts::counts() const {
 
 void add_left_out(const Intake& intake, std::vector<NamedCount>& counts) {
   if (intake.status().left_out == 0 || counts.size() >= kMaxCounts) return;
-  counts.push_back({std::string(intake.type().row().topic) + ": malformed elements of lists", intake.status().left_out});
+  counts.push_back({std::string(intake.type().row().topic) + ": malformed elements of lists",
+                    intake.status().left_out});
 }
 
 }  // namespace handsel

@@ -22,7 +22,8 @@ class LocalBus;
 
 namespace {
 
-constexpr Stamp kVirtualEpoch = 1'700'000'000'000'000'000;  // where the virtual system clock starts [ns]
+constexpr Stamp kVirtualEpoch =
+    1'700'000'000'000'000'000;  // where the virtual system clock starts [ns]
 constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
 constexpr std::size_t kKeepAllBound = 64;
 
@@ -52,13 +53,14 @@ struct Waiting {
 };
 
 struct Subscription {
-  Subscription(const MessageType& type, Intake::Callback callback, Duration look_period, Intake::Log log)
+  Subscription(const MessageType& type, Intake::Callback callback, Duration look_period,
+               Intake::Log log)
       : intake(type, std::move(callback), look_period, std::move(log)), period(look_period) {}
   Intake intake;
   Duration period;
   LocalBus* bus{};
   std::map<std::uint64_t, TimePoint> last_arrival;  // per writer: samples do not overtake
-  std::deque<Waiting> waiting;                      // while the component is paused, or until the next look
+  std::deque<Waiting> waiting;  // while the component is paused, or until the next look
 };
 
 struct Timer {
@@ -74,7 +76,9 @@ struct Event {
   std::uint64_t order;
   LocalBus* owner;  // nullptr: the network's own
   std::function<void()> run;
-  bool operator<(const Event& other) const { return at != other.at ? at > other.at : order > other.order; }  // heap: earliest on top
+  bool operator<(const Event& other) const {
+    return at != other.at ? at > other.at : order > other.order;
+  }  // heap: earliest on top
 };
 
 }  // namespace
@@ -89,7 +93,8 @@ struct LocalNetwork::Impl {
   std::vector<Event> events;
   std::vector<std::unique_ptr<LocalBus>> buses;
   std::vector<std::shared_ptr<Writer>> writers;
-  std::deque<std::vector<Subscription*>> subscriptions{std::size(kTopics)};  // in the order of the table, then foreign ones
+  std::deque<std::vector<Subscription*>> subscriptions{
+      std::size(kTopics)};  // in the order of the table, then foreign ones
   std::deque<std::vector<Sample>> pools{std::size(kTopics)};
   std::map<std::string, std::size_t, std::less<>> foreign;  // topic -> index
   std::set<std::string> metered;
@@ -103,7 +108,9 @@ struct LocalNetwork::Impl {
     random = mix_bits(random);
     return static_cast<double>(random >> 11) * 0x1.0p-53;
   }
-  Duration delay() { return from_seconds(settings.delay_min + (settings.delay_max - settings.delay_min) * uniform()); }
+  Duration delay() {
+    return from_seconds(settings.delay_min + (settings.delay_max - settings.delay_min) * uniform());
+  }
   std::size_t index(const MessageType& type) {
     if (in_table(type.row())) return static_cast<std::size_t>(&type.row() - kTopics);
     const auto [at, fresh] = foreign.emplace(type.row().topic, subscriptions.size());
@@ -137,7 +144,8 @@ struct LocalNetwork::Impl {
 
 namespace {
 
-/// Counts the thread's CPU time of a callback for its component. It is looked at by whoever reports, and decides nothing.
+/// Counts the thread's CPU time of a callback for its component. It is looked at by whoever
+/// reports, and decides nothing.
 class Meter {
  public:
   Meter(LocalNetwork::Impl& network, LocalBus* bus);
@@ -156,14 +164,17 @@ class Meter {
 class LocalBus final : public Bus {
  public:
   LocalBus(LocalNetwork::Impl& network, std::string component)
-      : net_(network), component_(std::move(component)), metered_(net_.metered.contains(component_)) {
+      : net_(network),
+        component_(std::move(component)),
+        metered_(net_.metered.contains(component_)) {
     health_ = advertise<ComponentHealth>();
     every(kHealthPeriod, [this](TimePoint now) { publish_health(now); });
   }
 
   std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;
-  const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
-                                          const SubscribeOptions& options) override;
+  const SubscriptionStatus& subscribe_any(
+      const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+      const SubscribeOptions& options) override;
   Duration lag_any(const MessageType& type) const override {
     Duration least = Duration::max();
     for (const auto& s : subscriptions_)
@@ -171,16 +182,20 @@ class LocalBus final : public Bus {
     return least;
   }
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) override {
-    if (period <= Duration::zero()) throw std::invalid_argument("every: the period must be positive");
-    timers_.push_back(std::make_unique<Timer>(Timer{period, std::move(on_tick), net_.now + period, {}, false}));
+    if (period <= Duration::zero())
+      throw std::invalid_argument("every: the period must be positive");
+    timers_.push_back(
+        std::make_unique<Timer>(Timer{period, std::move(on_tick), net_.now + period, {}, false}));
     Timer* timer = timers_.back().get();
     net_.schedule(timer->due, this, [this, timer] { tick(*timer); });
     return timer->status;
   }
   void after(Duration delay, std::function<void(TimePoint)> on_time) override {
-    net_.schedule(net_.now + std::max(delay, Duration::zero()), this, [this, f = std::move(on_time)] { f(net_.now); });
+    net_.schedule(net_.now + std::max(delay, Duration::zero()), this,
+                  [this, f = std::move(on_time)] { f(net_.now); });
   }
-  CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) override {
+  CancelToken run_job(std::function<Duration(const CancelToken&)> work,
+                      std::function<void()> done) override {
     CancelToken token;
     const Duration modelled = std::max(work(token), Duration::zero());
     worker_free_ = std::max(worker_free_, net_.now) + modelled;
@@ -190,15 +205,21 @@ class LocalBus final : public Bus {
   TimePoint now() const override { return net_.now; }
   Stamp stamp_now() const override { return kVirtualEpoch + net_.now.time_since_epoch().count(); }
   void set_degraded(const std::string& reason) override { degraded_ = reason; }
-  void count_left_out(const std::string& what, std::uint64_t more) override { left_out_.add(what, more); }
+  void count_left_out(const std::string& what, std::uint64_t more) override {
+    left_out_.add(what, more);
+  }
   const std::string& component() const override { return component_; }
 
-  void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", component_.c_str(), what.c_str()); }
+  void log(const std::string& what) const {
+    std::fprintf(stderr, "%s: %s\n", component_.c_str(), what.c_str());
+  }
   void refused(const std::string& why) {
     if (refusal_.note(why, now())) log(refusal_.text(now()));
   }
   WriterIdentity identity() const {
-    return {.components = component_, .name = component_, .matches = true, .ended = [this] { return killed_; }};
+    return {.components = component_, .name = component_, .matches = true, .ended = [this] {
+              return killed_;
+            }};
   }
   void tick(Timer& timer);
   void publish_health(TimePoint now);
@@ -222,7 +243,8 @@ namespace {
 
 class LocalPublisher final : public AnyPublisher {
  public:
-  LocalPublisher(LocalNetwork::Impl& network, std::shared_ptr<Writer> writer) : net_(network), writer_(std::move(writer)) {}
+  LocalPublisher(LocalNetwork::Impl& network, std::shared_ptr<Writer> writer)
+      : net_(network), writer_(std::move(writer)) {}
   ~LocalPublisher() override {
     if (writer_->alive) net_.lose(*writer_, Duration::zero());
   }
@@ -248,7 +270,8 @@ class LocalPublisher final : public AnyPublisher {
   std::shared_ptr<Writer> writer_;
 };
 
-Meter::Meter(LocalNetwork::Impl& network, LocalBus* bus) : net_(network), bus_(bus && bus->metered_ && !network.at_work ? bus : nullptr) {
+Meter::Meter(LocalNetwork::Impl& network, LocalBus* bus)
+    : net_(network), bus_(bus && bus->metered_ && !network.at_work ? bus : nullptr) {
   if (bus_ == nullptr) return;
   net_.at_work = true;
   begin_ = thread_cpu_seconds();
@@ -268,7 +291,8 @@ void LocalNetwork::Impl::take_down(const MessageType& type, void* wire) {
   outputs = handsel::hashed(outputs, type.row().topic, std::strlen(type.row().topic));
   type.leaves(wire, [this](const WireLeaf& leaf) {
     const auto* text = static_cast<const char*>(leaf.value);
-    outputs = handsel::hashed(outputs, leaf.value, leaf.kind == WireLeaf::Kind::text ? std::strlen(text) : leaf.size);
+    outputs = handsel::hashed(outputs, leaf.value,
+                              leaf.kind == WireLeaf::Kind::text ? std::strlen(text) : leaf.size);
   });
 }
 
@@ -309,8 +333,11 @@ void LocalNetwork::Impl::send(Writer& writer, const Sample& sample) {
 
 void LocalNetwork::Impl::travel(Writer& writer, Subscription& to, const Sample& sample) {
   const Duration on_the_way = delay();
-  const bool lost = best_effort(writer.type->row().profile) && settings.loss > 0 && uniform() < settings.loss;
-  if (lost || to.bus->killed_ || (writer.bus != to.bus && (writer.bus->isolated_ || to.bus->isolated_))) return;
+  const bool lost =
+      best_effort(writer.type->row().profile) && settings.loss > 0 && uniform() < settings.loss;
+  if (lost || to.bus->killed_ ||
+      (writer.bus != to.bus && (writer.bus->isolated_ || to.bus->isolated_)))
+    return;
   TimePoint& last = to.last_arrival[writer.id];
   last = std::max(last + Duration(1), now + on_the_way);
   schedule(last, nullptr, [this, &to, id = writer.id, sample] { arrive(to, id, sample); });
@@ -323,7 +350,8 @@ void LocalNetwork::Impl::arrive(Subscription& to, std::uint64_t writer, const Sa
   std::size_t same_key = 0;
   for (const Waiting& w : to.waiting) same_key += w.key == key;
   if (same_key >= depth(row.profile)) {
-    const auto oldest = std::find_if(to.waiting.begin(), to.waiting.end(), [&](const Waiting& w) { return w.key == key; });
+    const auto oldest = std::find_if(to.waiting.begin(), to.waiting.end(),
+                                     [&](const Waiting& w) { return w.key == key; });
     if (row.profile == Profile::request || row.profile == Profile::reply) return;
     to.waiting.erase(oldest);
   }
@@ -370,10 +398,11 @@ std::unique_ptr<AnyPublisher> LocalBus::advertise_any(const MessageType& type, i
   return std::make_unique<LocalPublisher>(net_, std::move(writer));
 }
 
-const SubscriptionStatus& LocalBus::subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
-                                                  const SubscribeOptions& options) {
-  subscriptions_.push_back(
-      std::make_unique<Subscription>(type, std::move(on_sample), options.period, [this](const std::string& what) { log(what); }));
+const SubscriptionStatus& LocalBus::subscribe_any(
+    const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+    const SubscribeOptions& options) {
+  subscriptions_.push_back(std::make_unique<Subscription>(
+      type, std::move(on_sample), options.period, [this](const std::string& what) { log(what); }));
   Subscription* subscription = subscriptions_.back().get();
   subscription->bus = this;
   net_.subscriptions[net_.index(type)].push_back(subscription);
@@ -384,7 +413,8 @@ const SubscriptionStatus& LocalBus::subscribe_any(const MessageType& type, std::
     ++writer->readers;
     for (const auto& [key, sample] : writer->kept) net_.travel(*writer, *subscription, sample);
   }
-  if (options.period > Duration::zero()) every(options.period, [this, subscription](TimePoint) { net_.hand_over(*subscription); });
+  if (options.period > Duration::zero())
+    every(options.period, [this, subscription](TimePoint) { net_.hand_over(*subscription); });
   return subscription->intake.status();
 }
 
@@ -407,7 +437,8 @@ void LocalBus::resume() {
   held_.clear();
   for (Event& event : held) net_.schedule(net_.now, this, std::move(event.run));
   for (const auto& s : subscriptions_)
-    if (s->period == Duration::zero()) net_.schedule(net_.now, this, [this, sub = s.get()] { net_.hand_over(*sub); });
+    if (s->period == Duration::zero())
+      net_.schedule(net_.now, this, [this, sub = s.get()] { net_.hand_over(*sub); });
 }
 
 void LocalBus::publish_health(TimePoint now) {
@@ -433,7 +464,8 @@ void LocalBus::publish_health(TimePoint now) {
 }
 
 LocalNetwork::LocalNetwork(std::uint64_t seed) : LocalNetwork(LocalNetworkSettings{.seed = seed}) {}
-LocalNetwork::LocalNetwork(const LocalNetworkSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+LocalNetwork::LocalNetwork(const LocalNetworkSettings& settings)
+    : impl_(std::make_unique<Impl>(settings)) {}
 LocalNetwork::~LocalNetwork() { impl_->buses.clear(); }
 
 Bus& LocalNetwork::add(const std::string& component) {
@@ -446,10 +478,12 @@ std::uint64_t LocalNetwork::events() const { return impl_->handled; }
 
 std::vector<LocalNetwork::Endpoint> LocalNetwork::endpoints() const {
   std::vector<Endpoint> out;
-  for (const auto& writer : impl_->writers) out.push_back({writer->bus->component_, writer->type->row().type, true, writer->sent});
+  for (const auto& writer : impl_->writers)
+    out.push_back({writer->bus->component_, writer->type->row().type, true, writer->sent});
   for (const auto& bus : impl_->buses)
     for (const auto& s : bus->subscriptions_)
-      out.push_back({bus->component_, s->intake.type().row().type, false, s->intake.status().received});
+      out.push_back(
+          {bus->component_, s->intake.type().row().type, false, s->intake.status().received});
   return out;
 }
 
@@ -458,7 +492,9 @@ void LocalNetwork::meter(const std::set<std::string>& components) {
   for (const auto& bus : impl_->buses) bus->metered_ = components.contains(bus->component_);
 }
 void LocalNetwork::hash_outputs() { impl_->hashed = true; }
-void LocalNetwork::tap(std::function<void(const MessageType&, const void*, Stamp)> on_sample) { impl_->tapped = std::move(on_sample); }
+void LocalNetwork::tap(std::function<void(const MessageType&, const void*, Stamp)> on_sample) {
+  impl_->tapped = std::move(on_sample);
+}
 std::uint64_t LocalNetwork::output_hash() const { return impl_->outputs; }
 
 double LocalNetwork::cpu(const std::string& component) const { return impl_->find(component).cpu_; }
@@ -482,11 +518,14 @@ void LocalNetwork::kill(const std::string& component) {
   LocalBus& bus = impl_->find(component);
   bus.killed_ = true;
   for (const auto& writer : impl_->writers)
-    if (writer->bus == &bus && writer->alive) impl_->lose(*writer, from_seconds(impl_->settings.lease));
+    if (writer->bus == &bus && writer->alive)
+      impl_->lose(*writer, from_seconds(impl_->settings.lease));
 }
 
 void LocalNetwork::pause(const std::string& component) { impl_->find(component).paused_ = true; }
 void LocalNetwork::resume(const std::string& component) { impl_->find(component).resume(); }
-void LocalNetwork::isolate(const std::string& component, bool cut) { impl_->find(component).isolated_ = cut; }
+void LocalNetwork::isolate(const std::string& component, bool cut) {
+  impl_->find(component).isolated_ = cut;
+}
 
 }  // namespace handsel

@@ -16,7 +16,8 @@ ObjectLibrary load_object_library() {
   for (const auto& [text, file] : files) {
     ObjectModel model = ObjectModel::load(file);
     const std::string name = model.name;
-    if (!library->emplace(name, std::move(model)).second) throw ConfigError(text + ": another object is called \"" + name + "\" already");
+    if (!library->emplace(name, std::move(model)).second)
+      throw ConfigError(text + ": another object is called \"" + name + "\" already");
   }
   return [library](const std::string& name) -> const ObjectModel* {
     const auto at = library->find(name);
@@ -24,7 +25,8 @@ ObjectLibrary load_object_library() {
   };
 }
 
-NodeContext load_context(const std::string& robot, const std::string& scenario, const std::filesystem::path& settings, std::uint64_t seed) {
+NodeContext load_context(const std::string& robot, const std::string& scenario,
+                         const std::filesystem::path& settings, std::uint64_t seed) {
   NodeContext context;
   context.description = robot_description(robot.empty() ? scenario_robot(scenario) : robot);
   context.robot = std::make_shared<const RobotModel>(RobotModel::load(context.description));
@@ -32,7 +34,8 @@ NodeContext load_context(const std::string& robot, const std::string& scenario, 
   if (!scenario.empty()) context.scenario = scenario_file(scenario);
   context.settings = settings.empty() ? resource("config") : settings;
   if (!std::filesystem::is_directory(context.settings))
-    throw MissingError(context.settings.string() + ": no such folder; it should hold the components' settings");
+    throw MissingError(context.settings.string() +
+                       ": no such folder; it should hold the components' settings");
   context.seed = seed;
   return context;
 }

@@ -32,7 +32,7 @@ ObjectLibrary load_object_library();
 
 /// Returns the inputs of a node from names or paths as on the command line; empty `settings` means
 /// resource_root()/config. Throws ConfigError / MissingError.
-NodeContext load_context(const std::string& robot, const std::string& scenario = {}, const std::filesystem::path& settings = {},
-                         std::uint64_t seed = 1);
+NodeContext load_context(const std::string& robot, const std::string& scenario = {},
+                         const std::filesystem::path& settings = {}, std::uint64_t seed = 1);
 
 }  // namespace handsel

@@ -6,8 +6,9 @@ namespace handsel {
 namespace {
 
 constexpr Duration kSilence = std::chrono::seconds(1);
-constexpr Duration kLook = std::chrono::milliseconds(20);   // while time stands still
-constexpr Duration kStale = std::chrono::milliseconds(50);  // the simulator repeats a grant more often
+constexpr Duration kLook = std::chrono::milliseconds(20);  // while time stands still
+constexpr Duration kStale =
+    std::chrono::milliseconds(50);  // the simulator repeats a grant more often
 
 }  // namespace
 
@@ -45,7 +46,8 @@ TimePoint PacedClock::at(TimePoint wall) {
   return last_;
 }
 
-/// While time stood still it was where the grant before had ended, not where the machine's clock less all that was waited would be.
+/// While time stood still it was where the grant before had ended, not where the machine's clock
+/// less all that was waited would be.
 TimePoint PacedClock::past(TimePoint wall) const {
   return std::min(std::max(unbounded(wall), std::min(wall - waited_before_, until_before_)), last_);
 }

@@ -38,7 +38,8 @@ int complain(const char* component, const std::exception& error, int code) {
   return code;
 }
 
-int run(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency) {
+int run(int argc, char** argv, const char* component, const NodeFactory& make_node,
+        Urgency urgency) {
   std::string robot, scenario, config, state;
   std::uint64_t seed = 1;
   bool standby = false, sim_time = false;
@@ -48,13 +49,20 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   settings.domain = static_cast<std::uint32_t>(default_domain());
 
   CLI::App app{std::string("handsel component ") + component};
-  app.add_option("--robot", robot, "robot description: name or file (default: the scenario's, else jido)");
+  app.add_option("--robot", robot,
+                 "robot description: name or file (default: the scenario's, else jido)");
   app.add_option("--scenario", scenario, "scenario: name or file");
-  app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 230))->capture_default_str();
+  app.add_option("--domain", settings.domain, "DDS domain")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
   app.add_option("--config", config, "folder of the components' settings");
-  app.add_option("--state", state, "folder of what must survive a restart (default: HANDSEL_STATE, else a folder of the domain)");
+  app.add_option("--state", state,
+                 "folder of what must survive a restart (default: HANDSEL_STATE, else a folder of "
+                 "the domain)");
   app.add_option("--seed", seed, "of every random choice")->capture_default_str();
-  app.add_flag("--sim-time", sim_time, "the simulator gives the pace: time stops while a component of the system waits for a processor")
+  app.add_flag("--sim-time", sim_time,
+               "the simulator gives the pace: time stops while a component of the system waits for "
+               "a processor")
       ->envname("HANDSEL_SIM_TIME");
   app.add_flag("--realtime", settings.realtime, "SCHED_FIFO and locked memory where permitted");
   app.add_option("--cpu-affinity", settings.cpu, "run the executor on this processor");
@@ -70,16 +78,19 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   NodeContext context = load_context(robot, scenario, config, seed);
   context.sim_time = sim_time;
   settings.sim_time = sim_time && settings.component != "sim";  // which is the one that gives it
-  context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain)) : std::filesystem::path(state);
+  context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain))
+                                : std::filesystem::path(state);
   DdsBus bus(settings);
   stopped_by_signal = &bus;
   if (asked_to_end) return 0;
   if (!standby && bus.has_twin(kTwinWait))
-    throw ConfigError("domain " + std::to_string(settings.domain) + " already has a " + component + "; --standby starts one more");
+    throw ConfigError("domain " + std::to_string(settings.domain) + " already has a " + component +
+                      "; --standby starts one more");
   {
     const std::shared_ptr<void> node = make_node(bus, context);
     bus.set_ready();
-    std::printf("handsel_%s ready: domain %u, pid %d%s%s\n", component, settings.domain, static_cast<int>(getpid()),
+    std::printf("handsel_%s ready: domain %u, pid %d%s%s\n", component, settings.domain,
+                static_cast<int>(getpid()),
                 !settings.realtime            ? ""
                 : bus.realtime_note().empty() ? ", real time"
                                               : ", not real time: ",
@@ -91,7 +102,8 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
     ualarm(kLongestEnd, 0);
     bus.set_stopping();
     if (!bus.end_jobs(kJobsEnd)) {
-      std::fprintf(stderr, "handsel_%s: a job did not stop when asked; ending without it\n", component);
+      std::fprintf(stderr, "handsel_%s: a job did not stop when asked; ending without it\n",
+                   component);
       std::_Exit(0);
     }
   }
@@ -101,7 +113,8 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
 
 }  // namespace
 
-int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency) {
+int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node,
+                Urgency urgency) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGTERM, &action, nullptr);

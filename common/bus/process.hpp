@@ -20,13 +20,16 @@ using NodeFactory = std::function<std::shared_ptr<void>(Bus&, const NodeContext&
 /// line when ready, runs until SIGTERM or SIGINT, then returns 0 within a second. Returns 2 on
 /// ConfigError and when the domain already has this component, 3 on MissingError, 1 on any other
 /// error, each with one sentence on stderr.
-int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency = Urgency::perceive);
+int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node,
+                Urgency urgency = Urgency::perceive);
 
 /// As above, with a node constructed as Node(bus, context).
 template <class Node>
 int run_process(int argc, char** argv, const char* component, Urgency urgency = Urgency::perceive) {
   return run_process(
-      argc, argv, component, [](Bus& bus, const NodeContext& context) { return std::make_shared<Node>(bus, context); }, urgency);
+      argc, argv, component,
+      [](Bus& bus, const NodeContext& context) { return std::make_shared<Node>(bus, context); },
+      urgency);
 }
 
 }  // namespace handsel

@@ -14,8 +14,10 @@ const char* environment(const char* name) {
 }  // namespace
 
 std::filesystem::path state_directory() {
-  if (const char* state = environment("XDG_STATE_HOME")) return std::filesystem::path(state) / "handsel";
-  if (const char* home = environment("HOME")) return std::filesystem::path(home) / ".local/state/handsel";
+  if (const char* state = environment("XDG_STATE_HOME"))
+    return std::filesystem::path(state) / "handsel";
+  if (const char* home = environment("HOME"))
+    return std::filesystem::path(home) / ".local/state/handsel";
   return std::filesystem::temp_directory_path() / "handsel";
 }
 

@@ -15,7 +15,8 @@ void WriterGate::filter(dds_entity_t topic, std::function<void()> on_refusal) {
   filter.f.sampleinfo_arg = &WriterGate::passes;
   filter.arg = this;
   const dds_return_t result = dds_set_topic_filter_extended(topic, &filter);
-  if (result != DDS_RETCODE_OK) throw MissingError(std::string("DDS: filter of a topic: ") + dds_strretcode(-result));
+  if (result != DDS_RETCODE_OK)
+    throw MissingError(std::string("DDS: filter of a topic: ") + dds_strretcode(-result));
 }
 
 bool WriterGate::passes(const dds_sample_info_t* info, void* self) {
@@ -26,7 +27,8 @@ bool WriterGate::passes(const dds_sample_info_t* info, void* self) {
   gate.refused_writer_.store(info->publication_handle, std::memory_order_release);
   const std::int64_t now = monotonic_now().time_since_epoch().count();
   std::int64_t next = gate.next_call_.load(std::memory_order_relaxed);
-  if (now >= next && gate.next_call_.compare_exchange_strong(next, now + kCallPeriod.count(), std::memory_order_relaxed))
+  if (now >= next && gate.next_call_.compare_exchange_strong(next, now + kCallPeriod.count(),
+                                                             std::memory_order_relaxed))
     gate.on_refusal_();
   return false;
 }

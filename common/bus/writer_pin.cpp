@@ -7,8 +7,10 @@
 namespace handsel {
 namespace {
 
-constexpr std::size_t kMaxWriters = 64;  // of a topic; the samples of further ones are refused, unnamed
-/// Shorter silences of a process on another host do not show that it has ended: leases below 0.3 s give false alarms.
+constexpr std::size_t kMaxWriters =
+    64;  // of a topic; the samples of further ones are refused, unnamed
+/// Shorter silences of a process on another host do not show that it has ended: leases below 0.3 s
+/// give false alarms.
 constexpr Duration kUnobservedSilence = std::chrono::milliseconds(300);
 /// Asking whether a process lives costs 10 us; a second writer may ask with every sample.
 constexpr Duration kCheckPeriod = std::chrono::milliseconds(5);
@@ -54,18 +56,21 @@ void WriterPin::left(std::uint64_t writer, TimePoint now) {
 }
 
 void WriterPin::watch(TimePoint now) {
-  if (pinned_ != 0 && known_.size() > 1 && known_.at(pinned_).identity.ended && pinned_ended(now)) pin_next(now);
+  if (pinned_ != 0 && known_.size() > 1 && known_.at(pinned_).identity.ended && pinned_ended(now))
+    pin_next(now);
   if (!second_.empty()) name_second();
 }
 
-/// Pins the living eligible writer of greatest precedence that appeared first, the pinned one excepted; without such a writer the topic has
-/// no pinned one.
+/// Pins the living eligible writer of greatest precedence that appeared first, the pinned one
+/// excepted; without such a writer the topic has no pinned one.
 void WriterPin::pin_next(TimePoint now) {
   const std::uint64_t before = std::exchange(pinned_, 0);
   const Known* best = nullptr;
   for (const auto& [id, known] : known_) {
-    if (id == before || !known.eligible || (known.identity.ended && known.identity.ended())) continue;
-    if (best != nullptr && (known.precedence < best->precedence || (known.precedence == best->precedence && known.since >= best->since)))
+    if (id == before || !known.eligible || (known.identity.ended && known.identity.ended()))
+      continue;
+    if (best != nullptr && (known.precedence < best->precedence ||
+                            (known.precedence == best->precedence && known.since >= best->since)))
       continue;
     best = &known;
     pin(id, now);
@@ -90,8 +95,8 @@ bool WriterPin::takes_pin(const Known& candidate, TimePoint now) {
   if (candidate.precedence > pinned.precedence) return true;
   if (pinned.identity.ended) return pinned_ended(now);
   const Duration silence = std::max(kUnobservedSilence, from_seconds(row_.deadline));
-  return row_.deadline > 0 && candidate.identity.components == pinned.identity.components && candidate.since > last_sample_ &&
-         now - last_sample_ > silence;
+  return row_.deadline > 0 && candidate.identity.components == pinned.identity.components &&
+         candidate.since > last_sample_ && now - last_sample_ > silence;
 }
 
 bool WriterPin::pinned_ended(TimePoint now) {
@@ -111,7 +116,8 @@ void WriterPin::name_second() {
   std::size_t others = 0;
   for (const auto& [id, known] : known_) {
     if (id == pinned_) continue;
-    const bool waits_its_turn = pinned_ != 0 && known.eligible && known.precedence < known_.at(pinned_).precedence;
+    const bool waits_its_turn =
+        pinned_ != 0 && known.eligible && known.precedence < known_.at(pinned_).precedence;
     if (waits_its_turn || (known.identity.ended && known.identity.ended())) continue;
     if (others++ == 0) second_ = known.identity.name;
   }

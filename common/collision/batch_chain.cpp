@@ -7,7 +7,9 @@ namespace handsel {
 namespace {
 
 /// A rotation whose z is the axis.
-Eigen::Matrix3d along_z(const Vector3& axis) { return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix(); }
+Eigen::Matrix3d along_z(const Vector3& axis) {
+  return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix();
+}
 
 }  // namespace
 
@@ -19,19 +21,24 @@ void put_rows(const Pose& T, float out[12]) {
 void BatchChain::fold(const RobotModel& robot, const std::vector<int>& axes, const Vector& q) {
   row_of_dof.assign(static_cast<std::size_t>(robot.dof()), -1);
   dof_of_row = axes;
-  for (std::size_t i = 0; i < axes.size(); ++i) row_of_dof[static_cast<std::size_t>(axes[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    row_of_dof[static_cast<std::size_t>(axes[i])] = static_cast<int>(i);
   joints.clear();
   T_parent_joint.clear();
   slide.clear();
   body_of_link.assign(robot.links().size(), 0);
   T_body_link.assign(robot.links().size(), Pose::Identity());
   for (const Joint& joint : robot.joints()) {
-    const auto parent = static_cast<std::size_t>(joint.parent), child = static_cast<std::size_t>(joint.child);
+    const auto parent = static_cast<std::size_t>(joint.parent),
+               child = static_cast<std::size_t>(joint.child);
     Pose T = T_body_link[parent] * joint.T_parent_joint;
     const bool slides = joint.kind == JointKind::prismatic;
-    const int row = joint.kind == JointKind::fixed || joint.dof < 0 ? -1 : row_of_dof[static_cast<std::size_t>(joint.dof)];
+    const int row = joint.kind == JointKind::fixed || joint.dof < 0
+                        ? -1
+                        : row_of_dof[static_cast<std::size_t>(joint.dof)];
     if (row < 0) {
-      const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
+      const double value =
+          (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
       if (joint.kind == JointKind::prismatic)
         T.translation() += T.linear() * (value * joint.axis);
       else if (joint.kind != JointKind::fixed)

@@ -46,8 +46,8 @@ class BatchWorld {
   /// The robot for states in which only `axes` differ from q: what the others join is one rigid
   /// body. `pairs`: bodies tested against each other; those whose relative pose no axis changes are
   /// left out, their verdict is the caller's.
-  void set_robot(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs, const std::vector<int>& axes,
-                 const Vector& q);
+  void set_robot(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs,
+                 const std::vector<int>& axes, const Vector& q);
   /// Replaces the solids; to be called after set_robot.
   void set_solids(const std::vector<Solid>& solids, const Pose& T_world_base);
 
@@ -56,7 +56,8 @@ class BatchWorld {
   std::uint32_t unclear(const Vector* states, int count);
   /// The same for states from + at (to - from). `any`: one unclear state is enough to know, the
   /// bits of others may be missing.
-  std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any = false);
+  std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count,
+                                bool any = false);
   /// The same for boxes of states, `low` to `high` on every moving axis: what is clear is so
   /// everywhere in its box.
   std::uint32_t unclear_boxes(const Vector* low, const Vector* high, int count);
@@ -64,7 +65,9 @@ class BatchWorld {
   /// shown clear; all states between them are, without steps. Checks stretches down to `finest`
   /// parts of the line, and no more than the given number of blocks of kStates stretches: what is
   /// left then is unclear.
-  const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int max_blocks);
+  const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from,
+                                                                  const Vector& to, double finest,
+                                                                  int max_blocks);
 
   /// Poses of the links as the registers have them, for one state among those that the
   /// kernel checked last; for tests.
@@ -112,7 +115,8 @@ class BatchWorld {
   std::vector<detail::SimdNodePair> node_pairs_;
   std::vector<float> reach_, pair_reach_;
   // Of the robot alone; set_solids puts its own behind.
-  std::size_t own_nodes_{}, own_solids_{}, own_searches_{}, own_pairs_{}, own_node_list_{}, own_solid_list_{}, own_node_pairs_{};
+  std::size_t own_nodes_{}, own_solids_{}, own_searches_{}, own_pairs_{}, own_node_list_{},
+      own_solid_list_{}, own_node_pairs_{};
   double total_reach_{}, rounding_{};
 
   Floats pose_, margin_, position_, q_, half_;

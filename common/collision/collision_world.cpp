@@ -48,7 +48,8 @@ struct PersonBody {
 };
 
 bool exchanging_part(BodyPart part) {
-  return part == BodyPart::forearm_left || part == BodyPart::hand_left || part == BodyPart::forearm_right || part == BodyPart::hand_right;
+  return part == BodyPart::forearm_left || part == BodyPart::hand_left ||
+         part == BodyPart::forearm_right || part == BodyPart::hand_right;
 }
 
 Pose along(const Vector3& a, const Vector3& b) {
@@ -67,7 +68,8 @@ struct CollisionWorld::Impl {
   std::size_t link_bodies{};
   std::vector<SelfPair> link_pairs, held_pairs;
   std::vector<SceneBody> scene, obstacles;
-  std::vector<SceneBody> in_peoples_hands;  // by their solid parts: nobody reaches into a cup that is held out
+  std::vector<SceneBody>
+      in_peoples_hands;  // by their solid parts: nobody reaches into a cup that is held out
   std::vector<PersonBody> people;
   Scene last_scene;
   Attachment attachment;
@@ -113,7 +115,8 @@ struct CollisionWorld::Impl {
       if (hands[h].palm < 0) continue;
       const std::set<int>& tool = joints_above[hands[h].palm];
       for (std::size_t i = 0; i < links.size(); ++i)
-        if (std::includes(joints_above[i].begin(), joints_above[i].end(), tool.begin(), tool.end())) hand_link[i] = static_cast<int>(h);
+        if (std::includes(joints_above[i].begin(), joints_above[i].end(), tool.begin(), tool.end()))
+          hand_link[i] = static_cast<int>(h);
     }
     for (std::size_t i = 0; i < links.size(); ++i)
       for (const PlacedShape& placed : links[i].collision)
@@ -127,7 +130,9 @@ struct CollisionWorld::Impl {
     link_bodies = bodies.size();
     for (std::size_t i = 0; i < link_bodies; ++i)
       for (std::size_t j = i + 1; j < link_bodies; ++j)
-        if (bodies[i].link != bodies[j].link && !robot.pair_disabled(bodies[i].link, bodies[j].link)) add_pair(i, j, link_pairs);
+        if (bodies[i].link != bodies[j].link &&
+            !robot.pair_disabled(bodies[i].link, bodies[j].link))
+          add_pair(i, j, link_pairs);
     capsules = robot_capsules(robot);
     link_capsules = capsules.size();
     changed.assign(robot.dof(), true);
@@ -136,10 +141,12 @@ struct CollisionWorld::Impl {
   void add_pair(std::size_t i, std::size_t j, std::vector<SelfPair>& pairs) const {
     const std::set<int>&above = joints_above[bodies[i].link], &below = joints_above[bodies[j].link];
     std::vector<int> between;
-    std::set_symmetric_difference(above.begin(), above.end(), below.begin(), below.end(), std::back_inserter(between));
+    std::set_symmetric_difference(above.begin(), above.end(), below.begin(), below.end(),
+                                  std::back_inserter(between));
     std::set<int> axes;
     for (int joint : between) axes.insert(robot.joints()[joint].dof);
-    if (!axes.empty()) pairs.push_back({static_cast<int>(i), static_cast<int>(j), {axes.begin(), axes.end()}});
+    if (!axes.empty())
+      pairs.push_back({static_cast<int>(i), static_cast<int>(j), {axes.begin(), axes.end()}});
   }
 
   void rebuild_scene() {
@@ -147,16 +154,21 @@ struct CollisionWorld::Impl {
     scene = made.bodies(last_scene, attachment.object, allowed, scene, in_peoples_hands);
   }
 
-  bool may_touch_held(int hand) const { return hand >= 0 && at_held[static_cast<std::size_t>(hand)] != 0; }
+  bool may_touch_held(int hand) const {
+    return hand >= 0 && at_held[static_cast<std::size_t>(hand)] != 0;
+  }
 
   /// Fingers may lean on each other around what they hold.
-  bool lean(const SelfPair& pair) const { return bodies[pair.a].hand == bodies[pair.b].hand && may_touch_held(bodies[pair.a].hand); }
+  bool lean(const SelfPair& pair) const {
+    return bodies[pair.a].hand == bodies[pair.b].hand && may_touch_held(bodies[pair.a].hand);
+  }
 
   void rebuild_held() {
     bodies.resize(link_bodies);
     capsules.resize(link_capsules);
     held_pairs.clear();
-    const int hand = attachment.object.empty() ? -1 : hand_index(hands, attachment.hand), palm = hand < 0 ? -1 : hands[hand].palm;
+    const int hand = attachment.object.empty() ? -1 : hand_index(hands, attachment.hand),
+              palm = hand < 0 ? -1 : hands[hand].palm;
     at_held.assign(hands.size(), hand >= 0 && allowed.count(attachment.object) > 0);
     if (hand >= 0) at_held[hand] = 1;
     if (palm >= 0) {
@@ -165,7 +177,8 @@ struct CollisionWorld::Impl {
       for (const SceneObject& object : last_scene.objects)
         if (object.id == attachment.object) held = object;
       if (CollisionShapePtr shape = made.shape_of(held)) {
-        LinkCapsule capsule = enclosing_capsule(shape->is_mesh() ? std::get<MeshPtr>(shape->shape())->vertices : corners_of(held));
+        LinkCapsule capsule = enclosing_capsule(
+            shape->is_mesh() ? std::get<MeshPtr>(shape->shape())->vertices : corners_of(held));
         capsule.link = palm;
         capsule.a = attachment.T_tool_object * capsule.a;
         capsule.b = attachment.T_tool_object * capsule.b;
@@ -181,19 +194,24 @@ struct CollisionWorld::Impl {
   void place(const Vector& q) {
     robot.forward(q, T_root_link);
     T_world_body.resize(bodies.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i) T_world_body[i] = T_world_base * (T_root_link[bodies[i].link] * bodies[i].T_link_shape);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      T_world_body[i] = T_world_base * (T_root_link[bodies[i].link] * bodies[i].T_link_shape);
   }
 
   std::string name_of(std::size_t body) const {
-    return body < link_bodies ? "link " + robot.links()[bodies[body].link].name : "object " + attachment.object;
+    return body < link_bodies ? "link " + robot.links()[bodies[body].link].name
+                              : "object " + attachment.object;
   }
 
   bool touch_pair(const SelfPair& pair) const {
     const RobotBody &a = bodies[pair.a], &b = bodies[pair.b];
-    if ((!a.wider && !b.wider) || !changes(pair)) return touch(*a.shape, T_world_body[pair.a], *b.shape, T_world_body[pair.b]);
-    const auto pose = [this](const RobotBody& body) { return T_world_base * (T_root_link[body.link] * body.T_link_wider); };
-    return touch(a.wider ? *a.wider : *a.shape, a.wider ? pose(a) : T_world_body[pair.a], b.wider ? *b.wider : *b.shape,
-                 b.wider ? pose(b) : T_world_body[pair.b]);
+    if ((!a.wider && !b.wider) || !changes(pair))
+      return touch(*a.shape, T_world_body[pair.a], *b.shape, T_world_body[pair.b]);
+    const auto pose = [this](const RobotBody& body) {
+      return T_world_base * (T_root_link[body.link] * body.T_link_wider);
+    };
+    return touch(a.wider ? *a.wider : *a.shape, a.wider ? pose(a) : T_world_body[pair.a],
+                 b.wider ? *b.wider : *b.shape, b.wider ? pose(b) : T_world_body[pair.b]);
   }
 
   bool moved(int link) const {
@@ -216,7 +234,9 @@ struct CollisionWorld::Impl {
   bool self_touch(const std::vector<SelfPair>& pairs, CollisionVerdict* verdict) const {
     for (const SelfPair& pair : pairs) {
       if (lean(pair)) continue;
-      if (std::none_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return changed[axis]; })) continue;
+      if (std::none_of(pair.axes.begin(), pair.axes.end(),
+                       [this](int axis) { return changed[axis]; }))
+        continue;
       if (!touch_pair(pair)) continue;
       if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b), ""};
       return true;
@@ -224,14 +244,18 @@ struct CollisionWorld::Impl {
     return false;
   }
 
-  bool scene_touch(std::size_t i, const std::vector<SceneBody>& things, CollisionVerdict* verdict) const {
+  bool scene_touch(std::size_t i, const std::vector<SceneBody>& things,
+                   CollisionVerdict* verdict) const {
     const bool held = i >= link_bodies;
     for (const SceneBody& thing : things) {
       if (thing.allowed && bodies[i].hand >= 0) continue;
       const bool lowered = held && thing.lowered;
       const CollisionShape& shape = lowered ? *thing.lowered : *thing.shape;
-      if (!touch(*bodies[i].shape, T_world_body[i], shape, lowered ? thing.T_world_lowered : thing.T_world_shape)) continue;
-      if (verdict) *verdict = {false, name_of(i), (thing.is_object ? "object " : "box ") + thing.id, thing.id};
+      if (!touch(*bodies[i].shape, T_world_body[i], shape,
+                 lowered ? thing.T_world_lowered : thing.T_world_shape))
+        continue;
+      if (verdict)
+        *verdict = {false, name_of(i), (thing.is_object ? "object " : "box ") + thing.id, thing.id};
       return true;
     }
     return false;
@@ -247,19 +271,22 @@ struct CollisionWorld::Impl {
     return false;
   }
 
-  /// Distance of capsules around the robot to those of people, found by `counts`; stops below `enough`. At most `cap`.
+  /// Distance of capsules around the robot to those of people, found by `counts`; stops below
+  /// `enough`. At most `cap`.
   template <class F>
   double people_distance(F&& counts, double cap, double enough) const {
     double least = cap;
     for (const LinkCapsule& capsule : capsules) {
       const Pose& T_root = T_root_link[capsule.link];
-      const Vector3 a = T_world_base * (T_root * capsule.a), b = T_world_base * (T_root * capsule.b), middle = 0.5 * (a + b);
+      const Vector3 a = T_world_base * (T_root * capsule.a),
+                    b = T_world_base * (T_root * capsule.b), middle = 0.5 * (a + b);
       const double reach = 0.5 * (b - a).norm() + capsule.radius;
       for (const PersonBody& person : people) {
         if (!counts(person)) continue;
         const double bound = least + reach + person.reach;
         if (bound > 0 && (middle - person.middle).squaredNorm() >= bound * bound) continue;
-        least = std::min(least, segment_distance(a, b, person.a, person.b) - capsule.radius - person.radius);
+        least = std::min(
+            least, segment_distance(a, b, person.a, person.b) - capsule.radius - person.radius);
         if (least <= enough) return least;
       }
     }
@@ -268,7 +295,8 @@ struct CollisionWorld::Impl {
 
   /// Whether any robot capsule comes near a person who is an obstacle: the capsules hold the links.
   bool near_people() const {
-    return people_distance([](const PersonBody& p) { return p.obstacle && !(p.allowed && p.arm); }, 1e-6, 0.0) <= 0.0;
+    return people_distance([](const PersonBody& p) { return p.obstacle && !(p.allowed && p.arm); },
+                           1e-6, 0.0) <= 0.0;
   }
 
   bool things_touch(const std::vector<SceneBody>& things, CollisionVerdict* verdict) const {
@@ -286,12 +314,13 @@ struct CollisionWorld::Impl {
     return false;
   }
 
-  /// Makes the wide world agree with this one. False when the exact check has to judge everything: there is none, or what the moving axes
-  /// do not move touches something.
+  /// Makes the wide world agree with this one. False when the exact check has to judge everything:
+  /// there is none, or what the moving axes do not move touches something.
   bool wide_ready(const Vector& q) {
     if (!wide) return false;
     bool same = folded_at.size() == q.size();
-    for (int axis = 0; same && axis < robot.dof(); ++axis) same = moves_axis[axis] || folded_at[axis] == q[axis];
+    for (int axis = 0; same && axis < robot.dof(); ++axis)
+      same = moves_axis[axis] || folded_at[axis] == q[axis];
     if (same && !solids_stale) return !rest_touches;
     place(q);
     rest_touches = false;
@@ -300,8 +329,10 @@ struct CollisionWorld::Impl {
     for (const auto* things : {&scene, &obstacles, &in_peoples_hands})
       for (const SceneBody& thing : *things) {
         const std::uint8_t all = thing.allowed ? kArmPart : kArmPart | kHandPart | kHeldPart;
-        add_solid(*thing.shape, thing.T_world_shape, thing.lowered ? all & ~kHeldPart : all, solids);
-        if (thing.lowered) add_solid(*thing.lowered, thing.T_world_lowered, all & kHeldPart, solids);
+        add_solid(*thing.shape, thing.T_world_shape, thing.lowered ? all & ~kHeldPart : all,
+                  solids);
+        if (thing.lowered)
+          add_solid(*thing.lowered, thing.T_world_lowered, all & kHeldPart, solids);
       }
     for (const PersonBody& person : people)
       if (person.obstacle && !(person.allowed && person.arm))
@@ -309,8 +340,8 @@ struct CollisionWorld::Impl {
     wide->set_solids(solids, T_world_base);
     for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
       rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
-                     (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) || scene_touch(i, in_peoples_hands, nullptr) ||
-                      person_touch(i, nullptr));
+                     (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) ||
+                      scene_touch(i, in_peoples_hands, nullptr) || person_touch(i, nullptr));
     for (const auto* pairs : {&link_pairs, &held_pairs})
       for (const SelfPair& pair : *pairs) {
         if (rest_touches || lean(pair) || changes(pair)) continue;
@@ -326,13 +357,16 @@ struct CollisionWorld::Impl {
     return true;
   }
 
-  static void add_solid(const CollisionShape& shape, const Pose& T, int against, std::vector<BatchWorld::Solid>& solids) {
+  static void add_solid(const CollisionShape& shape, const Pose& T, int against,
+                        std::vector<BatchWorld::Solid>& solids) {
     if (against == 0) return;
-    solids.push_back({shape.shape(), shape.is_mesh() ? shape.cover() : nullptr, T, static_cast<std::uint8_t>(against)});
+    solids.push_back({shape.shape(), shape.is_mesh() ? shape.cover() : nullptr, T,
+                      static_cast<std::uint8_t>(against)});
   }
 
   bool changes(const SelfPair& pair) const {
-    return std::any_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return moves_axis[axis] != 0; });
+    return std::any_of(pair.axes.begin(), pair.axes.end(),
+                       [this](int axis) { return moves_axis[axis] != 0; });
   }
 
   void fold(const Vector& q) {
@@ -368,16 +402,20 @@ struct CollisionWorld::Impl {
     if (last >= kSweepFrom) {
       open.assign(open.size(), 0);
       open.front() = open.back() = 1;
-      for (const auto& [low, high] : wide->unclear_stretches(from, to, 2.0 / last, 1 + last / kSweepFrom))
-        for (int i = std::max(0, static_cast<int>(low * last) - 1); i <= std::min(last, static_cast<int>(high * last) + 1); ++i)
+      for (const auto& [low, high] :
+           wide->unclear_stretches(from, to, 2.0 / last, 1 + last / kSweepFrom))
+        for (int i = std::max(0, static_cast<int>(low * last) - 1);
+             i <= std::min(last, static_cast<int>(high * last) + 1); ++i)
           open[static_cast<std::size_t>(i)] = 1;
     }
     for (std::size_t next = 0; next < order.size();) {
       at.clear();
       std::size_t end = next;
       for (; end < order.size() && at.size() < static_cast<std::size_t>(BatchWorld::kStates); ++end)
-        if (open[static_cast<std::size_t>(order[end])]) at.push_back(static_cast<double>(order[end]) / std::max(1, last));
-      std::uint32_t unclear = at.empty() ? 0 : wide->unclear_on_line(from, to, at.data(), static_cast<int>(at.size()));
+        if (open[static_cast<std::size_t>(order[end])])
+          at.push_back(static_cast<double>(order[end]) / std::max(1, last));
+      std::uint32_t unclear =
+          at.empty() ? 0 : wide->unclear_on_line(from, to, at.data(), static_cast<int>(at.size()));
       for (; next < end; ++next) {
         const int i = order[next];
         const bool asks = open[static_cast<std::size_t>(i)] && (unclear & 1) != 0;
@@ -386,9 +424,10 @@ struct CollisionWorld::Impl {
           ++checks;
           continue;
         }
-        const bool free = i == 0      ? judge(from, verdict)
-                          : i == last ? judge(to, verdict)
-                                      : judge(from + (to - from) * (static_cast<double>(i) / last), verdict);
+        const bool free =
+            i == 0      ? judge(from, verdict)
+            : i == last ? judge(to, verdict)
+                        : judge(from + (to - from) * (static_cast<double>(i) / last), verdict);
         if (!free) return false;
       }
     }
@@ -402,14 +441,16 @@ struct CollisionWorld::Impl {
     if (things_touch(scene, verdict) || things_touch(obstacles, verdict)) return false;
     if (with_people && people_touch(verdict)) return false;
     const bool known = self_free.size() == q.size();
-    for (int axis = 0; axis < robot.dof(); ++axis) changed[axis] = !known || self_free[axis] != q[axis];
+    for (int axis = 0; axis < robot.dof(); ++axis)
+      changed[axis] = !known || self_free[axis] != q[axis];
     if (self_touch(link_pairs, verdict) || self_touch(held_pairs, verdict)) return false;
     self_free = q;
     return true;
   }
 };
 
-CollisionWorld::CollisionWorld(const RobotModel& robot, ObjectLibrary library) : impl_(new Impl(robot, std::move(library))) {}
+CollisionWorld::CollisionWorld(const RobotModel& robot, ObjectLibrary library)
+    : impl_(new Impl(robot, std::move(library))) {}
 CollisionWorld::~CollisionWorld() = default;
 CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
 
@@ -475,7 +516,8 @@ void CollisionWorld::set_people(const HumanState& state, PeopleParts parts) {
     }
 }
 
-void CollisionWorld::set_attachment(const Attachment& attachment, const std::vector<std::string>& allowed_contacts) {
+void CollisionWorld::set_attachment(const Attachment& attachment,
+                                    const std::vector<std::string>& allowed_contacts) {
   impl_->attachment = attachment;
   impl_->allowed = {allowed_contacts.begin(), allowed_contacts.end()};
   for (PersonBody& person : impl_->people) person.allowed = impl_->allowed.count(person.id) > 0;
@@ -518,7 +560,9 @@ CollisionVerdict CollisionWorld::check_motion(const Vector& from, const Vector& 
     impl_->judge_line(from, to, last, &verdict);
     return verdict;
   }
-  const auto at = [&](int i) -> Vector { return from + (to - from) * (static_cast<double>(i) / std::max(1, last)); };
+  const auto at = [&](int i) -> Vector {
+    return from + (to - from) * (static_cast<double>(i) / std::max(1, last));
+  };
   if (!impl_->judge(from, &verdict) || (last > 0 && !impl_->judge(to, &verdict))) return verdict;
   int stride = 1;
   while (stride < last) stride *= 2;
@@ -542,19 +586,23 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
   for (const LinkCapsule& capsule : w.capsules) {
     const Pose T_world_link = w.T_world_base * w.T_root_link[capsule.link];
     ends.emplace_back(T_world_link * capsule.a, T_world_link * capsule.b);
-    w.simd_capsules.push_back(simd_capsule(ends.back().first - origin, ends.back().second - origin, capsule.radius));
+    w.simd_capsules.push_back(
+        simd_capsule(ends.back().first - origin, ends.back().second - origin, capsule.radius));
   }
   w.capsule_distances.resize(16 * ends.size() + 16);
   float* distances =
-      w.capsule_distances.data() + (64 - reinterpret_cast<std::uintptr_t>(w.capsule_distances.data()) % 64) % 64 / sizeof(float);
+      w.capsule_distances.data() +
+      (64 - reinterpret_cast<std::uintptr_t>(w.capsule_distances.data()) % 64) % 64 / sizeof(float);
   for (std::size_t first = 0; first < w.people.size(); first += 16) {
     detail::SimdCapsules lanes = no_capsules();
     const std::size_t count = std::min<std::size_t>(16, w.people.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       const PersonBody& body = w.people[first + i];
-      put_capsule(simd_capsule(body.a - origin, body.b - origin, body.radius), static_cast<int>(i), lanes);
+      put_capsule(simd_capsule(body.a - origin, body.b - origin, body.radius), static_cast<int>(i),
+                  lanes);
     }
-    const float nearest = detail::simd_kernels().distances(w.simd_capsules.data(), static_cast<int>(ends.size()), lanes, kSlack, distances);
+    const float nearest = detail::simd_kernels().distances(
+        w.simd_capsules.data(), static_cast<int>(ends.size()), lanes, kSlack, distances);
     for (std::size_t c = 0; c < ends.size(); ++c)
       for (std::size_t i = 0; i < count; ++i) {
         if (!(distances[16 * c + i] <= nearest + kSlack)) continue;
@@ -572,7 +620,8 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
   return least;
 }
 
-double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* on_robot, Vector3* on_scene) {
+double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* on_robot,
+                                         Vector3* on_scene) {
   Impl& w = *impl_;
   w.place(q);
   struct Candidate {
@@ -586,19 +635,22 @@ double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* o
     for (const auto* things : {&w.scene, &w.obstacles})
       for (const SceneBody& thing : *things) {
         if (thing.allowed && w.bodies[i].hand >= 0) continue;
-        const double bound = gap_bound(*w.bodies[i].shape, w.T_world_body[i], *thing.shape, thing.T_world_shape);
+        const double bound =
+            gap_bound(*w.bodies[i].shape, w.T_world_body[i], *thing.shape, thing.T_world_shape);
         if (bound < cap) candidates.push_back({bound, i, &thing});
       }
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.bound < b.bound; });
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.bound < b.bound; });
   double least = cap;
   for (const Candidate& c : candidates) {
     if (c.bound >= least) break;
     const bool lowered = c.body >= w.link_bodies && c.thing->lowered;
     Vector3 on_body, on_thing;
-    const double distance =
-        gap(*w.bodies[c.body].shape, w.T_world_body[c.body], lowered ? *c.thing->lowered : *c.thing->shape,
-            lowered ? c.thing->T_world_lowered : c.thing->T_world_shape, on_robot ? &on_body : nullptr, on_scene ? &on_thing : nullptr);
+    const double distance = gap(*w.bodies[c.body].shape, w.T_world_body[c.body],
+                                lowered ? *c.thing->lowered : *c.thing->shape,
+                                lowered ? c.thing->T_world_lowered : c.thing->T_world_shape,
+                                on_robot ? &on_body : nullptr, on_scene ? &on_thing : nullptr);
     if (distance >= least) continue;
     least = distance;
     if (on_robot != nullptr) *on_robot = on_body;
@@ -615,7 +667,8 @@ bool CollisionWorld::surely_free_at_steps(const Vector& from, const Vector& to, 
   std::array<double, BatchWorld::kStates> at;
   for (int block = 0; block < blocks; ++block) {
     int count = 0;
-    for (int i = block; i < states; i += blocks) at[static_cast<std::size_t>(count++)] = static_cast<double>(i) / last;
+    for (int i = block; i < states; i += blocks)
+      at[static_cast<std::size_t>(count++)] = static_cast<double>(i) / last;
     w.checks += static_cast<std::uint64_t>(count);
     if (w.wide->unclear_on_line(from, to, at.data(), count, true) != 0) return false;
   }
@@ -625,7 +678,8 @@ bool CollisionWorld::surely_free_at_steps(const Vector& from, const Vector& to, 
 bool CollisionWorld::surely_free(const Vector& from, const Vector& to) {
   constexpr double kFinest = 1.0 / 4096;
   constexpr int kMostBlocks = 256;
-  return impl_->wide_ready(from) && impl_->moves_only(from, to) && impl_->wide->unclear_stretches(from, to, kFinest, kMostBlocks).empty();
+  return impl_->wide_ready(from) && impl_->moves_only(from, to) &&
+         impl_->wide->unclear_stretches(from, to, kFinest, kMostBlocks).empty();
 }
 
 std::uint32_t CollisionWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {

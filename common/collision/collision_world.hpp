@@ -85,12 +85,13 @@ class CollisionWorld {
   /// the robot's links; +inf if nobody. Negative when they overlap. All body parts count, whatever
   /// set_people and the allowed contacts say. Writes the points nearest each other on robot and
   /// person, in the world, when given.
-  double distance_to_people(const Vector& q, Vector3* on_robot = nullptr, Vector3* on_person = nullptr);
+  double distance_to_people(const Vector& q, Vector3* on_robot = nullptr,
+                            Vector3* on_person = nullptr);
   /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked:
   /// distances beyond `cap` return `cap`. Writes the points nearest each other on robot and scene,
   /// in the world, when given, the distance is below `cap` and nothing touches.
-  double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity(), Vector3* on_robot = nullptr,
-                           Vector3* on_scene = nullptr);
+  double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity(),
+                           Vector3* on_robot = nullptr, Vector3* on_scene = nullptr);
 
   /// Uses the SIMD check alone for the states of check_motion: true is sure of them, false is
   /// unknown; false without moving axes.
@@ -118,8 +119,8 @@ class CollisionWorld {
 int motion_states(const Vector& from, const Vector& to, double step);
 
 /// Distance of two segments [m]; closest points written when given.
-double segment_distance(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1, Vector3* on_a = nullptr,
-                        Vector3* on_b = nullptr);
+double segment_distance(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1,
+                        Vector3* on_a = nullptr, Vector3* on_b = nullptr);
 
 /// Contact and distance of two placed shapes (`handsel distance`): distance 0 when they touch.
 struct ShapeDistance {

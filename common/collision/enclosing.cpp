@@ -33,11 +33,13 @@ LinkCapsule enclosing_capsule(const std::vector<Vector3>& points) {
   for (const Vector3& p : points) mean += p / static_cast<double>(points.size());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vector3& p : points) covariance += (p - mean) * (p - mean).transpose();
-  const Vector3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
+  const Vector3 axis =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
   double low = 0, high = 0, radius = 0;
   for (const Vector3& p : points) radius = std::max(radius, (p - mean).cross(axis).norm());
   for (const Vector3& p : points) {
-    const double across = (p - mean).cross(axis).norm(), x = (p - mean).dot(axis), cap = std::sqrt(radius * radius - across * across);
+    const double across = (p - mean).cross(axis).norm(), x = (p - mean).dot(axis),
+                 cap = std::sqrt(radius * radius - across * across);
     low = std::min(low, x + cap);
     high = std::max(high, x - cap);
   }

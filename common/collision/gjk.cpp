@@ -20,11 +20,13 @@ Vector3 local_support(const ConvexCore& core, const Vector3& d) {
     case ConvexCore::Kind::segment:
       return {0, 0, sign(d.z()) * core.half.z()};
     case ConvexCore::Kind::triangle: {
-      const double a = d.dot(core.corners[0]), b = d.dot(core.corners[1]), c = d.dot(core.corners[2]);
+      const double a = d.dot(core.corners[0]), b = d.dot(core.corners[1]),
+                   c = d.dot(core.corners[2]);
       return core.corners[a >= b && a >= c ? 0 : b >= c ? 1 : 2];
     }
     case ConvexCore::Kind::box:
-      return {sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(), sign(d.z()) * core.half.z()};
+      return {sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(),
+              sign(d.z()) * core.half.z()};
     case ConvexCore::Kind::cylinder: {
       const double norm = std::hypot(d.x(), d.y());
       const double scale = norm > 1e-14 ? core.half.x() / norm : 0.0;
@@ -66,7 +68,8 @@ struct Simplex {
     const Vector3 f = p[2] - p[0];
     const double ff = f.squaredNorm(), ef = e.dot(f), fr = f.dot(r), det = ee * ff - ef * ef;
     if (!(det > 0)) return on_a[0];
-    return on_a[0] + (ff * er - ef * fr) / det * (on_a[1] - on_a[0]) + (ee * fr - ef * er) / det * (on_a[2] - on_a[0]);
+    return on_a[0] + (ff * er - ef * fr) / det * (on_a[1] - on_a[0]) +
+           (ee * fr - ef * er) / det * (on_a[2] - on_a[0]);
   }
 };
 
@@ -106,7 +109,8 @@ OnTriangle nearest_on_triangle(const Simplex& s, int i, int j, int k) {
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + d2 / (d2 - d6) * ac, {i, k}, 2};
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), {j, k}, 2};
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), {j, k}, 2};
   const double sum = va + vb + vc;
   if (!(std::abs(sum) > 0)) return {a, {i}, 1};
   return {a + ab * (vb / sum) + ac * (vc / sum), {i, j, k}, 3};
@@ -147,8 +151,10 @@ Vector3 reduce(Simplex& s) {
   return best.point;
 }
 
-/// Distance of the cores, with the points `v` apart; `enough`: return early with a lower bound once the distance surely exceeds it.
-double core_distance(const ConvexCore& a, const ConvexCore& b, double enough, Simplex& s, Vector3& v) {
+/// Distance of the cores, with the points `v` apart; `enough`: return early with a lower bound once
+/// the distance surely exceeds it.
+double core_distance(const ConvexCore& a, const ConvexCore& b, double enough, Simplex& s,
+                     Vector3& v) {
   v = a.T_world_core.translation() - b.T_world_core.translation();
   if (v.squaredNorm() < 1e-24) v = Vector3::UnitX();
   s.add(support(a, -v), support(b, v));
@@ -205,7 +211,8 @@ ConvexCore convex_core(const Shape& shape, const Pose& T_world_shape) {
 double convex_distance(const ConvexCore& a, const ConvexCore& b, Vector3* on_a, Vector3* on_b) {
   Simplex s;
   Vector3 v;
-  const double apart = core_distance(a, b, std::numeric_limits<double>::infinity(), s, v), distance = apart - a.margin - b.margin;
+  const double apart = core_distance(a, b, std::numeric_limits<double>::infinity(), s, v),
+               distance = apart - a.margin - b.margin;
   if (distance <= 0) return 0.0;
   if (on_a != nullptr || on_b != nullptr) {
     const Vector3 point = s.point_of_a(v), normal = v / v.norm();

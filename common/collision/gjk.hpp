@@ -25,7 +25,8 @@ ConvexCore convex_core(const Shape&, const Pose& T_world_shape);
 
 /// Distance of the two shapes, 0 when they touch [m]. The points nearest each other (world) are
 /// written when given and they do not touch.
-double convex_distance(const ConvexCore& a, const ConvexCore& b, Vector3* on_a = nullptr, Vector3* on_b = nullptr);
+double convex_distance(const ConvexCore& a, const ConvexCore& b, Vector3* on_a = nullptr,
+                       Vector3* on_b = nullptr);
 /// Whether they touch; stops as soon as a separating plane is found.
 bool convex_touch(const ConvexCore& a, const ConvexCore& b);
 

@@ -16,6 +16,7 @@ struct Margins {
 /// Puts the scene into the world with the margins, or with the largest fraction of them (1, 0.3 or
 /// 0) at which `ends` (all axes) are free: a motion that begins near an obstacle must stay
 /// possible. The scene itself, moving axes, people and attachment are set before.
-void set_scene_with_margins(CollisionWorld& world, const Scene& scene, const Margins& margins, const std::vector<Vector>& ends);
+void set_scene_with_margins(CollisionWorld& world, const Scene& scene, const Margins& margins,
+                            const std::vector<Vector>& ends);
 
 }  // namespace handsel

@@ -28,7 +28,8 @@ CollisionShapePtr SceneBodies::shape_of(const SceneObject& object, double margin
 std::vector<Vector3> corners_of(const SceneObject& object) {
   const Eigen::AlignedBox3d box = object_extent(nullptr, object.primitive);
   std::vector<Vector3> out;
-  for (int i = 0; i < 8; ++i) out.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  for (int i = 0; i < 8; ++i)
+    out.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
   return out;
 }
 
@@ -37,13 +38,16 @@ CollisionShapePtr SceneBodies::mesh_of(const std::string& model_name) {
   if (found != meshes_.end()) return found->second;
   const ObjectModel* model = library_ ? library_(model_name) : nullptr;
   CollisionShapePtr shape;
-  if (model != nullptr && !model->mesh.triangles.empty()) shape = CollisionShape::make(std::make_shared<const TriangleMesh>(model->mesh));
+  if (model != nullptr && !model->mesh.triangles.empty())
+    shape = CollisionShape::make(std::make_shared<const TriangleMesh>(model->mesh));
   meshes_.emplace(model_name, shape);
   return shape;
 }
 
-std::vector<SceneBody> SceneBodies::bodies(const Scene& scene, const std::string& attached, const std::set<std::string>& allowed,
-                                           const std::vector<SceneBody>& before, std::vector<SceneBody>& in_peoples_hands) {
+std::vector<SceneBody> SceneBodies::bodies(const Scene& scene, const std::string& attached,
+                                           const std::set<std::string>& allowed,
+                                           const std::vector<SceneBody>& before,
+                                           std::vector<SceneBody>& in_peoples_hands) {
   std::vector<SceneBody> bodies_now;
   for (const SceneBox& box : scene.boxes) {
     SceneBody body;
@@ -51,16 +55,19 @@ std::vector<SceneBody> SceneBodies::bodies(const Scene& scene, const std::string
     body.supports = box.supports;
     body.T_world_shape = box.T_world_box;
     const auto same = std::find_if(before.begin(), before.end(), [&](const SceneBody& b) {
-      return !b.is_object && b.id == box.id && b.supports == box.supports && std::get<Box>(b.shape->shape()).size == box.size;
+      return !b.is_object && b.id == box.id && b.supports == box.supports &&
+             std::get<Box>(b.shape->shape()).size == box.size;
     });
     if (same != before.end()) {
       body.shape = same->shape;
       body.lowered = same->lowered;
     } else {
       body.shape = CollisionShape::make(Box{box.size});
-      if (box.supports && box.size.z() > kSupportSlack) body.lowered = CollisionShape::make(Box{box.size - Vector3(0, 0, kSupportSlack)});
+      if (box.supports && box.size.z() > kSupportSlack)
+        body.lowered = CollisionShape::make(Box{box.size - Vector3(0, 0, kSupportSlack)});
     }
-    if (body.lowered) body.T_world_lowered = box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * kSupportSlack);
+    if (body.lowered)
+      body.T_world_lowered = box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * kSupportSlack);
     body.allowed = allowed.count(box.id) > 0;
     bodies_now.push_back(std::move(body));
   }
@@ -71,16 +78,19 @@ std::vector<SceneBody> SceneBodies::bodies(const Scene& scene, const std::string
     body.is_object = true;
     body.T_world_shape = object.T_world_object;
     body.allowed = allowed.count(object.id) > 0;
-    const ObjectModel* model = library_ && object.holder == Holder::human ? library_(object.model) : nullptr;
+    const ObjectModel* model =
+        library_ && object.holder == Holder::human ? library_(object.model) : nullptr;
     for (const PlacedShape& part : model != nullptr ? model->parts : std::vector<PlacedShape>{}) {
       SceneBody solid = body;
       solid.T_world_shape = object.T_world_object * part.T_parent_shape;
       solid.shape = CollisionShape::make(part.shape);
-      if (!body.allowed && object.uncertainty > kSurePlace) solid.shape = widened(solid.shape, object.uncertainty, solid.T_world_shape);
+      if (!body.allowed && object.uncertainty > kSurePlace)
+        solid.shape = widened(solid.shape, object.uncertainty, solid.T_world_shape);
       in_peoples_hands.push_back(std::move(solid));
     }
     if (model != nullptr && !model->parts.empty()) continue;
-    body.shape = body.allowed ? shape_of(object, 0) : shape_of(object, object.uncertainty, body.T_world_shape);
+    body.shape = body.allowed ? shape_of(object, 0)
+                              : shape_of(object, object.uncertainty, body.T_world_shape);
     if (!body.shape) continue;
     (object.holder == Holder::human ? in_peoples_hands : bodies_now).push_back(std::move(body));
   }

@@ -12,11 +12,11 @@
 namespace handsel {
 
 struct SceneBody {
-  std::string id;                                                           ///< of the box or object in the scene
-  bool is_object{}, supports{};                                             ///< object instead of box; objects may stand on it
-  CollisionShapePtr shape, lowered;                                         ///< lowered: for what the hand holds, see kSupportSlack
+  std::string id;                    ///< of the box or object in the scene
+  bool is_object{}, supports{};      ///< object instead of box; objects may stand on it
+  CollisionShapePtr shape, lowered;  ///< lowered: for what the hand holds, see kSupportSlack
   Pose T_world_shape{Pose::Identity()}, T_world_lowered{Pose::Identity()};  ///< of the two shapes
-  bool allowed{};                                                           ///< contact with it is allowed
+  bool allowed{};  ///< contact with it is allowed
 };
 
 /// Returns the corners of the box around the primitive of an unknown object, its own frame [m].
@@ -30,8 +30,10 @@ class SceneBodies {
   /// Returns boxes, and objects that nobody holds; what people hold goes to `in_peoples_hands`, by
   /// its solid parts where they are described. What the robot holds, and `attached`, is left out.
   /// Shapes of boxes that are the same `before` are kept.
-  std::vector<SceneBody> bodies(const Scene& scene, const std::string& attached, const std::set<std::string>& allowed,
-                                const std::vector<SceneBody>& before, std::vector<SceneBody>& in_peoples_hands);
+  std::vector<SceneBody> bodies(const Scene& scene, const std::string& attached,
+                                const std::set<std::string>& allowed,
+                                const std::vector<SceneBody>& before,
+                                std::vector<SceneBody>& in_peoples_hands);
   /// Returns the mesh of a described object, or the primitive of an unknown one; null: neither.
   CollisionShapePtr shape_of(const SceneObject& object) { return shape_of(object, 0); }
 

@@ -5,7 +5,8 @@
 
 namespace handsel {
 
-double segment_distance(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1, Vector3* on_a, Vector3* on_b) {
+double segment_distance(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1,
+                        Vector3* on_a, Vector3* on_b) {
   const Vector3 da = a1 - a0, db = b1 - b0, r = a0 - b0;
   const double aa = da.squaredNorm(), bb = db.squaredNorm(), br = db.dot(r);
   double s = 0, t = 0;
@@ -34,7 +35,8 @@ double segment_distance(const Vector3& a0, const Vector3& a1, const Vector3& b0,
   return (pa - pb).norm();
 }
 
-ShapeDistance shape_distance(const Shape& a, const Pose& T_world_a, const Shape& b, const Pose& T_world_b) {
+ShapeDistance shape_distance(const Shape& a, const Pose& T_world_a, const Shape& b,
+                             const Pose& T_world_b) {
   const CollisionShapePtr first = CollisionShape::make(a), second = CollisionShape::make(b);
   if (touch(*first, T_world_a, *second, T_world_b)) return {true, 0.0};
   return {false, gap(*first, T_world_a, *second, T_world_b)};

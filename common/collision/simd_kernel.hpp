@@ -36,7 +36,8 @@ struct SimdSolid {
 /// Sixteen solids side by side, cylinders as the boxes around them; those that are not there are
 /// far away.
 struct SimdSolids {
-  alignas(64) float axes[9][kBatchStates], at[3][kBatchStates], half[3][kBatchStates], radius[kBatchStates];
+  alignas(64) float axes[9][kBatchStates], at[3][kBatchStates], half[3][kBatchStates],
+      radius[kBatchStates];
 };
 
 /// Spheres that must stay clear of solids: below `root`, in the trees of `nodes` (all when there
@@ -84,7 +85,8 @@ constexpr int kMaxTreeDepth = 12;
 /// Capsules of one body of bones: 16 side by side; those that are not there are a thousand
 /// kilometres away.
 struct SimdCapsules {
-  alignas(64) float ax[16], ay[16], az[16], dx[16], dy[16], dz[16], dd[16], over_dd[16], radius[16], reach[16], mx[16], my[16], mz[16];
+  alignas(64) float ax[16], ay[16], az[16], dx[16], dy[16], dz[16], dd[16], over_dd[16], radius[16],
+      reach[16], mx[16], my[16], mz[16];
 };
 struct SimdCapsule {
   float ax, ay, az, dx, dy, dz, dd, over_dd, radius, reach, mx, my, mz;
@@ -93,15 +95,16 @@ struct SimdCapsule {
 struct SimdKernels {
   const char* name;
   int width;  ///< states in a register
-  /// q: positions, [row][kBatchStates], radians between about -50 and 50. `half`: how far each joint
-  /// row moves to either side of the state, or nullptr. Returns the bits of those of the given
-  /// states in which some sphere is not clear; `any`: of the first ones found, where the search
-  /// ends.
-  std::uint32_t (*check)(const SimdTables& tables, SimdMemory& memory, const float* q, const float* half, std::uint32_t state_bits,
-                         bool any) noexcept;
+  /// q: positions, [row][kBatchStates], radians between about -50 and 50. `half`: how far each
+  /// joint row moves to either side of the state, or nullptr. Returns the bits of those of the
+  /// given states in which some sphere is not clear; `any`: of the first ones found, where the
+  /// search ends.
+  std::uint32_t (*check)(const SimdTables& tables, SimdMemory& memory, const float* q,
+                         const float* half, std::uint32_t state_bits, bool any) noexcept;
   /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count];
   /// those surely beyond the nearest by `slack` may be lower bounds. Returns the least.
-  float (*distances)(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack, float* distance) noexcept;
+  float (*distances)(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack,
+                     float* distance) noexcept;
 };
 
 extern const SimdKernels kSimdKernelsBase;

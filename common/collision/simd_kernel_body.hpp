@@ -17,7 +17,9 @@ struct Pass {
   bool swept{}, any{};
 
   /// Nothing more is to be learnt from the states left.
-  bool settled(const M& found, const M& left) const noexcept { return !any_of(left) || (any && any_of(found)); }
+  bool settled(const M& found, const M& left) const noexcept {
+    return !any_of(left) || (any && any_of(found));
+  }
 
   float* pose(int body) const noexcept { return memory.pose + body * 12 * kBatchStates; }
 
@@ -26,7 +28,9 @@ struct Pass {
       V sum = 0.0f;
       const float* reach = tables.reach + body * tables.joint_count;
       for (int j = 0; j < tables.joint_count; ++j)
-        if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kBatchStates) * tables.joints[j].factor) * reach[j];
+        if (reach[j] > 0.0f)
+          sum += abs(load(half + tables.joints[j].row * kBatchStates) * tables.joints[j].factor) *
+                 reach[j];
       store(sum, memory.margin + body * kBatchStates);
     }
   }
@@ -34,7 +38,9 @@ struct Pass {
     V sum = 0.0f;
     const float* reach = tables.pair_reach + pair * tables.joint_count;
     for (int j = 0; j < tables.joint_count; ++j)
-      if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kBatchStates) * tables.joints[j].factor) * reach[j];
+      if (reach[j] > 0.0f)
+        sum += abs(load(half + tables.joints[j].row * kBatchStates) * tables.joints[j].factor) *
+               reach[j];
     return sum;
   }
 
@@ -45,13 +51,14 @@ struct Pass {
     const SimdNode& node = tables.nodes[index];
     const float* T = pose(node.body);
     for (int i = 0; i < 3; ++i)
-      store(load(T + (4 * i) * kWidth) * node.x + load(T + (4 * i + 1) * kWidth) * node.y + load(T + (4 * i + 2) * kWidth) * node.z +
-                load(T + (4 * i + 3) * kWidth),
+      store(load(T + (4 * i) * kWidth) * node.x + load(T + (4 * i + 1) * kWidth) * node.y +
+                load(T + (4 * i + 2) * kWidth) * node.z + load(T + (4 * i + 3) * kWidth),
             at + i * kWidth);
     return at;
   }
 
-  [[gnu::always_inline]] static M meets(const SimdSolid& s, const V& x, const V& y, const V& z, const V& r) noexcept {
+  [[gnu::always_inline]] static M meets(const SimdSolid& s, const V& x, const V& y, const V& z,
+                                        const V& r) noexcept {
     const V lx = x * s.axes[0] + y * s.axes[1] + (z * s.axes[2] - s.at[0]);
     const V ly = x * s.axes[3] + y * s.axes[4] + (z * s.axes[5] - s.at[1]);
     const V lz = x * s.axes[6] + y * s.axes[7] + (z * s.axes[8] - s.at[2]);
@@ -117,7 +124,8 @@ struct Pass {
       for (int g = 0; g < kBatchStates && first + g < s.solids; g += kWidth) {
         V d2 = 0.0f;
         for (int i = 0; i < 3; ++i) {
-          const V local = load(row.axes[3 * i] + g) * center[0] + load(row.axes[3 * i + 1] + g) * center[1] +
+          const V local = load(row.axes[3 * i] + g) * center[0] +
+                          load(row.axes[3 * i + 1] + g) * center[1] +
                           (load(row.axes[3 * i + 2] + g) * center[2] - load(row.at[i] + g));
           const V outside = positive(abs(local) - load(row.half[i] + g));
           d2 += outside * outside;
@@ -162,7 +170,8 @@ struct Pass {
   M apart(int a, int b, const V& margin, const M& todo) const noexcept {
     const SimdNode &na = tables.nodes[a], &nb = tables.nodes[b];
     const float *pa = place(a), *pb = place(b);
-    const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth), z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
+    const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth),
+            z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
     const V reach = margin + (na.radius + nb.radius);
     M open = todo && !(x * x + y * y + z * z > reach * reach);
     if ((na.children == 0 && nb.children == 0) || !any_of(open)) return open;
@@ -170,7 +179,8 @@ struct Pass {
     const SimdNode& split = first ? na : nb;
     M found(false);
     for (int c = 0; c < split.children; ++c) {
-      const M hit = first ? apart(split.first_child + c, b, margin, open) : apart(a, split.first_child + c, margin, open);
+      const M hit = first ? apart(split.first_child + c, b, margin, open)
+                          : apart(a, split.first_child + c, margin, open);
       found = found || hit;
       open = open && !hit;
       if (settled(found, open)) break;
@@ -191,7 +201,8 @@ struct Pass {
       const V margin = swept ? pair_margin(i, half) : V(0.0f);
       const SimdNode &na = tables.nodes[pair.a], &nb = tables.nodes[pair.b];
       const float *pa = place(pair.a), *pb = place(pair.b);
-      const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth), z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
+      const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth),
+              z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
       const V reach = margin + (na.radius + nb.radius);
       const M near = todo && !(x * x + y * y + z * z > reach * reach);
       if (!any_of(near)) continue;
@@ -207,8 +218,8 @@ struct Pass {
   }
 };
 
-std::uint32_t check(const SimdTables& tables, SimdMemory& memory, const float* q, const float* half, std::uint32_t state_bits,
-                    bool any) noexcept {
+std::uint32_t check(const SimdTables& tables, SimdMemory& memory, const float* q, const float* half,
+                    std::uint32_t state_bits, bool any) noexcept {
   std::uint32_t out = 0;
   const Pass pass{tables, memory, half != nullptr, any};
   for (int g = 0; g < kBatchStates; g += kWidth) {
@@ -223,12 +234,14 @@ std::uint32_t check(const SimdTables& tables, SimdMemory& memory, const float* q
   return out;
 }
 
-float distances(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack, float* distance) noexcept {
+float distances(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack,
+                float* distance) noexcept {
   float nearest = 1e30f;
   for (int i = 0; i < count; ++i) {
     const SimdCapsule& c = robot[i];
     for (int g = 0; g < 16; g += kWidth) {
-      const V x = c.mx - load(people.mx + g), y = c.my - load(people.my + g), z = c.mz - load(people.mz + g);
+      const V x = c.mx - load(people.mx + g), y = c.my - load(people.my + g),
+              z = c.mz - load(people.mz + g);
       const V apart = sqrt(x * x + y * y + z * z), radii = c.radius + load(people.radius + g);
       nearest = std::min(nearest, hmin(apart - radii));
       store(apart - (c.reach + load(people.reach + g)), distance + 16 * i + g);
@@ -238,10 +251,12 @@ float distances(const SimdCapsule* robot, int count, const SimdCapsules& people,
     const SimdCapsule& c = robot[i];
     for (int g = 0; g < 16; g += kWidth) {
       if (!any_of(load(distance + 16 * i + g) <= nearest + slack)) continue;
-      const V dx = load(people.dx + g), dy = load(people.dy + g), dz = load(people.dz + g), bb = load(people.dd + g),
-              over_bb = load(people.over_dd + g);
-      const V rx = c.ax - load(people.ax + g), ry = c.ay - load(people.ay + g), rz = c.az - load(people.az + g);
-      const V ab = c.dx * dx + c.dy * dy + c.dz * dz, ar = c.dx * rx + c.dy * ry + c.dz * rz, br = dx * rx + dy * ry + dz * rz;
+      const V dx = load(people.dx + g), dy = load(people.dy + g), dz = load(people.dz + g),
+              bb = load(people.dd + g), over_bb = load(people.over_dd + g);
+      const V rx = c.ax - load(people.ax + g), ry = c.ay - load(people.ay + g),
+              rz = c.az - load(people.az + g);
+      const V ab = c.dx * dx + c.dy * dy + c.dz * dz, ar = c.dx * rx + c.dy * ry + c.dz * rz,
+              br = dx * rx + dy * ry + dz * rz;
       const V det = c.dd * bb - ab * ab;
       V s = unit((ab * br - ar * bb) / max(det, V(1e-12f)));
       const V t = unit((ab * s + br) * over_bb);

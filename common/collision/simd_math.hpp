@@ -18,10 +18,14 @@ constexpr int kWidth = static_cast<int>(V::size());
 static_assert(kBatchStates % kWidth == 0);
 
 [[gnu::always_inline]] inline V load(const float* p) noexcept { return V(p, stdx::vector_aligned); }
-[[gnu::always_inline]] inline void store(const V& v, float* p) noexcept { v.copy_to(p, stdx::vector_aligned); }
+[[gnu::always_inline]] inline void store(const V& v, float* p) noexcept {
+  v.copy_to(p, stdx::vector_aligned);
+}
 [[gnu::always_inline]] inline V positive(const V& x) noexcept { return max(x, V(0.0f)); }
 [[gnu::always_inline]] inline V unit(const V& x) noexcept { return min(max(x, V(0.0f)), V(1.0f)); }
-[[gnu::always_inline]] inline std::uint32_t bits(const M& m) noexcept { return static_cast<std::uint32_t>(m.__to_bitset().to_ulong()); }
+[[gnu::always_inline]] inline std::uint32_t bits(const M& m) noexcept {
+  return static_cast<std::uint32_t>(m.__to_bitset().to_ulong());
+}
 
 /// Sine and cosine within 2e-7 for |x| < 50: quarter turns taken off in three parts, then
 /// polynomials.
@@ -33,7 +37,10 @@ static_assert(kBatchStates % kWidth == 0);
   const V y = ((x - turns * 1.5703125f) - turns * 4.83751296997e-4f) - turns * 7.54978995489e-8f;
   const V y2 = y * y;
   const V s = y + y * y2 * (-1.6666654611e-1f + y2 * (8.3321608736e-3f - y2 * 1.9515295891e-4f));
-  const V c = 1.0f - 0.5f * y2 + y2 * y2 * (4.166664568298827e-2f + y2 * (-1.388731625493765e-3f + y2 * 2.443315711809948e-5f));
+  const V c =
+      1.0f - 0.5f * y2 +
+      y2 * y2 *
+          (4.166664568298827e-2f + y2 * (-1.388731625493765e-3f + y2 * 2.443315711809948e-5f));
   const V half = turns * 0.5f;
   const V odd = abs(half - ((half + kRound) - kRound));  // 0.5 for odd turns
   const M swap = odd > 0.25f;
@@ -51,7 +58,8 @@ static_assert(kBatchStates % kWidth == 0);
 
 /// Poses of the bodies behind `count` joints, 12 rows of kWidth each, kBatchStates x 12 floats
 /// apart; body 0 is at `root`. q: positions, rows of kBatchStates.
-[[maybe_unused]] inline void forward(const SimdJoint* joints, int count, const float root[12], const float* q, float* pose) noexcept {
+[[maybe_unused]] inline void forward(const SimdJoint* joints, int count, const float root[12],
+                                     const float* q, float* pose) noexcept {
   for (int i = 0; i < 12; ++i) store(V(root[i]), pose + i * kWidth);
   for (int j = 0; j < count; ++j) {
     const SimdJoint& joint = joints[j];
@@ -62,7 +70,8 @@ static_assert(kBatchStates % kWidth == 0);
     if (!joint.slides) sine_cosine(value, sine, cosine);
     const float* T = joint.T;
     for (int i = 0; i < 3; ++i) {
-      const V a = load(above + (4 * i) * kWidth), b = load(above + (4 * i + 1) * kWidth), c = load(above + (4 * i + 2) * kWidth);
+      const V a = load(above + (4 * i) * kWidth), b = load(above + (4 * i + 1) * kWidth),
+              c = load(above + (4 * i + 2) * kWidth);
       const V x = a * T[0] + b * T[4] + c * T[8];
       const V y = a * T[1] + b * T[5] + c * T[9];
       const V z = a * T[2] + b * T[6] + c * T[10];

@@ -20,7 +20,8 @@ namespace {
 namespace stdx = std::experimental;
 
 constexpr double kLargestCell = 0.008;  // [m]
-constexpr double kRounding = 2e-6;      // spheres grow by this, so that what is near corners of cells is inside, too [m]
+constexpr double kRounding =
+    2e-6;  // spheres grow by this, so that what is near corners of cells is inside, too [m]
 constexpr std::size_t kMostTriangles = 20000;
 constexpr double kLattice = 300;  // candidate centres in the bounding box
 constexpr int kClimbs = 6;        // steps of a candidate away from the nearest surface
@@ -71,15 +72,20 @@ Solid box_cells(const Vector3& size) {
   for (int z = 0; z <= n[2]; ++z)
     for (int y = 0; y <= n[1]; ++y)
       for (int x = 0; x <= n[0]; ++x)
-        solid.points.push_back(size.cwiseProduct(Vector3(double(x) / n[0] - 0.5, double(y) / n[1] - 0.5, double(z) / n[2] - 0.5)));
+        solid.points.push_back(size.cwiseProduct(
+            Vector3(double(x) / n[0] - 0.5, double(y) / n[1] - 0.5, double(z) / n[2] - 0.5)));
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
         std::array<int, 8> corners{};
-        for (int c = 0; c < 8; ++c) corners[static_cast<std::size_t>(c)] = index(x + (c & 1), y + ((c >> 1) & 1), z + (c >> 2));
+        for (int c = 0; c < 8; ++c)
+          corners[static_cast<std::size_t>(c)] =
+              index(x + (c & 1), y + ((c >> 1) & 1), z + (c >> 2));
         solid.cells.push_back(corners);
       }
-  solid.depth = [half = Vector3(0.5 * size)](const Vector3& p) { return (half - p.cwiseAbs()).minCoeff(); };
+  solid.depth = [half = Vector3(0.5 * size)](const Vector3& p) {
+    return (half - p.cwiseAbs()).minCoeff();
+  };
   return solid;
 }
 
@@ -93,18 +99,22 @@ Solid cylinder_cells(double radius, double length) {
   constexpr int rings = 3;
   const int slices = std::clamp(static_cast<int>(std::ceil(length / cell)), 1, 24);
   const double outer = radius / std::cos(M_PI / sectors);
-  const auto index = [&](int r, int sector, int slice) { return (slice * (rings + 1) + r) * sectors + sector % sectors; };
+  const auto index = [&](int r, int sector, int slice) {
+    return (slice * (rings + 1) + r) * sectors + sector % sectors;
+  };
   for (int k = 0; k <= slices; ++k)
     for (int r = 0; r <= rings; ++r)
       for (int s = 0; s < sectors; ++s) {
         const double angle = 2 * M_PI * s / sectors, at = outer * ring[static_cast<std::size_t>(r)];
-        solid.points.emplace_back(at * std::cos(angle), at * std::sin(angle), length * (static_cast<double>(k) / slices - 0.5));
+        solid.points.emplace_back(at * std::cos(angle), at * std::sin(angle),
+                                  length * (static_cast<double>(k) / slices - 0.5));
       }
   for (int k = 0; k < slices; ++k)
     for (int r = 0; r < rings; ++r)
       for (int s = 0; s < sectors; ++s)
-        solid.cells.push_back({index(r, s, k), index(r + 1, s, k), index(r, s + 1, k), index(r + 1, s + 1, k), index(r, s, k + 1),
-                               index(r + 1, s, k + 1), index(r, s + 1, k + 1), index(r + 1, s + 1, k + 1)});
+        solid.cells.push_back({index(r, s, k), index(r + 1, s, k), index(r, s + 1, k),
+                               index(r + 1, s + 1, k), index(r, s, k + 1), index(r + 1, s, k + 1),
+                               index(r, s + 1, k + 1), index(r + 1, s + 1, k + 1)});
   solid.depth = [radius, half = 0.5 * length](const Vector3& p) {
     return std::min(radius - std::hypot(p.x(), p.y()), half - std::abs(p.z()));
   };
@@ -117,9 +127,12 @@ void cut(Solid& solid, const TriangleMesh& mesh, double cell) {
   solid.corners = 3;
   std::unordered_map<std::uint64_t, int> middles;
   const auto middle = [&](int a, int b) {
-    const std::uint64_t key = (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+    const std::uint64_t key = (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
+                              static_cast<std::uint32_t>(std::max(a, b));
     const auto [it, fresh] = middles.try_emplace(key, static_cast<int>(solid.points.size()));
-    if (fresh) solid.points.emplace_back(0.5 * (solid.points[static_cast<std::size_t>(a)] + solid.points[static_cast<std::size_t>(b)]));
+    if (fresh)
+      solid.points.emplace_back(0.5 * (solid.points[static_cast<std::size_t>(a)] +
+                                       solid.points[static_cast<std::size_t>(b)]));
     return it->second;
   };
   std::vector<std::array<int, 3>> open(mesh.triangles.begin(), mesh.triangles.end());
@@ -129,7 +142,9 @@ void cut(Solid& solid, const TriangleMesh& mesh, double cell) {
     std::size_t longest = 0;
     double length = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double edge = (solid.points[static_cast<std::size_t>(t[i])] - solid.points[static_cast<std::size_t>(t[(i + 1) % 3])]).norm();
+      const double edge = (solid.points[static_cast<std::size_t>(t[i])] -
+                           solid.points[static_cast<std::size_t>(t[(i + 1) % 3])])
+                              .norm();
       if (edge <= length) continue;
       length = edge;
       longest = i;
@@ -150,38 +165,49 @@ void cubes(Solid& solid, const TriangleMesh& mesh, double cell) {
   std::unordered_map<std::uint64_t, bool> seen;
   const Vector3 low = bounds(mesh.vertices).low;
   const auto key = [](std::int64_t x, std::int64_t y, std::int64_t z) {
-    return static_cast<std::uint64_t>(x) << 42 | static_cast<std::uint64_t>(y) << 21 | static_cast<std::uint64_t>(z);
+    return static_cast<std::uint64_t>(x) << 42 | static_cast<std::uint64_t>(y) << 21 |
+           static_cast<std::uint64_t>(z);
   };
   const auto point = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-    const auto [it, fresh] = corner.try_emplace(key(x, y, z), static_cast<int>(solid.points.size()));
+    const auto [it, fresh] =
+        corner.try_emplace(key(x, y, z), static_cast<int>(solid.points.size()));
     if (fresh) solid.points.emplace_back(low + cell * Vector3(double(x), double(y), double(z)));
     return it->second;
   };
   for (const auto& t : mesh.triangles) {
     Bounds box;
     for (int i : t) box.add(mesh.vertices[static_cast<std::size_t>(i)]);
-    const Eigen::Array<std::int64_t, 3, 1> from = ((box.low - low).array() / cell - 1e-9).floor().max(0.0).cast<std::int64_t>();
-    const Eigen::Array<std::int64_t, 3, 1> to = ((box.high - low).array() / cell + 1e-9).floor().cast<std::int64_t>();
+    const Eigen::Array<std::int64_t, 3, 1> from =
+        ((box.low - low).array() / cell - 1e-9).floor().max(0.0).cast<std::int64_t>();
+    const Eigen::Array<std::int64_t, 3, 1> to =
+        ((box.high - low).array() / cell + 1e-9).floor().cast<std::int64_t>();
     for (std::int64_t z = from[2]; z <= to[2]; ++z)
       for (std::int64_t y = from[1]; y <= to[1]; ++y)
         for (std::int64_t x = from[0]; x <= to[0]; ++x) {
           if (!seen.try_emplace(key(x, y, z), true).second) continue;
           std::array<int, 8> corners{};
-          for (int c = 0; c < 8; ++c) corners[static_cast<std::size_t>(c)] = point(x + (c & 1), y + ((c >> 1) & 1), z + (c >> 2));
+          for (int c = 0; c < 8; ++c)
+            corners[static_cast<std::size_t>(c)] =
+                point(x + (c & 1), y + ((c >> 1) & 1), z + (c >> 2));
           solid.cells.push_back(corners);
         }
   }
 }
 
-/// Depth from samples of the surface: nearest of them, and whether the solid angle of the surface says inside.
+/// Depth from samples of the surface: nearest of them, and whether the solid angle of the surface
+/// says inside.
 struct SampledDepth {
   using F = stdx::native_simd<float>;
-  static F row(const std::vector<float>& values, std::size_t i) { return F(values.data() + i, stdx::element_aligned); }
+  static F row(const std::vector<float>& values, std::size_t i) {
+    return F(values.data() + i, stdx::element_aligned);
+  }
 
-  std::array<std::vector<float>, 3> point, at, area;  // corners; middles and areas (along the normal) of cells
+  std::array<std::vector<float>, 3> point, at,
+      area;  // corners; middles and areas (along the normal) of cells
 
   double nearest(const Vector3& p) const {
-    const F x = static_cast<float>(p.x()), y = static_cast<float>(p.y()), z = static_cast<float>(p.z());
+    const F x = static_cast<float>(p.x()), y = static_cast<float>(p.y()),
+            z = static_cast<float>(p.z());
     F least = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < point[0].size(); i += F::size()) {
       const F dx = row(point[0], i) - x, dy = row(point[1], i) - y, dz = row(point[2], i) - z;
@@ -190,11 +216,14 @@ struct SampledDepth {
     return std::sqrt(static_cast<double>(hmin(least)));
   }
   double operator()(const Vector3& p) const {
-    const F x = static_cast<float>(p.x()), y = static_cast<float>(p.y()), z = static_cast<float>(p.z());
+    const F x = static_cast<float>(p.x()), y = static_cast<float>(p.y()),
+            z = static_cast<float>(p.z());
     F angle = 0.0f;
     for (std::size_t i = 0; i < at[0].size(); i += F::size()) {
-      const F dx = row(at[0], i) - x, dy = row(at[1], i) - y, dz = row(at[2], i) - z, d2 = dx * dx + dy * dy + dz * dz + 1e-12f;
-      angle += (row(area[0], i) * dx + row(area[1], i) * dy + row(area[2], i) * dz) / (d2 * sqrt(d2));
+      const F dx = row(at[0], i) - x, dy = row(at[1], i) - y, dz = row(at[2], i) - z,
+              d2 = dx * dx + dy * dy + dz * dz + 1e-12f;
+      angle +=
+          (row(area[0], i) * dx + row(area[1], i) * dy + row(area[2], i) * dz) / (d2 * sqrt(d2));
     }
     return std::abs(static_cast<double>(reduce(angle))) > 2 * M_PI ? nearest(p) : -nearest(p);
   }
@@ -215,7 +244,8 @@ void append(std::array<std::vector<float>, 3>& rows, const Vector3& v) {
 }
 
 Solid mesh_cells(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw ConfigError("a collision mesh has no triangles; it needs at least one");
+  if (mesh.triangles.empty())
+    throw ConfigError("a collision mesh has no triangles; it needs at least one");
   Solid solid;
   const Bounds box = bounds(mesh.vertices);
   const Vector3 extents = box.high - box.low;
@@ -230,11 +260,15 @@ Solid mesh_cells(const TriangleMesh& mesh) {
     append(depth.at, (a + b + c) / 3);
     append(depth.area, 0.5 * (b - a).cross(c - a));
   };
-  const auto at = [&](const std::vector<Vector3>& points, int i) -> const Vector3& { return points[static_cast<std::size_t>(i)]; };
+  const auto at = [&](const std::vector<Vector3>& points, int i) -> const Vector3& {
+    return points[static_cast<std::size_t>(i)];
+  };
   if (surface)
-    for (const auto& c : solid.cells) sample(at(solid.points, c[0]), at(solid.points, c[1]), at(solid.points, c[2]));
+    for (const auto& c : solid.cells)
+      sample(at(solid.points, c[0]), at(solid.points, c[1]), at(solid.points, c[2]));
   else
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += mesh.triangles.size() / kMostTriangles + 1) {
+    for (std::size_t i = 0; i < mesh.triangles.size();
+         i += mesh.triangles.size() / kMostTriangles + 1) {
       const auto& t = mesh.triangles[i];
       sample(at(mesh.vertices, t[0]), at(mesh.vertices, t[1]), at(mesh.vertices, t[2]));
     }
@@ -274,19 +308,23 @@ void find_inner(Solid& solid) {
   };
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) try_at(box.low + extents.cwiseProduct(Vector3((x + 0.5) / n[0], (y + 0.5) / n[1], (z + 0.5) / n[2])));
+      for (int x = 0; x < n[0]; ++x)
+        try_at(box.low +
+               extents.cwiseProduct(Vector3((x + 0.5) / n[0], (y + 0.5) / n[1], (z + 0.5) / n[2])));
   solid.inner.push_back({0.5 * (box.low + box.high), solid.depth(0.5 * (box.low + box.high))});
 }
 
 /// Badoiu and Clarkson: a ball around points, near the smallest.
 CoverNode ball(const Solid& solid, const std::vector<int>& points) {
   Vector3 center = Vector3::Zero();
-  for (int i : points) center += solid.points[static_cast<std::size_t>(i)] / static_cast<double>(points.size());
+  for (int i : points)
+    center += solid.points[static_cast<std::size_t>(i)] / static_cast<double>(points.size());
   const auto farthest = [&] {
     int best = points.front();
     double most = -1;
     for (int i : points)
-      if (const double d = (solid.points[static_cast<std::size_t>(i)] - center).squaredNorm(); d > most) {
+      if (const double d = (solid.points[static_cast<std::size_t>(i)] - center).squaredNorm();
+          d > most) {
         most = d;
         best = i;
       }
@@ -309,7 +347,8 @@ CoverNode ball(const Solid& solid, const std::vector<int>& points) {
 
 class Coverer {
  public:
-  Coverer(Solid solid, const CoverSettings& settings) : solid_(std::move(solid)), settings_(settings) {
+  Coverer(Solid solid, const CoverSettings& settings)
+      : solid_(std::move(solid)), settings_(settings) {
     if (!solid_.reach) solid_.reach = solid_.depth;
     find_inner(solid_);
     std::vector<int> all(solid_.cells.size());
@@ -328,7 +367,8 @@ class Coverer {
   std::vector<int> points_of(const std::vector<int>& cells) const {
     std::vector<int> out;
     for (int c : cells)
-      for (std::size_t i = 0; i < solid_.corners; ++i) out.push_back(solid_.cells[static_cast<std::size_t>(c)][i]);
+      for (std::size_t i = 0; i < solid_.corners; ++i)
+        out.push_back(solid_.cells[static_cast<std::size_t>(c)][i]);
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
@@ -337,16 +377,19 @@ class Coverer {
   Vector3 middle(int cell) const {
     Vector3 sum = Vector3::Zero();
     for (std::size_t i = 0; i < solid_.corners; ++i)
-      sum += solid_.points[static_cast<std::size_t>(solid_.cells[static_cast<std::size_t>(cell)][i])];
+      sum +=
+          solid_.points[static_cast<std::size_t>(solid_.cells[static_cast<std::size_t>(cell)][i])];
     return sum / static_cast<double>(solid_.corners);
   }
 
   /// Centres worth trying for these cells: deep ones nearby, and ones below the surface.
-  std::vector<Candidate> candidates(const CoverNode& node, const std::vector<int>& cells, double excess, std::size_t level) const {
+  std::vector<Candidate> candidates(const CoverNode& node, const std::vector<int>& cells,
+                                    double excess, std::size_t level) const {
     std::vector<Candidate> near, out;
     for (const Candidate& c : solid_.inner)
       if (c.depth + excess > 0 && (c.center - node.center).norm() < node.radius) near.push_back(c);
-    for (std::size_t i = 0; i < near.size(); i += 1 + near.size() / kMostCandidates) out.push_back(near[i]);
+    for (std::size_t i = 0; i < near.size(); i += 1 + near.size() / kMostCandidates)
+      out.push_back(near[i]);
     if (level == 0) return out;
     const std::size_t stride = 1 + cells.size() / kOwnCandidates;
     for (std::size_t i = 0; i < cells.size(); i += stride) {
@@ -357,26 +400,32 @@ class Coverer {
       }
       const auto& c = solid_.cells[static_cast<std::size_t>(cells[i])];
       const Vector3& a = solid_.points[static_cast<std::size_t>(c[0])];
-      const Vector3 n = (solid_.points[static_cast<std::size_t>(c[1])] - a).cross(solid_.points[static_cast<std::size_t>(c[2])] - a);
+      const Vector3 n = (solid_.points[static_cast<std::size_t>(c[1])] - a)
+                            .cross(solid_.points[static_cast<std::size_t>(c[2])] - a);
       out.push_back({p, 0.0});
       if (!(n.norm() > 0)) continue;
       for (double below : {1.5 * excess, 4 * excess}) {
         const Vector3 q = p - below * n.normalized();
-        if (const double depth = solid_.reach(q); depth > 0.7 * below) out.push_back({q, depth});  // else beyond a thin wall
+        if (const double depth = solid_.reach(q); depth > 0.7 * below)
+          out.push_back({q, depth});  // else beyond a thin wall
       }
     }
     return out;
   }
 
-  /// Greedy: again and again the sphere that holds most cells not held yet. Empty when more than `most` are needed.
-  std::vector<Cluster> choose(const std::vector<Candidate>& tried, const std::vector<int>& cells, double excess, int most) const {
+  /// Greedy: again and again the sphere that holds most cells not held yet. Empty when more than
+  /// `most` are needed.
+  std::vector<Cluster> choose(const std::vector<Candidate>& tried, const std::vector<int>& cells,
+                              double excess, int most) const {
     const std::vector<int> points = points_of(cells);
     std::vector<int> slot(solid_.points.size(), -1);
-    for (std::size_t i = 0; i < points.size(); ++i) slot[static_cast<std::size_t>(points[i])] = static_cast<int>(i);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      slot[static_cast<std::size_t>(points[i])] = static_cast<int>(i);
     std::vector<std::array<int, 8>> corners(cells.size());
     for (std::size_t k = 0; k < cells.size(); ++k)
       for (std::size_t i = 0; i < solid_.corners; ++i)
-        corners[k][i] = slot[static_cast<std::size_t>(solid_.cells[static_cast<std::size_t>(cells[k])][i])];
+        corners[k][i] =
+            slot[static_cast<std::size_t>(solid_.cells[static_cast<std::size_t>(cells[k])][i])];
     const std::size_t words = (cells.size() + 63) / 64;
     std::vector<std::uint64_t> holds(tried.size() * words, 0), left(words, 0);
     for (std::size_t k = 0; k < cells.size(); ++k) left[k / 64] |= std::uint64_t{1} << (k % 64);
@@ -384,10 +433,13 @@ class Coverer {
     for (std::size_t c = 0; c < tried.size(); ++c) {
       const double reach = tried[c].depth + excess, reach2 = reach * reach;
       for (std::size_t i = 0; i < points.size(); ++i)
-        in[i] = (solid_.points[static_cast<std::size_t>(points[i])] - tried[c].center).squaredNorm() <= reach2;
+        in[i] =
+            (solid_.points[static_cast<std::size_t>(points[i])] - tried[c].center).squaredNorm() <=
+            reach2;
       for (std::size_t k = 0; k < cells.size(); ++k) {
         char all = 1;
-        for (std::size_t i = 0; i < solid_.corners; ++i) all &= in[static_cast<std::size_t>(corners[k][i])];
+        for (std::size_t i = 0; i < solid_.corners; ++i)
+          all &= in[static_cast<std::size_t>(corners[k][i])];
         holds[c * words + k / 64] |= static_cast<std::uint64_t>(all) << (k % 64);
       }
     }
@@ -399,7 +451,8 @@ class Coverer {
       int gain = 0;
       for (std::size_t c = 0; c < tried.size(); ++c) {
         int now = 0;
-        for (std::size_t w = 0; w < words; ++w) now += std::popcount(holds[c * words + w] & left[w]);
+        for (std::size_t w = 0; w < words; ++w)
+          now += std::popcount(holds[c * words + w] & left[w]);
         if (now <= gain) continue;
         gain = now;
         best = c;
@@ -415,7 +468,8 @@ class Coverer {
       } else {
         cluster.center = tried[best].center;
         for (std::size_t k = 0; k < cells.size(); ++k)
-          if ((holds[best * words + k / 64] & left[k / 64]) >> (k % 64) & 1) cluster.cells.push_back(cells[k]);
+          if ((holds[best * words + k / 64] & left[k / 64]) >> (k % 64) & 1)
+            cluster.cells.push_back(cells[k]);
         for (std::size_t w = 0; w < words; ++w) left[w] &= ~holds[best * words + w];
       }
       open -= cluster.cells.size();
@@ -431,7 +485,8 @@ class Coverer {
     double excess = settings_.excess[level];
     const double parent = level == 0 ? node.radius : settings_.excess[level - 1];
     const std::vector<Candidate> tried = candidates(node, cells, excess, level);
-    for (; clusters.empty() && excess < 0.8 * parent; excess *= 1.4) clusters = choose(tried, cells, excess, settings_.max_children);
+    for (; clusters.empty() && excess < 0.8 * parent; excess *= 1.4)
+      clusters = choose(tried, cells, excess, settings_.max_children);
     if (clusters.empty() || clusters.size() == 1) {
       if (clusters.size() == 1) {
         const CoverNode tighter = around(clusters[0]);
@@ -448,14 +503,16 @@ class Coverer {
     cover_.nodes[static_cast<std::size_t>(index)].first_child = first;
     cover_.nodes[static_cast<std::size_t>(index)].children = static_cast<int>(clusters.size());
     for (const Cluster& cluster : clusters) cover_.nodes.push_back(around(cluster));
-    for (std::size_t i = 0; i < clusters.size(); ++i) grow(first + static_cast<int>(i), clusters[i].cells, level + 1);
+    for (std::size_t i = 0; i < clusters.size(); ++i)
+      grow(first + static_cast<int>(i), clusters[i].cells, level + 1);
   }
 
   CoverNode around(const Cluster& cluster) const {
     CoverNode node;
     node.center = cluster.center;
     for (int i : points_of(cluster.cells))
-      node.radius = std::max(node.radius, (solid_.points[static_cast<std::size_t>(i)] - node.center).norm());
+      node.radius =
+          std::max(node.radius, (solid_.points[static_cast<std::size_t>(i)] - node.center).norm());
     node.radius += kRounding;
     return node;
   }
@@ -484,12 +541,17 @@ SphereCover capsule_cover(const Capsule& capsule, const CoverSettings& settings)
   for (int i = 0; i < pieces; ++i) {
     const double z = -0.5 * capsule.length + (i + 0.5) * step;
     const bool end = i == 0 || i + 1 == pieces;
-    cover.nodes.push_back({{0, 0, z}, (end ? capsule.radius + 0.5 * step : std::hypot(capsule.radius, 0.5 * step)) + kRounding, 0, 0});
+    cover.nodes.push_back(
+        {{0, 0, z},
+         (end ? capsule.radius + 0.5 * step : std::hypot(capsule.radius, 0.5 * step)) + kRounding,
+         0,
+         0});
   }
   return cover;
 }
 
-bool triangle_covered(const std::vector<CoverNode>& leaves, const std::vector<int>& near, const std::array<Vector3, 3>& t, double finest) {
+bool triangle_covered(const std::vector<CoverNode>& leaves, const std::vector<int>& near,
+                      const std::array<Vector3, 3>& t, double finest) {
   std::vector<int> touching;
   const Vector3 middle = (t[0] + t[1] + t[2]) / 3;
   double reach = 0;
@@ -497,25 +559,32 @@ bool triangle_covered(const std::vector<CoverNode>& leaves, const std::vector<in
   for (int i : near) {
     const CoverNode& leaf = leaves[static_cast<std::size_t>(i)];
     const double r2 = leaf.radius * leaf.radius;
-    if (std::all_of(t.begin(), t.end(), [&](const Vector3& p) { return (p - leaf.center).squaredNorm() <= r2; })) return true;
+    if (std::all_of(t.begin(), t.end(),
+                    [&](const Vector3& p) { return (p - leaf.center).squaredNorm() <= r2; }))
+      return true;
     if ((middle - leaf.center).norm() <= leaf.radius + reach) touching.push_back(i);
   }
   if (touching.empty() || reach < finest) return false;
   const Vector3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
-  return triangle_covered(leaves, touching, {ab, bc, ca}, finest) && triangle_covered(leaves, touching, {t[0], ab, ca}, finest) &&
-         triangle_covered(leaves, touching, {ab, t[1], bc}, finest) && triangle_covered(leaves, touching, {ca, bc, t[2]}, finest);
+  return triangle_covered(leaves, touching, {ab, bc, ca}, finest) &&
+         triangle_covered(leaves, touching, {t[0], ab, ca}, finest) &&
+         triangle_covered(leaves, touching, {ab, t[1], bc}, finest) &&
+         triangle_covered(leaves, touching, {ca, bc, t[2]}, finest);
 }
 
 }  // namespace
 
 int SphereCover::leaves() const {
-  return static_cast<int>(std::count_if(nodes.begin(), nodes.end(), [](const CoverNode& n) { return n.children == 0; }));
+  return static_cast<int>(std::count_if(nodes.begin(), nodes.end(),
+                                        [](const CoverNode& n) { return n.children == 0; }));
 }
 
 SphereCover cover_shape(const Shape& shape, const CoverSettings& settings) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return {{{Vector3::Zero(), sphere->radius + kRounding, 0, 0}}};
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    return {{{Vector3::Zero(), sphere->radius + kRounding, 0, 0}}};
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule_cover(*capsule, settings);
-  if (const auto* box = std::get_if<Box>(&shape)) return Coverer(box_cells(box->size), settings).take();
+  if (const auto* box = std::get_if<Box>(&shape))
+    return Coverer(box_cells(box->size), settings).take();
   if (const auto* cylinder = std::get_if<Cylinder>(&shape))
     return Coverer(cylinder_cells(cylinder->radius, cylinder->length), settings).take();
   return Coverer(mesh_cells(*std::get<MeshPtr>(shape)), settings).take();
@@ -534,12 +603,14 @@ SphereCover cover_shapes(const std::vector<PlacedShape>& shapes, const CoverSett
   out.nodes.resize(1 + parts.size());
   int next = static_cast<int>(out.nodes.size());
   Vector3 middle = Vector3::Zero();
-  for (const SphereCover& part : parts) middle += part.nodes[0].center / static_cast<double>(parts.size());
+  for (const SphereCover& part : parts)
+    middle += part.nodes[0].center / static_cast<double>(parts.size());
   out.nodes[0] = {middle, 0.0, 1, static_cast<int>(parts.size())};
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const auto& nodes = parts[k].nodes;
     const int shift = next - 1;
-    out.nodes[0].radius = std::max(out.nodes[0].radius, (nodes[0].center - middle).norm() + nodes[0].radius);
+    out.nodes[0].radius =
+        std::max(out.nodes[0].radius, (nodes[0].center - middle).norm() + nodes[0].radius);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       CoverNode node = nodes[i];
       if (node.children > 0) node.first_child += shift;

@@ -34,7 +34,8 @@ struct CoverSettings {
 SphereCover cover_shape(const Shape& shape, const CoverSettings& settings = {});
 
 /// Several placed shapes under one root.
-SphereCover cover_shapes(const std::vector<PlacedShape>& shapes, const CoverSettings& settings = {});
+SphereCover cover_shapes(const std::vector<PlacedShape>& shapes,
+                         const CoverSettings& settings = {});
 
 /// Exact: whether every point of every triangle is inside some leaf. A triangle is inside when its
 /// corners are in one leaf, else it is cut in four, down to `finest` [m]; pieces smaller than that

@@ -12,7 +12,8 @@ void put(const Vector3& p, float (&out)[3]) {
 
 }  // namespace
 
-BatchCost::BatchCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points)
+BatchCost::BatchCost(const RobotModel& robot, std::vector<LinkCapsule> capsules,
+                     std::vector<LinkPoint> points)
     : robot_(robot),
       kernel_(&detail::cost_kernel()),
       link_capsules_(std::move(capsules)),
@@ -37,7 +38,8 @@ void BatchCost::set_base(const Pose& T_world_base) {
   place_people();
 }
 
-void BatchCost::set_people(std::vector<Someone> people, double safety_radius, double visibility_cutoff) {
+void BatchCost::set_people(std::vector<Someone> people, double safety_radius,
+                           double visibility_cutoff) {
   someone_ = std::move(people);
   safety_radius_ = safety_radius;
   visibility_cutoff_ = visibility_cutoff;
@@ -49,7 +51,8 @@ void BatchCost::place_people() {
   for (const Someone& one : someone_) {
     detail::CostPerson h{};
     const Vector3 bottom = one.body.axis_bottom - base_.translation();
-    h.axis_x = static_cast<float>(bottom.x()), h.axis_y = static_cast<float>(bottom.y()), h.bottom = static_cast<float>(bottom.z());
+    h.axis_x = static_cast<float>(bottom.x()), h.axis_y = static_cast<float>(bottom.y()),
+    h.bottom = static_cast<float>(bottom.z());
     h.height = static_cast<float>(one.body.height), h.radius = static_cast<float>(one.body.radius);
     put(one.body.head - base_.translation(), h.head);
     h.head_radius = static_cast<float>(one.body.head_radius);
@@ -74,8 +77,12 @@ bool BatchCost::fold(const Vector& from, const Vector& to) {
   if (folded_.size() != from.size() || !same(from, folded_)) {
     chain_.fold(robot_, axes_, from);
     folded_ = from;
-    const auto body_of = [&](int link) { return chain_.body_of_link[static_cast<std::size_t>(link)]; };
-    const auto in_body = [&](int link, const Vector3& p) { return Vector3(chain_.T_body_link[static_cast<std::size_t>(link)] * p); };
+    const auto body_of = [&](int link) {
+      return chain_.body_of_link[static_cast<std::size_t>(link)];
+    };
+    const auto in_body = [&](int link, const Vector3& p) {
+      return Vector3(chain_.T_body_link[static_cast<std::size_t>(link)] * p);
+    };
     capsules_.clear();
     for (const LinkCapsule& c : link_capsules_) {
       detail::CostCapsule capsule{};
@@ -99,12 +106,15 @@ bool BatchCost::fold(const Vector& from, const Vector& to) {
   return same(from, to);
 }
 
-bool BatchCost::run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points) {
-  if (axes_.empty() || from.size() != robot_.dof() || to.size() != from.size() || !fold(from, to)) return false;
+bool BatchCost::run(const Vector& from, const Vector& to, const double* at, int count,
+                    std::size_t points) {
+  if (axes_.empty() || from.size() != robot_.dof() || to.size() != from.size() || !fold(from, to))
+    return false;
   for (std::size_t row = 0; row < axes_.size(); ++row) {
     const double start = from[axes_[row]], along = to[axes_[row]] - start;
     if (!(std::abs(start) + std::abs(along) < BatchChain::kMaxTurn)) return false;
-    for (int i = 0; i < count; ++i) q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(start + at[i] * along);
+    for (int i = 0; i < count; ++i)
+      q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(start + at[i] * along);
   }
   detail::CostTables tables{};
   tables.joints = chain_.joints.data();
@@ -118,7 +128,8 @@ bool BatchCost::run(const Vector& from, const Vector& to, const double* at, int 
   Pose rotation = base_;
   rotation.translation().setZero();
   put_rows(rotation, tables.root);
-  kernel_->run(tables, {pose_.get(), ends_.get(), safety_.get(), visibility_.get(), point_.get()}, q_.get(), count);
+  kernel_->run(tables, {pose_.get(), ends_.get(), safety_.get(), visibility_.get(), point_.get()},
+               q_.get(), count);
   return true;
 }
 

@@ -27,7 +27,8 @@ class BatchCost {
   static constexpr int kStates = detail::kBatchStates;
 
   /// `points`: visibility is that of the first.
-  BatchCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points);
+  BatchCost(const RobotModel& robot, std::vector<LinkCapsule> capsules,
+            std::vector<LinkPoint> points);
 
   /// Sets the axes in which the states of a batch differ; where another axis has changed, the fixed
   /// parts of the robot are placed anew. Empty: run() is false.
@@ -48,10 +49,14 @@ class BatchCost {
   bool run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points);
   /// Returns the safety cost, [0, 1], of a person by index in one state of the last run(), by
   /// index.
-  double safety(std::size_t person, int slot) const { return safety_[person * kStates + static_cast<std::size_t>(slot)]; }
+  double safety(std::size_t person, int slot) const {
+    return safety_[person * kStates + static_cast<std::size_t>(slot)];
+  }
   /// Returns the visibility cost, [0, 1], of the first point for a person by index in one state of
   /// the last run(), by index.
-  double visibility(std::size_t person, int slot) const { return visibility_[person * kStates + static_cast<std::size_t>(slot)]; }
+  double visibility(std::size_t person, int slot) const {
+    return visibility_[person * kStates + static_cast<std::size_t>(slot)];
+  }
   /// Returns where a point by index is in one state of the last run(), world [m].
   Vector3 point(std::size_t i, int slot) const {
     const float* p = point_.get() + 3 * i * kStates + slot;

@@ -11,7 +11,9 @@ constexpr const char* kComfort = "arm_comfort";
 constexpr Duration kComplaintLasts = std::chrono::seconds(10);
 constexpr std::size_t kMostLayers = 16;
 
-bool ours(const std::string& layer) { return std::find(std::begin(kOwnLayers), std::end(kOwnLayers), layer) != std::end(kOwnLayers); }
+bool ours(const std::string& layer) {
+  return std::find(std::begin(kOwnLayers), std::end(kOwnLayers), layer) != std::end(kOwnLayers);
+}
 
 }  // namespace
 
@@ -32,7 +34,10 @@ void CostLayers::put(const Costmap& map, TimePoint sent, TimePoint now) {
   } else if (now - sent > stale_) {
     leave_out(map.layer, too_old(map.layer), now);
   } else if (kept_.size() >= kMostLayers && !kept_.contains(map.layer)) {
-    leave_out(map.layer, "cost layer \"" + map.layer + "\": there are " + std::to_string(kMostLayers) + " already", now);
+    leave_out(
+        map.layer,
+        "cost layer \"" + map.layer + "\": there are " + std::to_string(kMostLayers) + " already",
+        now);
   } else {
     kept_[map.layer] = {std::make_shared<const CostGrid>(map), sent};
     if (complained_about_ == map.layer) complaint_.clear();

@@ -13,7 +13,7 @@
 namespace handsel {
 
 struct OutsideCost {
-  double cost{};                   ///< weighted sum over the layers; what a layer forbids costs 1 there
+  double cost{};  ///< weighted sum over the layers; what a layer forbids costs 1 there
   const CostGrid* forbidden_by{};  ///< null: by none
 };
 
@@ -24,7 +24,9 @@ struct LayersNow {
   std::vector<std::shared_ptr<const CostGrid>> outside;
 
   /// Returns the comfort layer when it is about this person, else nullptr.
-  const CostGrid* comfort_of(const std::string& person) const { return comfort && comfort->person() == person ? comfort.get() : nullptr; }
+  const CostGrid* comfort_of(const std::string& person) const {
+    return comfort && comfort->person() == person ? comfort.get() : nullptr;
+  }
   /// Returns what outside layers add at a place in the world [m].
   OutsideCost outside_cost(const Vector3& p) const;
 };

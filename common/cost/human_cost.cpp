@@ -9,7 +9,8 @@
 namespace handsel {
 namespace {
 
-constexpr double kProbeSpacing = 0.1;  // [m] between the points of a link at which outside layers are looked at
+constexpr double kProbeSpacing =
+    0.1;  // [m] between the points of a link at which outside layers are looked at
 
 double point_to_cylinder(const SimplifiedBody& body, const Vector3& p) {
   const Vector3 r = p - body.axis_bottom;
@@ -46,7 +47,8 @@ double segment_to_cylinder(const SimplifiedBody& body, const Vector3& a, const V
 
 /// A capsule that holds the cylinder: never farther than the cylinder.
 double cylinder_bound(const SimplifiedBody& body, const Vector3& a, const Vector3& b) {
-  return segment_distance(a, b, body.axis_bottom, body.axis_bottom + Vector3(0, 0, body.height)) - body.radius;
+  return segment_distance(a, b, body.axis_bottom, body.axis_bottom + Vector3(0, 0, body.height)) -
+         body.radius;
 }
 
 double head_distance(const SimplifiedBody& body, const Vector3& a, const Vector3& b) {
@@ -73,31 +75,37 @@ double visibility_cost(const Person& person, const Vector3& p, double cutoff) {
   return sight ? visibility_cost(*sight, p, cutoff) : 0.0;
 }
 
-double simplified_distance(const SimplifiedBody& body, const Vector3& a, const Vector3& b, double radius) {
+double simplified_distance(const SimplifiedBody& body, const Vector3& a, const Vector3& b,
+                           double radius) {
   return std::min(head_distance(body, a, b), segment_to_cylinder(body, a, b)) - radius;
 }
 
-HumanCost::HumanCost(const RobotModel& robot, CostSettings settings) : robot_(&robot), settings_(settings), tool_(robot.tool_link()) {
+HumanCost::HumanCost(const RobotModel& robot, CostSettings settings)
+    : robot_(&robot), settings_(settings), tool_(robot.tool_link()) {
   std::vector<bool> moves(robot.links().size(), false);
   for (std::size_t i = 0; i < robot.links().size(); ++i) {
     const int joint = robot.links()[i].parent_joint;
-    if (joint >= 0) moves[i] = moves[robot.joints()[joint].parent] || robot.joints()[joint].dof >= 0;
+    if (joint >= 0)
+      moves[i] = moves[robot.joints()[joint].parent] || robot.joints()[joint].dof >= 0;
   }
   for (const LinkCapsule& capsule : robot_capsules(robot))
     if (moves[capsule.link]) capsules_.push_back(capsule);
   if (tool_ < 0) tool_ = static_cast<int>(robot.links().size()) - 1;
   probes_.push_back({tool_, Vector3::Zero()});
   for (const LinkCapsule& capsule : capsules_) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((capsule.b - capsule.a).norm() / kProbeSpacing)));
+    const int parts =
+        std::max(1, static_cast<int>(std::ceil((capsule.b - capsule.a).norm() / kProbeSpacing)));
     for (int i = 0; i <= parts; ++i)
-      probes_.push_back({capsule.link, capsule.a + (capsule.b - capsule.a) * (static_cast<double>(i) / parts)});
+      probes_.push_back(
+          {capsule.link, capsule.a + (capsule.b - capsule.a) * (static_cast<double>(i) / parts)});
   }
 }
 
 void HumanCost::set_people(const HumanState& people) {
   people_ = people;
   someone_.clear();
-  for (const Person& person : people_.people) someone_.push_back({simplified_body(person), sight_of(person), placed_arms(person), nullptr});
+  for (const Person& person : people_.people)
+    someone_.push_back({simplified_body(person), sight_of(person), placed_arms(person), nullptr});
   find_comfort_layers();
   set_batch_people();
 }
@@ -127,17 +135,21 @@ void HumanCost::set_batch_people() {
 
 void HumanCost::set_layers(LayersNow layers) {
   layers_ = std::move(layers);
-  forbids_ = std::any_of(layers_.outside.begin(), layers_.outside.end(), [](const auto& grid) { return grid->forbids(); });
+  forbids_ = std::any_of(layers_.outside.begin(), layers_.outside.end(),
+                         [](const auto& grid) { return grid->forbids(); });
   find_comfort_layers();
 }
 
 void HumanCost::find_comfort_layers() {
-  for (std::size_t i = 0; i < someone_.size(); ++i) someone_[i].comfort = layers_.comfort_of(people_.people[i].id);
+  for (std::size_t i = 0; i < someone_.size(); ++i)
+    someone_[i].comfort = layers_.comfort_of(people_.people[i].id);
 }
 
 double weighted_cost(const CostParts& parts, const CostSettings& settings) {
   const double sum = settings.w_safety + settings.w_visibility + settings.w_comfort;
-  return (settings.w_safety * parts.safety + settings.w_visibility * parts.visibility + settings.w_comfort * parts.comfort) / sum +
+  return (settings.w_safety * parts.safety + settings.w_visibility * parts.visibility +
+          settings.w_comfort * parts.comfort) /
+             sum +
          parts.outside;
 }
 
@@ -157,7 +169,9 @@ double HumanCost::distance_to(const SimplifiedBody& body) const {
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const PlacedCapsule& capsule = placed_[i];
     const Vector3 middle = 0.5 * (capsule.a + capsule.b);
-    const double d = std::min(point_to_cylinder(body, middle), (middle - body.head).norm() - body.head_radius) - capsule.radius;
+    const double d =
+        std::min(point_to_cylinder(body, middle), (middle - body.head).norm() - body.head_radius) -
+        capsule.radius;
     least = std::min(least, d);
     bounds_[i] = d - 0.5 * (capsule.b - capsule.a).norm();
   }
@@ -191,7 +205,8 @@ ForbiddenPlace HumanCost::forbidden(const Vector& q) const {
   for (const auto& grid : layers_.outside) {
     if (!grid->forbids()) continue;
     for (const LinkPoint& probe : probes_)
-      if (grid->value(T_world_base_ * (links_[probe.link] * probe.p_link)).forbidden) return {grid.get(), probe.link};
+      if (grid->value(T_world_base_ * (links_[probe.link] * probe.p_link)).forbidden)
+        return {grid.get(), probe.link};
   }
   return {};
 }
@@ -201,20 +216,24 @@ CostParts HumanCost::parts(const Vector& q) const {
   worst.distance = std::numeric_limits<double>::infinity();
   if (!concerned()) return worst;
   robot_->forward(q, links_);
-  const double outside = outside_cost([this](std::size_t i) { return T_world_base_ * (links_[probes_[i].link] * probes_[i].p_link); });
+  const double outside = outside_cost([this](std::size_t i) {
+    return T_world_base_ * (links_[probes_[i].link] * probes_[i].p_link);
+  });
   const Vector3 p_tool = T_world_base_ * links_[tool_].translation();
   placed_.resize(capsules_.size());
   for (std::size_t i = 0; anyone() && i < capsules_.size(); ++i) {
     const LinkCapsule& capsule = capsules_[i];
     const Pose& T_root_link = links_[capsule.link];
-    placed_[i] = {T_world_base_ * (T_root_link * capsule.a), T_world_base_ * (T_root_link * capsule.b), capsule.radius};
+    placed_[i] = {T_world_base_ * (T_root_link * capsule.a),
+                  T_world_base_ * (T_root_link * capsule.b), capsule.radius};
   }
   double most = -1;
   for (const Someone& one : someone_) {
     CostParts now;
     now.distance = distance_to(one.body);
     now.safety = safety_cost(now.distance, settings_.safety_radius);
-    if (settings_.w_visibility > 0 && one.sight) now.visibility = visibility_cost(*one.sight, p_tool, settings_.visibility_cutoff);
+    if (settings_.w_visibility > 0 && one.sight)
+      now.visibility = visibility_cost(*one.sight, p_tool, settings_.visibility_cutoff);
     if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(one.comfort, one.arms, p_tool);
     if (weighted_cost(now, settings_) > most) {
       most = weighted_cost(now, settings_);
@@ -232,15 +251,18 @@ double HumanCost::operator()(const Vector& q) const {
   return cost;
 }
 
-void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, int count, double* cost) const {
+void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, int count,
+                        double* cost) const {
   if (!concerned()) {
     std::fill_n(cost, count, 0.0);
     return;
   }
   for (int first = 0; first < count; first += BatchCost::kStates) {
     const int here = std::min(BatchCost::kStates, count - first);
-    if (!batch_ || !batch_->run(from, to, at + first, here, layers_.outside.empty() ? 1 : probes_.size())) {
-      for (int i = first; i < first + here; ++i) cost[i] = weighted_cost(parts(from + at[i] * (to - from)), settings_);
+    if (!batch_ ||
+        !batch_->run(from, to, at + first, here, layers_.outside.empty() ? 1 : probes_.size())) {
+      for (int i = first; i < first + here; ++i)
+        cost[i] = weighted_cost(parts(from + at[i] * (to - from)), settings_);
       continue;
     }
     for (int slot = 0; slot < here; ++slot) {
@@ -250,10 +272,12 @@ void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, 
         CostParts now;
         now.safety = batch_->safety(k, slot);
         now.visibility = batch_->visibility(k, slot);
-        if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(someone_[k].comfort, someone_[k].arms, p_tool);
+        if (settings_.w_comfort > 0)
+          now.comfort = arm_comfort_cost(someone_[k].comfort, someone_[k].arms, p_tool);
         most = std::max(most, weighted_cost(now, settings_));
       }
-      cost[first + slot] = most + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
+      cost[first + slot] =
+          most + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
     }
   }
 }

@@ -58,7 +58,8 @@ struct PlacedArm {
 std::optional<PlacedArm> placed_arm(const Person&, Side side);
 /// Returns the comfort cost of the better of these arms at p: from the layer where there is one
 /// (out of reach, or blocked by furniture: 1), else arm_comfort_cost.
-double arm_comfort_cost(const CostGrid* layer, const std::vector<PlacedArm>& arms, const Vector3& p);
+double arm_comfort_cost(const CostGrid* layer, const std::vector<PlacedArm>& arms,
+                        const Vector3& p);
 /// Returns the arms of the person whose joints are known.
 std::vector<PlacedArm> placed_arms(const Person&);
 /// Returns whether an arm reaches p (world) with the torso where it is.
@@ -109,7 +110,8 @@ class HumanCost {
   bool concerned() const { return anyone() || !layers_.outside.empty(); }
   double operator()(const Vector& q) const;  ///< all axes; in [0, 1] without outside layers
   /// Writes the costs of the states from + at[i] (to - from), i < count.
-  void on_line(const Vector& from, const Vector& to, const double* at, int count, double* cost) const;
+  void on_line(const Vector& from, const Vector& to, const double* at, int count,
+               double* cost) const;
   CostParts parts(const Vector& q) const;    ///< of the person it is worst for
   bool forbids() const { return forbids_; }  ///< some outside layer forbids some place
   /// Returns the first layer that forbids a place the robot is at, `q`: all axes; a null layer when
@@ -150,6 +152,7 @@ class HumanCost {
 
 /// Returns the distance of a capsule (segment and radius) to the simplified body [m]; negative when
 /// they overlap.
-double simplified_distance(const SimplifiedBody&, const Vector3& a, const Vector3& b, double radius);
+double simplified_distance(const SimplifiedBody&, const Vector3& a, const Vector3& b,
+                           double radius);
 
 }  // namespace handsel

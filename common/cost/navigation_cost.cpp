@@ -16,15 +16,21 @@ constexpr double kNear = 0.6;  // of the chapter's form [m]
 double square(double x) { return x * x; }
 
 /// Fades from 1 to 0 over `range`.
-double fade(double x, double range) { return x >= range ? 0.0 : square(std::cos(std::max(0.0, x) * M_PI / (2 * range))); }
+double fade(double x, double range) {
+  return x >= range ? 0.0 : square(std::cos(std::max(0.0, x) * M_PI / (2 * range)));
+}
 
 double point_to_segment(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
   const Vector2d along = b - a;
-  const double share = along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
+  const double share = along.squaredNorm() > 0
+                           ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0)
+                           : 0.0;
   return (p - a - share * along).norm();
 }
 
-double angle(const Vector2d& a, const Vector2d& b) { return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))); }
+double angle(const Vector2d& a, const Vector2d& b) {
+  return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+}
 
 }  // namespace
 
@@ -35,7 +41,8 @@ double platform_safety_cost(double gap, double radius) {
   return base * base * base;
 }
 
-NavigationCost::NavigationCost(const RobotModel& robot, const CostSettings& weights, const NavigationSettings& settings)
+NavigationCost::NavigationCost(const RobotModel& robot, const CostSettings& weights,
+                               const NavigationSettings& settings)
     : settings_(settings), w_safety_(weights.w_safety), w_visibility_(weights.w_visibility) {
   const int root = robot.require_group(kPlatformGroup).tip;
   std::vector<Pose> T_world_link;
@@ -44,14 +51,17 @@ NavigationCost::NavigationCost(const RobotModel& robot, const CostSettings& weig
   std::vector<bool> rigid(robot.links().size(), false);
   for (std::size_t i = 0; i < robot.links().size(); ++i) {
     const int joint = robot.links()[i].parent_joint;
-    rigid[i] = static_cast<int>(i) == root ||
-               (joint >= 0 && rigid[static_cast<std::size_t>(robot.joints()[static_cast<std::size_t>(joint)].parent)] &&
-                robot.joints()[static_cast<std::size_t>(joint)].kind == JointKind::fixed);
+    rigid[i] =
+        static_cast<int>(i) == root ||
+        (joint >= 0 &&
+         rigid[static_cast<std::size_t>(robot.joints()[static_cast<std::size_t>(joint)].parent)] &&
+         robot.joints()[static_cast<std::size_t>(joint)].kind == JointKind::fixed);
   }
   for (const LinkCapsule& capsule : robot_capsules(robot)) {
     const auto link = static_cast<std::size_t>(capsule.link);
     if (!rigid[link]) continue;
-    outline_.push_back({(T_world_link[link] * capsule.a).head<2>(), (T_world_link[link] * capsule.b).head<2>(), capsule.radius});
+    outline_.push_back({(T_world_link[link] * capsule.a).head<2>(),
+                        (T_world_link[link] * capsule.b).head<2>(), capsule.radius});
   }
 }
 
@@ -63,7 +73,9 @@ void NavigationCost::set_people(const HumanState& people) {
     one.place = body.axis_bottom.head<2>();
     one.body = body.radius;
     const auto sight = sight_of(person);
-    one.gaze = sight && sight->direction.head<2>().norm() > 1e-6 ? sight->direction.head<2>().normalized() : Vector2d::Zero();
+    one.gaze = sight && sight->direction.head<2>().norm() > 1e-6
+                   ? sight->direction.head<2>().normalized()
+                   : Vector2d::Zero();
     one.velocity.setZero();
     for (const char* name : {"waist", "torso", "head"})
       if (const BodyJoint* joint = find_joint(person, name)) {
@@ -79,13 +91,14 @@ void NavigationCost::set_people(const HumanState& people) {
 double NavigationCost::of(const Someone& one, double gap, const Vector2d& to_platform) const {
   double safety = platform_safety_cost(gap, one.radius), visibility = 0;
   if (one.speed > settings_.moving)
-    safety =
-        std::max(safety, fade(angle(one.velocity, to_platform), settings_.cone) * fade(gap, one.radius + settings_.cone_time * one.speed));
+    safety = std::max(safety, fade(angle(one.velocity, to_platform), settings_.cone) *
+                                  fade(gap, one.radius + settings_.cone_time * one.speed));
   if (!one.gaze.isZero()) {
     const double beside = angle(one.gaze, to_platform) - settings_.field;
     visibility = std::max(0.0, beside) / (M_PI - settings_.field) * fade(gap, one.radius);
   }
-  return (w_safety_ * safety + w_visibility_ * visibility) / std::max(1e-9, w_safety_ + w_visibility_);
+  return (w_safety_ * safety + w_visibility_ * visibility) /
+         std::max(1e-9, w_safety_ + w_visibility_);
 }
 
 double NavigationCost::operator()(double x, double y, double heading) const {
@@ -95,7 +108,8 @@ double NavigationCost::operator()(double x, double y, double heading) const {
   for (const Someone& one : someone_) {
     const Vector2d seen = turn.inverse() * (one.place - place);
     double gap = std::numeric_limits<double>::infinity();
-    for (const Disc& part : outline_) gap = std::min(gap, point_to_segment(seen, part.a, part.b) - part.radius);
+    for (const Disc& part : outline_)
+      gap = std::min(gap, point_to_segment(seen, part.a, part.b) - part.radius);
     worst = std::max(worst, of(one, gap - one.body, place - one.place));
   }
   return worst;

@@ -26,7 +26,8 @@ class NavigationCost {
  public:
   /// `robot`: with its platform as axes (on_platform). `weights`: of safety and visibility; the
   /// others count nothing here.
-  NavigationCost(const RobotModel& robot, const CostSettings& weights, const NavigationSettings& settings = {});
+  NavigationCost(const RobotModel& robot, const CostSettings& weights,
+                 const NavigationSettings& settings = {});
   /// Replaces all people; places, gazes and velocities are taken in the horizontal plane of the
   /// world.
   void set_people(const HumanState& people);

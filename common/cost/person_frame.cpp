@@ -9,7 +9,8 @@ const BodyJoint* find_joint(const Person& person, const char* name) {
 }
 
 Eigen::Matrix3d torso_axes(const Person& person) {
-  const BodyJoint *left = find_joint(person, "l_shoulder"), *right = find_joint(person, "r_shoulder"), *waist = find_joint(person, "waist");
+  const BodyJoint *left = find_joint(person, "l_shoulder"),
+                  *right = find_joint(person, "r_shoulder"), *waist = find_joint(person, "waist");
   Vector3 up = Vector3::UnitZ(), across = Vector3::UnitY();
   if (left && right) {
     across = left->position - right->position;

@@ -9,7 +9,9 @@
 namespace handsel {
 namespace {
 
-bool inside(const Vector3& p_box, const Vector3& half) { return ((p_box.cwiseAbs() - half).array() <= 0).all(); }
+bool inside(const Vector3& p_box, const Vector3& half) {
+  return ((p_box.cwiseAbs() - half).array() <= 0).all();
+}
 
 /// Does the segment pass through the box (slab test, box frame)?
 bool crosses(const Vector3& a, const Vector3& b, const Vector3& half) {
@@ -27,12 +29,15 @@ bool crosses(const Vector3& a, const Vector3& b, const Vector3& half) {
   return enter <= leave;
 }
 
-double distance(const Vector3& p_box, const Vector3& half) { return (p_box.cwiseAbs() - half).cwiseMax(0).norm(); }
+double distance(const Vector3& p_box, const Vector3& half) {
+  return (p_box.cwiseAbs() - half).cwiseMax(0).norm();
+}
 
 }  // namespace
 
 ReachCheck::ReachCheck(const Person& person, const std::vector<SceneBox>& boxes, double clearance) {
-  const BodyJoint *left = find_joint(person, "l_shoulder"), *right = find_joint(person, "r_shoulder");
+  const BodyJoint *left = find_joint(person, "l_shoulder"),
+                  *right = find_joint(person, "r_shoulder");
   const double reach = arm_length(person) + clearance;
   for (const SceneBox& box : boxes) {
     Obstacle one;
@@ -44,7 +49,8 @@ ReachCheck::ReachCheck(const Person& person, const std::vector<SceneBox>& boxes,
     if (one.shadows) {
       one.left = one.T_box_world * left->position;
       one.right = one.T_box_world * right->position;
-      if (distance(one.left, one.half) > reach && distance(one.right, one.half) > reach) continue;  // no hand gets there
+      if (distance(one.left, one.half) > reach && distance(one.right, one.half) > reach)
+        continue;  // no hand gets there
     }
     ids_.push_back(box.id);
     one.id = ids_.size() - 1;
@@ -56,7 +62,9 @@ bool ReachCheck::Obstacle::blocks(const Vector3& p_world) const {
   const Vector3 p = T_box_world * p_world;
   if (inside(p, near)) return true;
   if (!shadows) return false;
-  if (upright && p.z() < 0 && left.z() > 0 && std::abs(p.x()) <= half.x() && std::abs(p.y()) <= half.y()) return true;
+  if (upright && p.z() < 0 && left.z() > 0 && std::abs(p.x()) <= half.x() &&
+      std::abs(p.y()) <= half.y())
+    return true;
   return crosses(left, p, half) && crosses(right, p, half);
 }
 

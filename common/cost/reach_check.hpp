@@ -16,7 +16,8 @@ class ReachCheck {
  public:
   /// Of the person's present shoulders. Places nearer than `clearance` [m] to a box are none. A
   /// person without shoulders is kept from nothing but the boxes themselves.
-  ReachCheck(const Person& person, const std::vector<SceneBox>& boxes, double clearance = kHandClearance);
+  ReachCheck(const Person& person, const std::vector<SceneBox>& boxes,
+             double clearance = kHandClearance);
 
   /// Id of a box that p (world) is in, near, under while the shoulders are above it, or behind as
   /// seen from both shoulders; nullptr: none.

@@ -46,7 +46,8 @@ struct CostMemory {
 struct CostKernel {
   const char* name;
   /// q as in SimdKernels; the first `count` of kBatchStates states are written.
-  void (*run)(const CostTables& tables, const CostMemory& memory, const float* q, int count) noexcept;
+  void (*run)(const CostTables& tables, const CostMemory& memory, const float* q,
+              int count) noexcept;
 };
 
 extern const CostKernel kCostKernelBase;

@@ -12,7 +12,11 @@ template <class T>
 [[gnu::always_inline]] inline T exp_unit(const T& u) noexcept {
   const T x = u + 0.5f;
   return 0.60653066f *
-         (1.0f + x * (1.0f + x * (1 / 2.f + x * (1 / 6.f + x * (1 / 24.f + x * (1 / 120.f + x * (1 / 720.f + x * (1 / 5040.f))))))));
+         (1.0f +
+          x * (1.0f +
+               x * (1 / 2.f +
+                    x * (1 / 6.f +
+                         x * (1 / 24.f + x * (1 / 120.f + x * (1 / 720.f + x * (1 / 5040.f))))))));
 }
 
 /// Safety cost for penetration - 1 in [-1, 0].
@@ -29,7 +33,9 @@ template <class T>
   using std::fabs;
   using std::sqrt;
   const T x = fabs(c);
-  const T half = sqrt(1.0f - x) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f + x * -0.0187293f))) * 0.31830989f;
+  const T half = sqrt(1.0f - x) *
+                 (1.5707288f + x * (-0.2121144f + x * (0.0742610f + x * -0.0187293f))) *
+                 0.31830989f;
   return 0.5f - copysign(0.5f - half, c);
 }
 

@@ -22,20 +22,24 @@ struct SightBox {
 /// Whether the point (world) is inside the capsule or on its surface.
 inline bool contains(const SightCapsule& capsule, const Vector3& point) {
   Vector3 on_point, on_axis;
-  return nearest_points(point, point, capsule.a, capsule.b, on_point, on_axis) <= capsule.radius * capsule.radius;
+  return nearest_points(point, point, capsule.a, capsule.b, on_point, on_axis) <=
+         capsule.radius * capsule.radius;
 }
 
 /// Whether the straight line from `eye` to `point` passes through the capsule. What the eye itself
 /// is in hides nothing.
 inline bool hides(const SightCapsule& capsule, const Vector3& eye, const Vector3& point) {
   Vector3 on_line, on_axis;
-  return nearest_points(eye, point, capsule.a, capsule.b, on_line, on_axis) < capsule.radius * capsule.radius && !contains(capsule, eye);
+  return nearest_points(eye, point, capsule.a, capsule.b, on_line, on_axis) <
+             capsule.radius * capsule.radius &&
+         !contains(capsule, eye);
 }
 
 /// Whether the straight line from `eye` to `point` passes through the box. A box that the eye is in
 /// hides nothing.
 inline bool hides(const SightBox& box, const Vector3& eye, const Vector3& point) {
-  const Vector3 from = box.T_world_box.inverse() * eye, to = box.T_world_box.inverse() * point, along = to - from;
+  const Vector3 from = box.T_world_box.inverse() * eye, to = box.T_world_box.inverse() * point,
+                along = to - from;
   double enter = 0, leave = 1;
   for (int i = 0; i < 3; ++i) {
     const double half = box.size[i] / 2;

@@ -1,4 +1,5 @@
-// COLLADA: only geometry and nodes reach the import library; materials, animations, skins and the rest of the file are left out.
+// COLLADA: only geometry and nodes reach the import library; materials, animations, skins and the
+// rest of the file are left out.
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -25,10 +26,12 @@ class Document {
     if (xml_.Parse(content.data(), content.size()) != tinyxml2::XML_SUCCESS) {
       const bool deep = xml_.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED;
       throw ConfigError(file.string() + ":" + std::to_string(xml_.ErrorLineNum()) + ": " +
-                        (deep ? "elements are nested deeper than " + std::to_string(kMaxDepth) : "not well-formed XML"));
+                        (deep ? "elements are nested deeper than " + std::to_string(kMaxDepth)
+                              : "not well-formed XML"));
     }
     root_ = xml_.FirstChildElement("COLLADA");
-    if (root_ == nullptr) throw ConfigError(file.string() + ": is no DAE: it has no <COLLADA> element");
+    if (root_ == nullptr)
+      throw ConfigError(file.string() + ": is no DAE: it has no <COLLADA> element");
   }
 
   std::string checked() {
@@ -38,7 +41,8 @@ class Document {
     check_accessors();
     std::size_t all = 0;
     for (const XMLElement* node : top_) all += expand(*node, 0).nodes;
-    if (all > kMaxNodes) throw ConfigError(file_.string() + ": its nodes name each other, more than 100000 in all");
+    if (all > kMaxNodes)
+      throw ConfigError(file_.string() + ": its nodes name each other, more than 100000 in all");
     tinyxml2::XMLPrinter printer(nullptr, true);
     xml_.Print(&printer);
     return {printer.CStr(), static_cast<std::size_t>(printer.CStrSize() - 1)};
@@ -50,10 +54,12 @@ class Document {
   }
 
   void leave_out() {
-    static const char* const kRead[] = {"asset", "library_geometries", "library_nodes", "library_visual_scenes", "scene"};
+    static const char* const kRead[] = {"asset", "library_geometries", "library_nodes",
+                                        "library_visual_scenes", "scene"};
     for (XMLElement *e = root_->FirstChildElement(), *next = nullptr; e != nullptr; e = next) {
       next = e->NextSiblingElement();
-      if (std::none_of(std::begin(kRead), std::end(kRead), [&](const char* name) { return std::string_view(name) == e->Name(); }))
+      if (std::none_of(std::begin(kRead), std::end(kRead),
+                       [&](const char* name) { return std::string_view(name) == e->Name(); }))
         root_->DeleteChild(e);
     }
   }
@@ -64,7 +70,8 @@ class Document {
     if (const char* count = e.Attribute("count")) {
       const auto value = whole_of(count);
       if (!value || *value < 0 || static_cast<std::size_t>(*value) > size_)
-        fail(e, "count is " + shown(count) + ", must be a whole number that fits the file's " + std::to_string(size_) + " bytes");
+        fail(e, "count is " + shown(count) + ", must be a whole number that fits the file's " +
+                    std::to_string(size_) + " bytes");
     }
     if (name == "node") {
       if (const char* id = e.Attribute("id"); id != nullptr && !nodes_.emplace(id, &e).second)
@@ -76,12 +83,15 @@ class Document {
       accessors_.push_back(&e);
     } else if (name == "p" || name == "vcount") {
       check_whole(e);
-    } else if (name == "matrix" || name == "translate" || name == "rotate" || name == "scale" || name == "skew" || name == "lookat") {
+    } else if (name == "matrix" || name == "translate" || name == "rotate" || name == "scale" ||
+               name == "skew" || name == "lookat") {
       check_numbers(e);
     } else if (name == "instance_controller") {
       fail(e, "a skinned body (instance_controller); a mesh here is rigid");
     }
-    for (const XMLElement* child = e.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) walk(*child, depth + 1);
+    for (const XMLElement* child = e.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement())
+      walk(*child, depth + 1);
   }
 
   /// Calls `each` with every word of the element's text.
@@ -102,13 +112,15 @@ class Document {
 
   std::size_t check_numbers(const XMLElement& e) const {
     return words(e, [&](std::string_view word) {
-      if (!coordinate_of(word)) fail(e, "a number is " + shown(word) + ", not finite or no number up to 1e9");
+      if (!coordinate_of(word))
+        fail(e, "a number is " + shown(word) + ", not finite or no number up to 1e9");
     });
   }
 
   void read_array(const XMLElement& e) {
     const std::size_t count = check_numbers(e);
-    if (const char* said = e.Attribute("count"); said != nullptr && whole_of(said) != static_cast<long long>(count))
+    if (const char* said = e.Attribute("count");
+        said != nullptr && whole_of(said) != static_cast<long long>(count))
       fail(e, "count is " + shown(said) + ", but there are " + std::to_string(count) + " numbers");
     if (const char* id = e.Attribute("id")) arrays_[id] = count;
   }
@@ -116,14 +128,16 @@ class Document {
   void check_whole(const XMLElement& e) const {
     words(e, [&](std::string_view word) {
       const auto value = whole_of(word);
-      if (!value || *value < 0 || static_cast<std::size_t>(*value) > size_) fail(e, "an index is " + shown(word) + ", out of range");
+      if (!value || *value < 0 || static_cast<std::size_t>(*value) > size_)
+        fail(e, "an index is " + shown(word) + ", out of range");
     });
   }
 
   void check_accessors() const {
     for (const XMLElement* e : accessors_) {
       const char* source = e->Attribute("source");
-      const auto array = source != nullptr && *source == '#' ? arrays_.find(source + 1) : arrays_.end();
+      const auto array =
+          source != nullptr && *source == '#' ? arrays_.find(source + 1) : arrays_.end();
       if (array == arrays_.end()) continue;  // of names, which nothing here reads
       const auto number = [&](const char* key, long long otherwise) {
         const char* text = e->Attribute(key);
@@ -133,10 +147,14 @@ class Document {
         return *value;
       };
       long long parameters = 0;
-      for (const XMLElement* p = e->FirstChildElement("param"); p != nullptr; p = p->NextSiblingElement("param")) ++parameters;
-      const long long stride = number("stride", 1), reads = number("offset", 0) + number("count", 0) * stride;
+      for (const XMLElement* p = e->FirstChildElement("param"); p != nullptr;
+           p = p->NextSiblingElement("param"))
+        ++parameters;
+      const long long stride = number("stride", 1),
+                      reads = number("offset", 0) + number("count", 0) * stride;
       if (stride < 1 || parameters > stride || reads > static_cast<long long>(array->second))
-        fail(*e, "an accessor reads " + std::to_string(reads) + " numbers, but its array has " + std::to_string(array->second));
+        fail(*e, "an accessor reads " + std::to_string(reads) + " numbers, but its array has " +
+                     std::to_string(array->second));
     }
   }
 
@@ -144,16 +162,20 @@ class Document {
     std::size_t nodes{1}, depth{1};
   };
 
-  /// Returns size and depth of the tree at this node, with those nodes that are named in place of being there.
+  /// Returns size and depth of the tree at this node, with those nodes that are named in place of
+  /// being there.
   Tree expand(const XMLElement& node, std::size_t depth) {
-    if (depth > kMaxNodeDepth) fail(node, "nodes are nested deeper than 200, or name each other in a circle");
+    if (depth > kMaxNodeDepth)
+      fail(node, "nodes are nested deeper than 200, or name each other in a circle");
     if (const auto known = trees_.find(&node); known != trees_.end()) return known->second;
     Tree tree;
     const auto add = [&](const Tree& part) {
-      tree = {std::min(tree.nodes + part.nodes, kMaxNodes + 1), std::max(tree.depth, part.depth + 1)};
+      tree = {std::min(tree.nodes + part.nodes, kMaxNodes + 1),
+              std::max(tree.depth, part.depth + 1)};
       if (tree.depth > kMaxNodeDepth) fail(node, "nodes are nested deeper than 200");
     };
-    for (const XMLElement* e = node.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    for (const XMLElement* e = node.FirstChildElement(); e != nullptr;
+         e = e->NextSiblingElement()) {
       const std::string_view name = e->Name();
       if (name == "node") add(expand(*e, depth + 1));
       if (name != "instance_node") continue;
@@ -176,6 +198,8 @@ class Document {
 
 }  // namespace
 
-std::string checked_dae(const fs::path& file, const std::string& content) { return Document(file, content).checked(); }
+std::string checked_dae(const fs::path& file, const std::string& content) {
+  return Document(file, content).checked();
+}
 
 }  // namespace handsel::mesh

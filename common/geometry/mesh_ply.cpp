@@ -33,11 +33,14 @@ constexpr std::size_t kMaxElements = 16, kMaxProperties = 64;
 
 std::optional<Scalar> scalar_of(std::string_view name) {
   static constexpr std::pair<std::string_view, Scalar> kNames[] = {
-      {"char", Scalar::int8},     {"int8", Scalar::int8},       {"uchar", Scalar::uint8},    {"uint8", Scalar::uint8},
-      {"short", Scalar::int16},   {"int16", Scalar::int16},     {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},
-      {"int", Scalar::int32},     {"int32", Scalar::int32},     {"uint", Scalar::uint32},    {"uint32", Scalar::uint32},
-      {"float", Scalar::float32}, {"float32", Scalar::float32}, {"double", Scalar::float64}, {"float64", Scalar::float64}};
-  const auto found = std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& known) { return known.first == name; });
+      {"char", Scalar::int8},      {"int8", Scalar::int8},       {"uchar", Scalar::uint8},
+      {"uint8", Scalar::uint8},    {"short", Scalar::int16},     {"int16", Scalar::int16},
+      {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},   {"int", Scalar::int32},
+      {"int32", Scalar::int32},    {"uint", Scalar::uint32},     {"uint32", Scalar::uint32},
+      {"float", Scalar::float32},  {"float32", Scalar::float32}, {"double", Scalar::float64},
+      {"float64", Scalar::float64}};
+  const auto found = std::find_if(std::begin(kNames), std::end(kNames),
+                                  [&](const auto& known) { return known.first == name; });
   return found == std::end(kNames) ? std::nullopt : std::optional(found->second);
 }
 
@@ -45,8 +48,10 @@ bool is_whole(Scalar type) { return type != Scalar::float32 && type != Scalar::f
 
 class Header {
  public:
-  Header(const fs::path& file, const std::string& content) : lines_(file, content), size_(content.size()) {
-    if (!lines_.next() || lines_.word() != "ply") lines_.fail("is no PLY: it must begin with a line ply");
+  Header(const fs::path& file, const std::string& content)
+      : lines_(file, content), size_(content.size()) {
+    if (!lines_.next() || lines_.word() != "ply")
+      lines_.fail("is no PLY: it must begin with a line ply");
     while (lines_.next()) {
       const std::string_view word = lines_.word();
       if (word == "end_header") {
@@ -81,7 +86,8 @@ class Header {
     } else if (word == "binary_big_endian") {
       format_ = Format::big_endian;
     } else {
-      lines_.fail("format is " + shown(word) + ", must be ascii, binary_little_endian or binary_big_endian");
+      lines_.fail("format is " + shown(word) +
+                  ", must be ascii, binary_little_endian or binary_big_endian");
     }
   }
 
@@ -91,11 +97,13 @@ class Header {
     const std::string_view word = lines_.word();
     const auto count = whole_of(word);
     if (!count || *count < 0 || static_cast<std::size_t>(*count) > size_)
-      lines_.fail("element " + shown(element.name) + " has " + shown(word) + " entries, must be a whole number that fits the file's " +
-                  std::to_string(size_) + " bytes");
+      lines_.fail("element " + shown(element.name) + " has " + shown(word) +
+                  " entries, must be a whole number that fits the file's " + std::to_string(size_) +
+                  " bytes");
     element.count = static_cast<std::size_t>(*count);
     for (const Element& other : elements_)
-      if (other.name == element.name) lines_.fail("element " + shown(element.name) + " is there twice");
+      if (other.name == element.name)
+        lines_.fail("element " + shown(element.name) + " is there twice");
     if (elements_.size() == kMaxElements) lines_.fail("more than 16 elements");
     elements_.push_back(element);
   }
@@ -116,7 +124,8 @@ class Header {
     }
     property.type = type(word);
     property.name = lines_.word();
-    if (elements_.back().properties.size() == kMaxProperties) lines_.fail("more than 64 properties");
+    if (elements_.back().properties.size() == kMaxProperties)
+      lines_.fail("more than 64 properties");
     elements_.back().properties.push_back(property);
   }
 
@@ -126,7 +135,8 @@ class Header {
     for (const Element& element : elements_) {
       std::set<std::string> known;
       for (const Property& property : element.properties)
-        if (!known.insert(property.name).second) lines_.fail("element " + element.name + " has property " + property.name + " twice");
+        if (!known.insert(property.name).second)
+          lines_.fail("element " + element.name + " has property " + property.name + " twice");
       faces |= element.name == "face";
       if (element.name != "vertex") continue;
       vertices_ = element.count;
@@ -135,7 +145,8 @@ class Header {
                          [&](const Property& p) { return p.name == axis && !p.length; }))
           lines_.fail(std::string("element vertex has no property ") + axis);
     }
-    if (vertices_ == 0 || vertices_ > kMaxVertices) lines_.fail("must have 1 to 1500000 vertices, it has " + std::to_string(vertices_));
+    if (vertices_ == 0 || vertices_ > kMaxVertices)
+      lines_.fail("must have 1 to 1500000 vertices, it has " + std::to_string(vertices_));
     if (!faces) lines_.fail("not a mesh that can be read: it has no element face");
   }
 
@@ -148,7 +159,8 @@ class Header {
 
 class Body {
  public:
-  Body(const fs::path& file, Header& header) : file_(file), header_(header), lines_(header.body()), bytes_(header.body().rest()) {}
+  Body(const fs::path& file, Header& header)
+      : file_(file), header_(header), lines_(header.body()), bytes_(header.body().rest()) {}
 
   void check() {
     for (const Element& element : header_.elements())
@@ -163,61 +175,77 @@ class Body {
 
   void check_entry(const Element& element) {
     if (header_.format() == Format::text && !lines_.next())
-      fail("the file ends at entry " + std::to_string(entry_) + " of the " + std::to_string(element.count) + " of element " + element.name);
+      fail("the file ends at entry " + std::to_string(entry_) + " of the " +
+           std::to_string(element.count) + " of element " + element.name);
     std::size_t corners = 0;
     for (const Property& property : element.properties) {
       std::size_t values = 1;
       if (property.length) {
         const double length = number(*property.length, element);
-        if (!(length >= 0) || length > kMaxVertices) fail("a list of " + element.name + " has a length that cannot be");
+        if (!(length >= 0) || length > kMaxVertices)
+          fail("a list of " + element.name + " has a length that cannot be");
         values = static_cast<std::size_t>(length);
         check_length(element, property, values, corners);
       }
-      for (std::size_t i = 0; i < values; ++i) check_value(element, property, number(property.type, element));
+      for (std::size_t i = 0; i < values; ++i)
+        check_value(element, property, number(property.type, element));
     }
   }
 
-  void check_length(const Element& element, const Property& property, std::size_t values, std::size_t& corners) {
+  void check_length(const Element& element, const Property& property, std::size_t values,
+                    std::size_t& corners) {
     if (element.name != "face") return;
     if (is_index(property)) {
       corners = values;
-      if (values > kMaxFaceVertices) fail("face " + std::to_string(entry_ + 1) + " has more than 1000 vertices");
+      if (values > kMaxFaceVertices)
+        fail("face " + std::to_string(entry_ + 1) + " has more than 1000 vertices");
       triangles_ += values > 2 ? values - 2 : 0;
-      if (triangles_ > kMaxTriangles) throw ConfigError(file_.string() + ": more than 500000 triangles, the maximum of a mesh");
+      if (triangles_ > kMaxTriangles)
+        throw ConfigError(file_.string() + ": more than 500000 triangles, the maximum of a mesh");
     } else if (values > 2 * corners) {
-      fail("face " + std::to_string(entry_ + 1) + " has a list " + property.name + " longer than its vertices allow");
+      fail("face " + std::to_string(entry_ + 1) + " has a list " + property.name +
+           " longer than its vertices allow");
     }
   }
 
   static bool is_index(const Property& property) {
-    return property.length && (property.name == "vertex_indices" || property.name == "vertex_index");
+    return property.length &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
   }
 
   void check_value(const Element& element, const Property& property, double value) const {
     const double count = static_cast<double>(header_.vertices());
     if (element.name == "face" && is_index(property) && !(value >= 0 && value < count))
-      fail("face " + std::to_string(entry_ + 1) + " has vertex " + std::to_string(std::llround(value)) + ", out of range: the file has " +
+      fail("face " + std::to_string(entry_ + 1) + " has vertex " +
+           std::to_string(std::llround(value)) + ", out of range: the file has " +
            std::to_string(header_.vertices()) + ", counted from 0");
-    if (element.name == "tristrips" && !(value >= -1 && value < count)) fail("a triangle strip has a vertex out of range");
+    if (element.name == "tristrips" && !(value >= -1 && value < count))
+      fail("a triangle strip has a vertex out of range");
   }
 
   double number(Scalar type, const Element& element) {
-    const double value = header_.format() == Format::text ? text_number(element) : binary_number(type, element);
+    const double value =
+        header_.format() == Format::text ? text_number(element) : binary_number(type, element);
     if (!std::isfinite(value) || std::abs(value) > 4.3e9)
-      fail("entry " + std::to_string(entry_ + 1) + " of element " + element.name + " has a number that is not finite or too large");
+      fail("entry " + std::to_string(entry_ + 1) + " of element " + element.name +
+           " has a number that is not finite or too large");
     return value;
   }
 
-  double text_number(const Element& element) const { return lines_.coordinate(("a value of element " + element.name).c_str()); }
+  double text_number(const Element& element) const {
+    return lines_.coordinate(("a value of element " + element.name).c_str());
+  }
 
   template <class Value>
   double taken(const Element& element) {
     if (bytes_.size() < sizeof(Value))
-      fail("the file ends at entry " + std::to_string(entry_) + " of the " + std::to_string(element.count) + " of element " + element.name);
+      fail("the file ends at entry " + std::to_string(entry_) + " of the " +
+           std::to_string(element.count) + " of element " + element.name);
     char raw[sizeof(Value)];
     std::memcpy(raw, bytes_.data(), sizeof raw);
     bytes_.remove_prefix(sizeof raw);
-    if ((header_.format() == Format::big_endian) != (std::endian::native == std::endian::big)) std::reverse(std::begin(raw), std::end(raw));
+    if ((header_.format() == Format::big_endian) != (std::endian::native == std::endian::big))
+      std::reverse(std::begin(raw), std::end(raw));
     Value value;
     std::memcpy(&value, raw, sizeof value);
     return static_cast<double>(value);

@@ -10,7 +10,8 @@ std::optional<double> coordinate_of(std::string_view word) {
   if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);
   double value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);  // nearly 0, or infinite
+  if (error == std::errc::result_out_of_range)
+    value = std::strtod(std::string(word).c_str(), nullptr);  // nearly 0, or infinite
   if (error == std::errc::invalid_argument || end != word.data() + word.size()) return std::nullopt;
   if (!std::isfinite(value) || std::abs(value) > kLargestCoordinate) return std::nullopt;
   return value;
@@ -36,7 +37,9 @@ bool Lines::next() {
   const std::size_t end = rest_.find('\n');
   line_ = rest_.substr(0, end);
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (line_.size() > kMaxLine) fail("a line of " + std::to_string(line_.size()) + " bytes; a line may have " + std::to_string(kMaxLine));
+  if (line_.size() > kMaxLine)
+    fail("a line of " + std::to_string(line_.size()) + " bytes; a line may have " +
+         std::to_string(kMaxLine));
   return true;
 }
 
@@ -60,6 +63,8 @@ double Lines::coordinate(const char* what) {
   return *value;
 }
 
-void Lines::fail(const std::string& what) const { throw ConfigError(file_.string() + ":" + std::to_string(number_) + ": " + what); }
+void Lines::fail(const std::string& what) const {
+  throw ConfigError(file_.string() + ":" + std::to_string(number_) + ": " + what);
+}
 
 }  // namespace handsel::mesh

@@ -15,9 +15,10 @@ inline constexpr std::uintmax_t kMaxBytes = 64u << 20;
 inline constexpr std::size_t kMaxTriangles = 500'000;
 /// Each triangle has three of its own at most.
 inline constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;
-inline constexpr std::size_t kMaxFaceVertices = 1000;  ///< of one face: splitting it costs their square
-inline constexpr std::size_t kMaxLine = 1u << 16;      ///< [bytes]
-inline constexpr double kLargestCoordinate = 1e9;      ///< in the unit of the file
+inline constexpr std::size_t kMaxFaceVertices =
+    1000;                                          ///< of one face: splitting it costs their square
+inline constexpr std::size_t kMaxLine = 1u << 16;  ///< [bytes]
+inline constexpr double kLargestCoordinate = 1e9;  ///< in the unit of the file
 
 /// Returns the number that `word` is, nothing where it is none, not finite or beyond
 /// kLargestCoordinate.

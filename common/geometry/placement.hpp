@@ -30,6 +30,7 @@ struct Placement {
 /// Hardest to tip over first; at most one for each face, those that tip below `min_tipping` [rad]
 /// left out. Faces whose normals differ by less than a degree are one. Empty for meshes without
 /// volume.
-std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3& com, double min_tipping = 0.1);
+std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3& com,
+                                         double min_tipping = 0.1);
 
 }  // namespace handsel

@@ -11,7 +11,8 @@ using Pose = Eigen::Isometry3d;
 using Vector = Eigen::VectorXd;
 
 /// Returns the pose with origin p [m] and rotation q, which is normalized first.
-inline Pose make_pose(const Vector3& p, const Eigen::Quaterniond& q = Eigen::Quaterniond::Identity()) {
+inline Pose make_pose(const Vector3& p,
+                      const Eigen::Quaterniond& q = Eigen::Quaterniond::Identity()) {
   Pose T = Pose::Identity();
   T.translation() = p;
   T.linear() = q.normalized().toRotationMatrix();

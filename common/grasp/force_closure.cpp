@@ -6,13 +6,17 @@
 
 namespace handsel {
 
-WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges, const Vector3& centre, double torque_scale) {
-  const auto patches = std::count_if(contacts.begin(), contacts.end(), [](const PointContact& c) { return c.torsion > 0; });
+WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges,
+                              const Vector3& centre, double torque_scale) {
+  const auto patches = std::count_if(contacts.begin(), contacts.end(),
+                                     [](const PointContact& c) { return c.torsion > 0; });
   WrenchMatrix out(6, static_cast<Eigen::Index>(contacts.size()) * edges + 2 * patches);
   Eigen::Index column = 0;
   for (const PointContact& c : contacts) {
     const Vector3& n = c.inward_normal;
-    const Vector3 t1 = n.cross(std::abs(n.x()) < 0.9 ? Vector3::UnitX().eval() : Vector3::UnitY().eval()).normalized();
+    const Vector3 t1 =
+        n.cross(std::abs(n.x()) < 0.9 ? Vector3::UnitX().eval() : Vector3::UnitY().eval())
+            .normalized();
     const Vector3 t2 = n.cross(t1);
     const Vector3 arm = torque_scale * (c.position - centre);
     for (int k = 0; k < edges; ++k) {
@@ -33,7 +37,8 @@ WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edg
 }
 
 int wrench_rank(const WrenchMatrix& wrenches) {
-  // Elimination along the few rows, each pivoted on its largest entry; a row that has nothing left adds nothing.
+  // Elimination along the few rows, each pivoted on its largest entry; a row that has nothing left
+  // adds nothing.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a = wrenches;
   const double least = 1e-10 * (a.size() == 0 ? 0.0 : a.cwiseAbs().maxCoeff());
   int rank = 0;
@@ -41,18 +46,21 @@ int wrench_rank(const WrenchMatrix& wrenches) {
     Eigen::Index pivot = 0;
     if (a.cols() == 0 || !(a.row(k).cwiseAbs().maxCoeff(&pivot) > least)) continue;
     ++rank;
-    for (Eigen::Index i = k + 1; i < a.rows(); ++i) a.row(i) -= (a(i, pivot) / a(k, pivot)) * a.row(k);
+    for (Eigen::Index i = k + 1; i < a.rows(); ++i)
+      a.row(i) -= (a(i, pivot) / a(k, pivot)) * a.row(k);
   }
   return rank;
 }
 
-// With w the sum of all wrenches, weights mu >= 0 with W mu = -w give lambda = mu + 1 > 0, and back: one feasibility problem, phase one of
-// the simplex method on a tableau of dimension + 1 rows. Its right-hand side is not degenerate, unlike that of the form with t.
+// With w the sum of all wrenches, weights mu >= 0 with W mu = -w give lambda = mu + 1 > 0, and
+// back: one feasibility problem, phase one of the simplex method on a tableau of dimension + 1
+// rows. Its right-hand side is not degenerate, unlike that of the form with t.
 bool force_closure(const WrenchMatrix& wrenches) {
   const Eigen::Index d = wrenches.rows(), n = wrenches.cols();
   if (d == 0 || n <= d || wrench_rank(wrenches) < d) return false;
   const double scale = wrenches.cwiseAbs().maxCoeff();
-  // Row-major so that a pivot streams along rows; last column right-hand side, last row reduced costs of the sum of artificials.
+  // Row-major so that a pivot streams along rows; last column right-hand side, last row reduced
+  // costs of the sum of artificials.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> t(d + 1, n + 1);
   t.topLeftCorner(d, n) = wrenches / scale;
   t.col(n).head(d) = -t.topLeftCorner(d, n).rowwise().sum();

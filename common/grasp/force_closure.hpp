@@ -25,7 +25,8 @@ struct PointContact {
 /// The edges of the linearised friction cones: n + mu (cos a t1 + sin a t2), t1 = n x ex (n x ey
 /// when |n.x| >= 0.9), normalised, t2 = n x t1; the torque is about `centre` times `torque_scale`.
 /// A patch adds two: n with the torque +-torsion n.
-WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges, const Vector3& centre, double torque_scale);
+WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges,
+                              const Vector3& centre, double torque_scale);
 
 /// Strict: some combination of ALL wrenches with positive weights is zero, and they span the space.
 /// Exactly when the largest t with sum(lambda w) = 0, sum(lambda) = 1, lambda >= t is positive.

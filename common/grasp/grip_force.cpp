@@ -9,7 +9,8 @@
 namespace handsel {
 
 // Simplex method from the slack basis; the free variables are split into two that are not negative.
-Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A,
+                         const Eigen::VectorXd& b) {
   const Eigen::Index rows = A.rows(), n = A.cols(), columns = 2 * n + rows;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> t(rows + 1, columns + 1);
   t.setZero();
@@ -36,7 +37,8 @@ Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, con
     for (Eigen::Index i = 0; i < rows; ++i) {
       if (t(i, enter) <= 1e-10) continue;
       const double r = t(i, columns) / t(i, enter);
-      if (leave < 0 || r < ratio || (r == ratio && variable(i) < variable(leave))) leave = i, ratio = r;
+      if (leave < 0 || r < ratio || (r == ratio && variable(i) < variable(leave)))
+        leave = i, ratio = r;
     }
     if (leave < 0) break;
     basis[static_cast<std::size_t>(leave)] = enter;
@@ -55,7 +57,8 @@ Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, con
 namespace {
 
 // 6 x 3m: force and torque about `centre`, the torque over `size`, of a force at each contact.
-Eigen::MatrixXd wrenches(const std::vector<PointContact>& contacts, const Vector3& centre, double size) {
+Eigen::MatrixXd wrenches(const std::vector<PointContact>& contacts, const Vector3& centre,
+                         double size) {
   const auto m = static_cast<Eigen::Index>(contacts.size());
   Eigen::MatrixXd G(6, 3 * m);
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -72,11 +75,15 @@ double size_of(const std::vector<PointContact>& contacts, const Vector3& centre)
   return size;
 }
 
-bool holds_all_ways(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) { return svd.singularValues()[5] > 1e-6 * svd.singularValues()[0]; }
+bool holds_all_ways(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) {
+  return svd.singularValues()[5] > 1e-6 * svd.singularValues()[0];
+}
 
-// The squeeze of one hand. `free`: 3m x n, forces that cancel out; `bear`: 3m x 3, forces on the object that bear a force at its centre.
-GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::MatrixXd& free, const Eigen::MatrixXd& bear,
-                   const GripLoad& load, const GripForceSettings& settings) {
+// The squeeze of one hand. `free`: 3m x n, forces that cancel out; `bear`: 3m x 3, forces on the
+// object that bear a force at its centre.
+GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::MatrixXd& free,
+                   const Eigen::MatrixXd& bear, const GripLoad& load,
+                   const GripForceSettings& settings) {
   const auto m = static_cast<Eigen::Index>(contacts.size());
   GripForces out;
   const Eigen::Index n = free.cols() + 1, per = settings.edges + 1;
@@ -85,11 +92,13 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
   for (Eigen::Index i = 0; i < m; ++i) {
     const PointContact& contact = contacts[static_cast<std::size_t>(i)];
     const Vector3& normal = contact.inward_normal;
-    const Vector3 t1 = normal.cross(std::abs(normal.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY()).normalized();
+    const Vector3 t1 =
+        normal.cross(std::abs(normal.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY()).normalized();
     const Vector3 t2 = normal.cross(t1);
     for (int k = 0; k < settings.edges; ++k) {
       const double angle = 2 * std::numbers::pi * k / settings.edges;
-      const Vector3 inside = settings.friction_fraction * contact.friction * normal - std::cos(angle) * t1 - std::sin(angle) * t2;
+      const Vector3 inside = settings.friction_fraction * contact.friction * normal -
+                             std::cos(angle) * t1 - std::sin(angle) * t2;
       const Eigen::RowVector3d of_load = inside.transpose() * bear.middleRows(3 * i, 3);
       A.row(i * per + k).head(n - 1) = -inside.transpose() * free.middleRows(3 * i, 3);
       A(i * per + k, n - 1) = 1;
@@ -97,7 +106,8 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
     }
     A.row(i * per + settings.edges).head(n - 1) = normal.transpose() * free.middleRows(3 * i, 3);
     b[i * per + settings.edges] = settings.max_normal;
-    c.head(n - 1) -= 1e-3 * free.middleRows(3 * i, 3).transpose() * normal;  // of equal margins the gentlest
+    c.head(n - 1) -=
+        1e-3 * free.middleRows(3 * i, 3).transpose() * normal;  // of equal margins the gentlest
   }
   c[n - 1] = 1;
   double least = std::numeric_limits<double>::infinity();  // the margin without a squeeze
@@ -114,22 +124,27 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
 
 }  // namespace
 
-GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass, const GripForceSettings& settings) {
+GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass,
+                       const GripForceSettings& settings) {
   const auto m = static_cast<Eigen::Index>(contacts.size());
   if (m < 3) return {};
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(wrenches(contacts, com, size_of(contacts, com)), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(wrenches(contacts, com, size_of(contacts, com)),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
   if (!holds_all_ways(svd)) return {};
   const Eigen::MatrixXd bear = -svd.solve(Eigen::MatrixXd::Identity(6, 3));
-  return squeeze(contacts, svd.matrixV().rightCols(3 * m - 6), bear, {Vector3::Zero(), mass * settings.acceleration}, settings);
+  return squeeze(contacts, svd.matrixV().rightCols(3 * m - 6), bear,
+                 {Vector3::Zero(), mass * settings.acceleration}, settings);
 }
 
-std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands, const Vector3& com, const GripLoad& load,
+std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands,
+                                           const Vector3& com, const GripLoad& load,
                                            const GripForceSettings& settings) {
   std::vector<GripForces> out(hands.size());
   std::vector<PointContact> all;
   for (const auto& contacts : hands) all.insert(all.end(), contacts.begin(), contacts.end());
   if (all.size() < 3) return out;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> together(wrenches(all, com, size_of(all, com)), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> together(wrenches(all, com, size_of(all, com)),
+                                                   Eigen::ComputeThinU | Eigen::ComputeThinV);
   if (!holds_all_ways(together)) return out;
   const Eigen::MatrixXd bear = -together.solve(Eigen::MatrixXd::Identity(6, 3));
   Eigen::Index row = 0;
@@ -138,9 +153,12 @@ std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointCo
     Vector3 middle = Vector3::Zero();
     for (const PointContact& c : hands[h]) middle += c.position / static_cast<double>(m);
     if (m >= 3) {
-      const Eigen::JacobiSVD<Eigen::MatrixXd> own(wrenches(hands[h], middle, size_of(hands[h], middle)),
-                                                  Eigen::ComputeThinU | Eigen::ComputeFullV);
-      if (holds_all_ways(own)) out[h] = squeeze(hands[h], own.matrixV().rightCols(3 * m - 6), bear.middleRows(row, 3 * m), load, settings);
+      const Eigen::JacobiSVD<Eigen::MatrixXd> own(
+          wrenches(hands[h], middle, size_of(hands[h], middle)),
+          Eigen::ComputeThinU | Eigen::ComputeFullV);
+      if (holds_all_ways(own))
+        out[h] = squeeze(hands[h], own.matrixV().rightCols(3 * m - 6), bear.middleRows(row, 3 * m),
+                         load, settings);
     }
     row += 3 * m;
   }

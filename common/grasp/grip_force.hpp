@@ -37,16 +37,19 @@ struct GripLoad {
 /// Maximises the margin by linear programming. The load of `mass` [kg] acts at `com` and is borne
 /// by all contacts as equal springs. Without three contacts, or with all on one line, nothing can
 /// be borne: no forces, margin 0.
-GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass, const GripForceSettings& settings = {});
+GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass,
+                       const GripForceSettings& settings = {});
 
 /// Several hands on one load, one entry a hand: the grip forces of each cancel out by themselves,
 /// and the contacts of all together bear the load at `com` as equal springs, so that no hand must
 /// keep it from turning that another keeps.
-std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands, const Vector3& com, const GripLoad& load,
+std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands,
+                                           const Vector3& com, const GripLoad& load,
                                            const GripForceSettings& settings = {});
 
 /// Maximises c.x subject to A x <= b with b >= 0, x free; x = 0 is where it starts. Unbounded
 /// directions are not followed further.
-Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A,
+                         const Eigen::VectorXd& b);
 
 }  // namespace handsel

@@ -33,11 +33,11 @@ struct BehaviourState {
   double period{};                         ///< period of its adaptive clock now [s]
   std::uint64_t activations{};             ///< of its perceptual schema since start
   std::uint64_t activations_at_fastest{};  ///< had the clock always run at its shortest period
-  bool released{};                         ///< its releaser and the conditions of its description hold
-  double stimulus{};                       ///< perceived quantity that drives its clock, SI unit by kind
-  double speed_factor{1.0};                ///< what it asks for, [-1, 1]
-  bool winner{};                           ///< decides the speed or the gaze now
-  std::string reason;                      ///< of its speed factor, one phrase for people
+  bool released{};           ///< its releaser and the conditions of its description hold
+  double stimulus{};         ///< perceived quantity that drives its clock, SI unit by kind
+  double speed_factor{1.0};  ///< what it asks for, [-1, 1]
+  bool winner{};             ///< decides the speed or the gaze now
+  std::string reason;        ///< of its speed factor, one phrase for people
 };
 
 /// Topic AttentionState, profile state, 10 Hz.

@@ -17,10 +17,10 @@ namespace handsel {
 /// A new epoch resumes after Hold, and after Stop once its cause is gone; a person (acknowledge)
 /// after Fault.
 struct Go {
-  Stamp stamp{};                ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::uint64_t epoch{};        ///< grows when motion may resume; commands of another epoch are refused
-  bool allowed{};               ///< false: Hold
-  bool acknowledge{};           ///< a person acknowledged a Fault
+  Stamp stamp{};          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::uint64_t epoch{};  ///< grows when motion may resume; commands of another epoch are refused
+  bool allowed{};         ///< false: Hold
+  bool acknowledge{};     ///< a person acknowledged a Fault
   double override_factor{1.0};  ///< global speed override [0, 1]
   std::string reason;           ///< why motion is permitted or not, one sentence
   /// SafetyState::revision the permission was issued from; 0: from none, which permits no motion.
@@ -89,8 +89,8 @@ enum class Cause : std::uint8_t {
   wall,                ///< Slow: a virtual wall or the end of the workspace is ahead
   contact,             ///< Stop: the arm feels a contact
   cost_ahead,          ///< Slow: the human-aware cost ahead on the trajectory is high
-  blind,               ///< Slow or Hold: no live source observes where the arm can be within its stop
-  stop_unproven,       ///< Slow: a set-point had no checked stop behind it
+  blind,          ///< Slow or Hold: no live source observes where the arm can be within its stop
+  stop_unproven,  ///< Slow: a set-point had no checked stop behind it
   /// Reported only: a topic with one writer has a second one, whose samples are refused.
   second_writer,
   clamped,  ///< Stop: the arm has been pressed against something for too long
@@ -100,7 +100,9 @@ enum class Cause : std::uint8_t {
 /// Returns the word of kCauseNames; "unknown" for a value outside the enumeration.
 const char* name(Cause);
 /// Returns the bit of a cause in ExecutionStatus::causes; 0 for none.
-constexpr std::uint32_t bit(Cause cause) { return cause == Cause::none ? 0U : 1U << static_cast<unsigned>(cause); }
+constexpr std::uint32_t bit(Cause cause) {
+  return cause == Cause::none ? 0U : 1U << static_cast<unsigned>(cause);
+}
 /// Returns the word of kModeNames; "unknown" for a value outside the enumeration.
 const char* name(Mode);
 
@@ -116,20 +118,20 @@ struct OtherHandState {
 /// State of the trajectory controller, 50 Hz and on every change. Topic ExecutionStatus, profile
 /// state.
 struct ExecutionStatus {
-  Stamp stamp{};                              ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::string robot;                          ///< name of the robot description; the key of the topic
-  Mode mode{Mode::hold};                      ///< mode of the controller
-  std::uint32_t causes{};                     ///< causes in force, see bit()
-  std::uint64_t epoch{};                      ///< Go in force
-  std::uint64_t trajectory{};                 ///< last trajectory id received
-  MotionState motion{MotionState::idle};      ///< state of that trajectory
-  double progress{};                          ///< time along the trajectory / its duration
-  std::uint64_t hand_command{};               ///< last hand command id received
-  HandState hand{HandState::idle};            ///< state of that command
+  Stamp stamp{};                          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::string robot;                      ///< name of the robot description; the key of the topic
+  Mode mode{Mode::hold};                  ///< mode of the controller
+  std::uint32_t causes{};                 ///< causes in force, see bit()
+  std::uint64_t epoch{};                  ///< Go in force
+  std::uint64_t trajectory{};             ///< last trajectory id received
+  MotionState motion{MotionState::idle};  ///< state of that trajectory
+  double progress{};                      ///< time along the trajectory / its duration
+  std::uint64_t hand_command{};           ///< last hand command id received
+  HandState hand{HandState::idle};        ///< state of that command
   std::vector<OtherHandState> other_hands{};  ///< every hand but the first; empty: there is one
-  double pull{};                              ///< force beyond the load's weight, toward the person [N]
-  std::string reason;                         ///< of the last refusal, or of slowing, one sentence
-  std::uint64_t cycles{}, late_cycles{};      ///< control cycles; later than one period
+  double pull{};                          ///< force beyond the load's weight, toward the person [N]
+  std::string reason;                     ///< of the last refusal, or of slowing, one sentence
+  std::uint64_t cycles{}, late_cycles{};  ///< control cycles; later than one period
   /// Largest |.| sent so far / guard limit.
   double limit_ratio_velocity{}, limit_ratio_acceleration{}, limit_ratio_jerk{};
   double separation{1e9};  ///< to the nearest person, without exempt parts [m]; 1e9: nobody
@@ -141,12 +143,12 @@ struct ExecutionStatus {
 
 /// The motion being executed. Topic ActiveTrajectory, profile advice, 50 Hz.
 struct ActiveTrajectory {
-  Stamp stamp{};                              ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::string robot;                          ///< name of the robot description; the key of the topic
-  Pose T_world_base{Pose::Identity()};        ///< root link of the robot in the world, as last measured
-  std::uint64_t trajectory{};                 ///< id of the running trajectory; 0: at rest
-  double time{};                              ///< time along the trajectory [s]
-  double speed_factor{};                      ///< alpha in force, [-1, 1]
+  Stamp stamp{};                        ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::string robot;                    ///< name of the robot description; the key of the topic
+  Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world, as last measured
+  std::uint64_t trajectory{};           ///< id of the running trajectory; 0: at rest
+  double time{};                        ///< time along the trajectory [s]
+  double speed_factor{};                ///< alpha in force, [-1, 1]
   Vector position, velocity, acceleration;    ///< set-point, all axes
   std::vector<std::uint32_t> axes;            ///< robot axis of each axis of `rest`
   Trajectory rest;                            ///< the trajectory that runs (from its own time 0)

@@ -49,7 +49,8 @@ std::string phase_text(const ActionStatus& action) {
   std::string text = text_of(action.phase);
   constexpr std::string_view kSomebody = "somebody";
   const auto at = text.find(kSomebody);
-  if (at != std::string::npos && !action.human.empty()) text.replace(at, kSomebody.size(), action.human);
+  if (at != std::string::npos && !action.human.empty())
+    text.replace(at, kSomebody.size(), action.human);
   return text;
 }
 

@@ -16,7 +16,8 @@
 
 namespace handsel {
 
-inline constexpr const char* kBehaviourNames[] = {"search", "track", "avoid", "pick", "place", "give", "receive", "watch"};
+inline constexpr const char* kBehaviourNames[] = {"search", "track", "avoid",   "pick",
+                                                  "place",  "give",  "receive", "watch"};
 inline constexpr const char* kCauseNames[] = {"none",
                                               "no_go",
                                               "supervisor_silent",
@@ -42,26 +43,50 @@ inline constexpr const char* kCauseNames[] = {"none",
                                               "clamped",
                                               "awaits_person"};
 inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
-inline constexpr const char* kTaskKindNames[] = {"give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
-                                                 "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
-inline constexpr const char* kTaskStateNames[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
+inline constexpr const char* kTaskKindNames[] = {
+    "give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
+    "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
+inline constexpr const char* kTaskStateNames[] = {"accepted", "running",   "paused", "succeeded",
+                                                  "failed",   "cancelled", "refused"};
 inline constexpr const char* kRegraspKindNames[] = {"pick", "pass", "place", "join"};
-inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to", "regrasp", "carry"};
-inline constexpr const char* kStepStateNames[] = {"waiting", "running", "done", "failed", "dropped"};
+inline constexpr const char* kActionKindNames[] = {"pick",  "place",   "give", "receive",
+                                                   "go_to", "regrasp", "carry"};
+inline constexpr const char* kStepStateNames[] = {"waiting", "running", "done", "failed",
+                                                  "dropped"};
 inline constexpr const char* kTaskChangeNames[] = {"none", "suspend", "resume", "abort", "give"};
-inline constexpr const char* kDriveModeNames[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
-inline constexpr const char* kFactNames[] = {
-    "in_contact_zone",  "in_danger_zone", "in_interaction_zone", "in_social_zone", "approaching",        "attentive",          "reaching",
-    "hand_near_object", "on_surface",     "held_by_robot",       "held_by_human",  "reachable_by_robot", "reachable_by_human", "inside",
-    "next_to",          "visible_to",     "looking_at",          "moving",         "offering",           "waiting_to_receive", "withdrawn",
-    "released"};
+inline constexpr const char* kDriveModeNames[] = {
+    "off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
+inline constexpr const char* kFactNames[] = {"in_contact_zone",
+                                             "in_danger_zone",
+                                             "in_interaction_zone",
+                                             "in_social_zone",
+                                             "approaching",
+                                             "attentive",
+                                             "reaching",
+                                             "hand_near_object",
+                                             "on_surface",
+                                             "held_by_robot",
+                                             "held_by_human",
+                                             "reachable_by_robot",
+                                             "reachable_by_human",
+                                             "inside",
+                                             "next_to",
+                                             "visible_to",
+                                             "looking_at",
+                                             "moving",
+                                             "offering",
+                                             "waiting_to_receive",
+                                             "withdrawn",
+                                             "released"};
 inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "human"};
 inline constexpr const char* kPrimitiveNames[] = {"none", "box", "cylinder", "sphere"};
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
 inline constexpr const char* kSimActionNames[] = {
-    "pause",        "resume",        "reset",       "person_freeze", "person_unfreeze", "person_dart",
-    "person_leave", "person_refuse", "robot_stop",  "robot_enable",  "silence_human",   "silence_robot_state",
-    "restore",      "human_frozen",  "human_empty", "human_late",    "human_elsewhere", "emergency_stop"};
+    "pause",           "resume",        "reset",         "person_freeze",
+    "person_unfreeze", "person_dart",   "person_leave",  "person_refuse",
+    "robot_stop",      "robot_enable",  "silence_human", "silence_robot_state",
+    "restore",         "human_frozen",  "human_empty",   "human_late",
+    "human_elsewhere", "emergency_stop"};
 
 // clang-format off
 inline constexpr const char* kActionPhaseTexts[] = {

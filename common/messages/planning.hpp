@@ -38,7 +38,7 @@ enum class PlanSpace : std::uint8_t { joint, cartesian };
 struct TipGoal {
   Pose T_world_tip{Pose::Identity()};  ///< pose of the tip, the centre of the region
   Vector3 slack{Vector3::Zero()};      ///< half extents of a box along the pose's axes [m]
-  double turn{};                       ///< largest rotation about the pose's z axis, both directions [rad]
+  double turn{};  ///< largest rotation about the pose's z axis, both directions [rad]
 };
 
 /// Topic PathRequest, profile request. Plans for one group of axes; the other axes stay as in
@@ -52,7 +52,7 @@ struct PathRequest {
   /// All axes of the robot [rad]; where the platform is planned for, its x, y [m], heading [rad]
   /// may follow; without them it starts from its current pose.
   Vector start;
-  std::vector<Vector> goals;   ///< alternatives, group axes only [rad]; empty: `poses` are the goals
+  std::vector<Vector> goals;  ///< alternatives, group axes only [rad]; empty: `poses` are the goals
   std::vector<TipGoal> poses;  ///< alternatives, goal poses of the tip
   /// Cartesian space: robot axes that move along with the arm (hand, head).
   std::vector<std::uint32_t> also;
@@ -60,15 +60,15 @@ struct PathRequest {
   bool upright{};    ///< `upright_axis` keeps a bounded angle to up everywhere on the path
   /// Unit vector, tool frame; received as +x where `upright` is false.
   Vector3 upright_axis{Vector3::UnitZ()};
-  double max_tilt{};     ///< largest angle of that axis to up, [0, 3.1416] [rad]
+  double max_tilt{};      ///< largest angle of that axis to up, [0, 3.1416] [rad]
   Attachment attachment;  ///< what the hand holds on the path
   /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms
   /// are no obstacle because the exchange with them is engaged. The same meaning wherever this
   /// field appears.
   std::vector<std::string> allowed_contacts;
   PlannerKind planner{PlannerKind::automatic};  ///< algorithm; automatic: the planner chooses
-  double time_limit{2.0};                       ///< [s]; a budget of collision checks is derived from it
-  std::uint64_t seed{};                         ///< seed of the random choices
+  double time_limit{2.0};  ///< [s]; a budget of collision checks is derived from it
+  std::uint64_t seed{};    ///< seed of the random choices
   /// Only the straight line from `start` to goals[0] is wanted, collision-checked.
   bool straight{};
   /// The running path, to be continued from `start`, a point on it that the arm has not reached
@@ -98,7 +98,7 @@ struct PathReply {
   std::string start_touches;
   PathOutcome outcome{PathOutcome::planned};  ///< see PathOutcome
   std::uint32_t goal{};                       ///< index of the goal or pose reached
-  std::vector<Vector> path;                   ///< group axes, then those of `also`; path.front() = start
+  std::vector<Vector> path;  ///< group axes, then those of `also`; path.front() = start
   /// Integral human-aware cost; mechanical work, the sum of its rises; joint-space length [rad].
   double cost{}, work{}, length{};
   std::uint64_t checks{};  ///< configurations checked for collision
@@ -107,7 +107,7 @@ struct PathReply {
 /// A node of a motion of the tool (chapter section 4.6.1).
 struct TipNode {
   Pose T_world_tip{Pose::Identity()};  ///< pose of the tip at the node
-  bool has_elbow{};                    ///< false: `elbow` is chosen such that the joints stay clear of their limits
+  bool has_elbow{};  ///< false: `elbow` is chosen such that the joints stay clear of their limits
   /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad].
   double elbow{};
   Vector also;  ///< positions of the axes `also` of the request at the node [rad]
@@ -116,21 +116,21 @@ struct TipNode {
 /// Topic TrajectoryRequest, profile request: from a polyline to jerk-limited motion, of joints or
 /// of the tool.
 struct TrajectoryRequest {
-  Stamp stamp{};                              ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;                               ///< repeated by the reply
-  std::string group;                          ///< axes of the nodes, e.g. "arm"
-  std::vector<Vector> nodes;                  ///< group axes [rad]
-  Vector start;                               ///< all axes, for the collision checks of blends
-  Attachment attachment;                      ///< what the hand holds during the motion
+  Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;               ///< repeated by the reply
+  std::string group;          ///< axes of the nodes, e.g. "arm"
+  std::vector<Vector> nodes;  ///< group axes [rad]
+  Vector start;               ///< all axes, for the collision checks of blends
+  Attachment attachment;      ///< what the hand holds during the motion
   std::vector<std::string> allowed_contacts;  ///< as PathRequest::allowed_contacts
   double speed_scale{1.0};                    ///< factor on the comfort velocity limits, (0, 1]
   /// Nodes of the tool after `start`; empty: `nodes` are those of joints, and the fields below are
   /// unused.
   std::vector<TipNode> poses;
-  std::vector<std::uint32_t> also;         ///< robot axes that are active besides the arm (hand, head)
-  bool upright{};                          ///< as in PathRequest
+  std::vector<std::uint32_t> also;  ///< robot axes that are active besides the arm (hand, head)
+  bool upright{};                   ///< as in PathRequest
   Vector3 upright_axis{Vector3::UnitZ()};  ///< unit, tool frame
-  double max_tilt{};                      ///< largest angle of that axis to up, [0, 3.1416] [rad]
+  double max_tilt{};                       ///< largest angle of that axis to up, [0, 3.1416] [rad]
   /// Arm whose tip is rigidly joined to the group's (two hands on one object); empty: none.
   std::string follower{};
   Pose T_tip_follower{Pose::Identity()};  ///< tip of the follower in the frame of the group's tip
@@ -138,15 +138,15 @@ struct TrajectoryRequest {
 
 /// Topic TrajectoryReply, profile reply.
 struct TrajectoryReply {
-  Stamp stamp{};                    ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;                     ///< as in the request
-  bool solved{};                    ///< `trajectory` reaches the last node
-  std::string reason;               ///< why not, one sentence
-  Trajectory trajectory;            ///< motion of `axes`; an unsolved motion of the tool: as far as it goes
-  double duration_ptp{};            ///< duration with a full stop at each node [s]
-  Refusals corners;                 ///< nodes that keep a full stop instead of a blend, and why
+  Stamp stamp{};          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;           ///< as in the request
+  bool solved{};          ///< `trajectory` reaches the last node
+  std::string reason;     ///< why not, one sentence
+  Trajectory trajectory;  ///< motion of `axes`; an unsolved motion of the tool: as far as it goes
+  double duration_ptp{};  ///< duration with a full stop at each node [s]
+  Refusals corners;       ///< nodes that keep a full stop instead of a blend, and why
   std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
-  std::uint32_t reached{};          ///< number of nodes the trajectory passes; all of them when solved
+  std::uint32_t reached{};  ///< number of nodes the trajectory passes; all of them when solved
   /// Factor on the comfort velocity limits per path segment because of people; empty: 1.
   Vector speeds;
 };
@@ -199,8 +199,8 @@ struct GraspRequest {
   /// The object is to be put down again: the grasp must be reachable at `T_world_goal` too.
   bool has_goal{};
   Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
-  double min_visible{};               ///< lower bound of Grasp::visible, [0, 1]
-  bool move_platform{};                 ///< platform poses are searched when no grasp is within reach
+  double min_visible{};                 ///< lower bound of Grasp::visible, [0, 1]
+  bool move_platform{};  ///< platform poses are searched when no grasp is within reach
 };
 
 /// Topic GraspReply, profile reply: reachable, collision-free, best first.
@@ -227,8 +227,8 @@ struct RegraspRequest {
   std::string object;                   ///< scene object id
   Vector start;                         ///< all axes of the robot
   Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
-  bool both{};                          ///< two hands at once, which carry it there together; else from hand to hand
-  std::uint64_t seed{};                 ///< seed of the random choices
+  bool both{};  ///< two hands at once, which carry it there together; else from hand to hand
+  std::uint64_t seed{};  ///< seed of the random choices
 };
 
 /// One change of hands. The whole robot's axes [rad].
@@ -239,8 +239,8 @@ struct RegraspStep {
   Pose T_world_object{Pose::Identity()};  ///< the object meanwhile
   Grasp grasp;                            ///< grasp of `to`; of `from` where no arm takes
   Vector q;                               ///< all hands that touch the object closed on it
-  Vector before;                          ///< the hand that comes, opened, off the object; empty: none comes
-  Vector after;                           ///< the hand that went, opened, off the object; empty: none goes
+  Vector before;  ///< the hand that comes, opened, off the object; empty: none comes
+  Vector after;   ///< the hand that went, opened, off the object; empty: none goes
 };
 
 /// Topic RegraspReply, profile reply.
@@ -263,10 +263,10 @@ struct GraspCandidates {
 /// Topic StateQuery, profile request, and StateVerdict, profile reply: may the robot be in these
 /// configurations?
 struct StateQuery {
-  Stamp stamp{};                              ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;                               ///< repeated by the verdict
-  std::vector<Vector> states;                 ///< configurations, all axes each
-  Attachment attachment;                      ///< what the hand holds
+  Stamp stamp{};               ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                ///< repeated by the verdict
+  std::vector<Vector> states;  ///< configurations, all axes each
+  Attachment attachment;       ///< what the hand holds
   std::vector<std::string> allowed_contacts;  ///< as PathRequest::allowed_contacts
 };
 
@@ -275,7 +275,7 @@ struct StateVerdict {
   Stamp stamp{};                   ///< time of sending, UTC [ns]; 0: filled in by the bus
   RequestId id;                    ///< as in the query
   std::vector<std::uint8_t> free;  ///< 1 = free, one a state
-  std::string reason;              ///< which bodies touch in the first configuration that is not free
+  std::string reason;  ///< which bodies touch in the first configuration that is not free
   /// Smallest distance over all free configurations [m]; infinity: nothing near.
   double clearance{};
 };

@@ -11,7 +11,14 @@
 
 namespace handsel {
 
-enum class DriveMode : std::uint8_t { off, braked, enabled, protective_stop, user_stop, emergency_stop };
+enum class DriveMode : std::uint8_t {
+  off,
+  braked,
+  enabled,
+  protective_stop,
+  user_stop,
+  emergency_stop
+};
 
 /// Measurements of a hand other than the first one.
 struct OtherHand {
@@ -24,8 +31,8 @@ struct OtherHand {
 
 /// What the servos of the robot side follow or hold.
 struct ServoReference {
-  Vector position;        ///< per axis [rad] ([m]); empty if unknown
-  Vector effort;          ///< per axis, feed-forward of the motors besides following [Nm] ([N]); or empty
+  Vector position;  ///< per axis [rad] ([m]); empty if unknown
+  Vector effort;    ///< per axis, feed-forward of the motors besides following [Nm] ([N]); or empty
   double payload{};       ///< mass in the first hand that the servos allow for [kg]
   Vector other_payloads;  ///< mass in each other hand that the servos allow for [kg]
 };
@@ -33,13 +40,13 @@ struct ServoReference {
 /// Published by the robot side (driver or simulator), 500 Hz. Topic RobotState, profile sensor,
 /// keyed by robot.
 struct RobotState {
-  Stamp stamp{};                        ///< time of measurement, UTC [ns]; 0: filled in by the bus
-  std::string robot;                    ///< name of the robot description
-  std::uint64_t sequence{};             ///< grows by one per sample; falls when the robot side restarts
+  Stamp stamp{};             ///< time of measurement, UTC [ns]; 0: filled in by the bus
+  std::string robot;         ///< name of the robot description
+  std::uint64_t sequence{};  ///< grows by one per sample; falls when the robot side restarts
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
   Vector position, velocity, effort;    ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
   ServoReference reference{};           ///< what the servos follow or hold
-  Vector external_torque;               ///< per axis, without model gravity and friction [Nm]; empty if unknown
+  Vector external_torque;  ///< per axis, without model gravity and friction [Nm]; empty if unknown
   /// What the world exerts on the hand with its load, gravity of the hand removed, tool frame.
   Wrench wrist_wrench;
   double hand_effort{};            ///< sum of |finger torques| [Nm]

@@ -42,24 +42,24 @@ struct ComponentHealth {
   std::uint32_t pid{};                       ///< operating-system process; 0: none
   HealthState state{HealthState::starting};  ///< degraded: `reason` says why
   std::string reason;                        ///< why the state is degraded, one sentence
-  bool job_silent{};                         ///< a job in the background has given no sign of life for two seconds
-  double cpu{};                              ///< load of one core, 1: fully used
-  double memory_mb{};                        ///< resident memory [MB]
-  double uptime{};                           ///< since the start of the process [s]
-  std::vector<TopicHealth> topics;           ///< one entry per subscription, at most 64
-  std::vector<NamedCount> left_out{};        ///< what quotas have left out since start
+  bool job_silent{};   ///< a job in the background has given no sign of life for two seconds
+  double cpu{};        ///< load of one core, 1: fully used
+  double memory_mb{};  ///< resident memory [MB]
+  double uptime{};     ///< since the start of the process [s]
+  std::vector<TopicHealth> topics;     ///< one entry per subscription, at most 64
+  std::vector<NamedCount> left_out{};  ///< what quotas have left out since start
 };
 
 /// Latches that outlive every process: what a person, a fault or a stop has decided. Topic
 /// SafetyState, profile latch, from the supervisor, which keeps it on disk.
 struct SafetyState {
-  Stamp stamp{};                ///< time of the state, UTC [ns]; `age` of the lost people counts from it
+  Stamp stamp{};  ///< time of the state, UTC [ns]; `age` of the lost people counts from it
   std::uint64_t revision{};     ///< grows with every change, also over restarts; 0: never valid
   bool paused{};                ///< a person paused the robot
   double override_factor{1.0};  ///< speed override a person asked for, [0, 1]
   bool fault{};                 ///< a fault nobody has acknowledged
-  bool awaits_person{};         ///< a protective, user or emergency stop after which nobody has resumed
-  std::string reason;           ///< why it does not permit motion, one sentence; empty: it does
+  bool awaits_person{};  ///< a protective, user or emergency stop after which nobody has resumed
+  std::string reason;    ///< why it does not permit motion, one sentence; empty: it does
   /// People out of sight and not known to have left, in their last known state.
   std::vector<Person> lost{};
 };
@@ -126,17 +126,17 @@ struct StudyMark {
 /// Ground truth of the simulator, for tests and reports only. Topic GroundTruth, profile state, 50
 /// Hz.
 struct GroundTruth {
-  Stamp stamp{};                          ///< time of sending, UTC [ns]; 0: filled in by the bus
-  double sim_time{};                      ///< simulated time since the start of the scenario [s]
-  double real_time_factor{};              ///< simulated time / real time over the last second or more
-  std::string carrier;                    ///< carrier of the watched object: "", "surface", "robot", "both", "human"
-  std::string object;                     ///< id of the watched object
+  Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
+  double sim_time{};          ///< simulated time since the start of the scenario [s]
+  double real_time_factor{};  ///< simulated time / real time over the last second or more
+  std::string carrier;  ///< carrier of the watched object: "", "surface", "robot", "both", "human"
+  std::string object;   ///< id of the watched object
   Pose T_world_object{Pose::Identity()};  ///< its frame in the world
-  std::string hold;                       ///< what the robot holds it by: "", "contact", "constraint"
-  double held_time{};                     ///< how long the robot has held it so far [s]
-  double constraint_time{};               ///< part of `held_time` by the grasp constraint [s]
-  double lifted{};                        ///< height above where it started [m]
-  double max_lifted{};                    ///< while carried by the robot [m]
+  std::string hold;          ///< what the robot holds it by: "", "contact", "constraint"
+  double held_time{};        ///< how long the robot has held it so far [s]
+  double constraint_time{};  ///< part of `held_time` by the grasp constraint [s]
+  double lifted{};           ///< height above where it started [m]
+  double max_lifted{};       ///< while carried by the robot [m]
   /// How long the person's hand touched the object before the release [s].
   double human_contact_before_release{};
   double human_alone{};  ///< how long the person alone has carried it [s]
@@ -144,7 +144,7 @@ struct GroundTruth {
   bool handover_done{};  ///< lifted >= 0.10, contact >= 0.2, alone >= 1
   /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
-  double min_separation{};       ///< smallest `separation` so far [m]; infinity: nobody was there
+  double min_separation{};         ///< smallest `separation` so far [m]; infinity: nobody was there
   std::uint64_t ssm_violations{};  ///< steps with a higher speed toward a person than SSM allows
   double peak_closing_speed{};     ///< of robot and person within 0.5 m [m/s]
   double contact_force{};          ///< largest robot-person contact force so far [N]
@@ -153,11 +153,11 @@ struct GroundTruth {
   std::uint64_t limit_violations{};          ///< set-points beyond the guard limits so far
   std::uint64_t self_or_scene_collisions{};  ///< steps with an unintended robot contact
   std::uint64_t commanders{};                ///< distinct writers of JointCommand seen
-  double setpoint_gap_max{};                 ///< longest time without a set-point since the first [s]
-  std::uint64_t set_points{};                ///< set-points received so far
-  bool robot_moving{};                       ///< any arm axis faster than 1e-3 rad/s
-  std::uint64_t hash{};                      ///< running hash of the physical state: equal seeds, equal hashes
-  std::vector<BodyJoint> person;             ///< true body of the nearest person
+  double setpoint_gap_max{};      ///< longest time without a set-point since the first [s]
+  std::uint64_t set_points{};     ///< set-points received so far
+  bool robot_moving{};            ///< any arm axis faster than 1e-3 rad/s
+  std::uint64_t hash{};           ///< running hash of the physical state: equal seeds, equal hashes
+  std::vector<BodyJoint> person;  ///< true body of the nearest person
 };
 
 }  // namespace handsel

@@ -46,7 +46,15 @@ struct TaskGoal {
   std::string onto;
 };
 
-enum class TaskState : std::uint8_t { accepted, running, paused, succeeded, failed, cancelled, refused };
+enum class TaskState : std::uint8_t {
+  accepted,
+  running,
+  paused,
+  succeeded,
+  failed,
+  cancelled,
+  refused
+};
 /// Returns the word of kTaskStateNames; "unknown" for a value outside the enumeration.
 const char* name(TaskState);
 
@@ -92,7 +100,7 @@ struct ActionGoal {
   bool cancel{};          ///< stop action `id` with jerk-limited motion and report cancelled
   /// Ids of scene object, person and scene box; empty where the kind needs none.
   std::string object, human, surface;
-  bool has_goal{};                      ///< pick, place, regrasp, carry: the final pose of the object is known
+  bool has_goal{};  ///< pick, place, regrasp, carry: the final pose of the object is known
   Pose T_world_goal{Pose::Identity()};  ///< that pose
 };
 
@@ -128,10 +136,10 @@ enum class ActionPhase : std::uint8_t {
   release,
   release_first_hand,
   retreat,
-  backing_off,    ///< after a grasp that failed
-  stepping_back,  ///< a giver has approached
-  retreat_from_person,   ///< a person is too near
-  clear_offer_area,    ///< for an offer
+  backing_off,          ///< after a grasp that failed
+  stepping_back,        ///< a giver has approached
+  retreat_from_person,  ///< a person is too near
+  clear_offer_area,     ///< for an offer
   to_rest,
 };
 
@@ -151,15 +159,15 @@ enum class ActionFailure : std::uint8_t {
 
 /// Topic ActionStatus, profile state, 10 Hz and on change.
 struct ActionStatus {
-  Stamp stamp{};                            ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::uint64_t id{};                       ///< id of the action
-  std::uint64_t task{};                     ///< id of the goal it serves
-  ActionKind kind{};                        ///< kind of the action
-  ActionState state{ActionState::idle};     ///< idle: there was no action yet
-  ActionPhase phase{};                      ///< part of the running action
-  std::string object, human;                ///< scene object id and person id of the action; may be empty
-  bool holding{};                           ///< the hand holds `object`
-  bool exchange_engaged{};                  ///< the exchanging forearm and hand are exempt from separation
+  Stamp stamp{};                         ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::uint64_t id{};                    ///< id of the action
+  std::uint64_t task{};                  ///< id of the goal it serves
+  ActionKind kind{};                     ///< kind of the action
+  ActionState state{ActionState::idle};  ///< idle: there was no action yet
+  ActionPhase phase{};                   ///< part of the running action
+  std::string object, human;  ///< scene object id and person id of the action; may be empty
+  bool holding{};             ///< the hand holds `object`
+  bool exchange_engaged{};    ///< the exchanging forearm and hand are exempt from separation
   Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
   /// Until the object changes hands, as foreseen [s].
   double time_to_handover{std::numeric_limits<double>::infinity()};

@@ -21,8 +21,8 @@ struct ObjectGrip {
 
 /// A movable object of the scene.
 struct SceneObject {
-  std::string id;                         ///< persistent name
-  std::string model;                      ///< name in deploy/objects; empty: unknown, its primitive is what is known
+  std::string id;     ///< persistent name
+  std::string model;  ///< name in deploy/objects; empty: unknown, its primitive is what is known
   Pose T_world_object{Pose::Identity()};  ///< object frame in the world
   Holder holder{Holder::nobody};          ///< nobody: in the air, or unknown
   /// Surface, person, or group of the robot's hand; empty for nobody and the first hand.
@@ -50,10 +50,10 @@ struct Scene {
   std::uint64_t revision{};             ///< grows with every change that matters to a planner
   bool robot_known{};                   ///< a RobotState has arrived
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot, as last measured
-  Vector robot_position;                ///< all axes, as last measured [rad]; empty until robot_known
-  std::vector<SceneObject> objects;     ///< objects known, at most 64
-  std::vector<SceneBox> boxes;          ///< furniture and walls, at most 64
-  std::uint32_t left_out{};             ///< objects and boxes known but left out: farther than those named
+  Vector robot_position;             ///< all axes, as last measured [rad]; empty until robot_known
+  std::vector<SceneObject> objects;  ///< objects known, at most 64
+  std::vector<SceneBox> boxes;       ///< furniture and walls, at most 64
+  std::uint32_t left_out{};  ///< objects and boxes known but left out: farther than those named
 };
 
 enum class Side : std::uint8_t { left, right };
@@ -82,14 +82,14 @@ struct HandPrediction {
 
 /// A person, tracked over all sources.
 struct Person {
-  std::string id;                                                          ///< persistent
-  std::vector<BodyJoint> joints;                                           ///< complete fitted body
-  double stature{1.75};                                                    ///< body height [m]
-  bool gaze_known{};                                                       ///< false: the two gaze fields have no meaning
+  std::string id;                 ///< persistent
+  std::vector<BodyJoint> joints;  ///< complete fitted body
+  double stature{1.75};           ///< body height [m]
+  bool gaze_known{};              ///< false: the two gaze fields have no meaning
   Vector3 gaze_origin{Vector3::Zero()}, gaze_direction{Vector3::UnitX()};  ///< world, unit
   double age{};                                                            ///< since last seen [s]
-  double inflation{};                                                      ///< all body volumes grow by this: v_h * age while lost [m]
-  std::vector<HandPrediction> hands{};                                     ///< the next half second; empty while lost
+  double inflation{};                   ///< all body volumes grow by this: v_h * age while lost [m]
+  std::vector<HandPrediction> hands{};  ///< the next half second; empty while lost
 };
 
 /// What one source of people observes: what makes "nobody is there" a fact. Axis-aligned box in
@@ -97,18 +97,18 @@ struct Person {
 struct SourceView {
   std::string source;                                   ///< name of the sensor
   Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};  ///< corners of the observed box, world [m]
-  double age{};                                         ///< since the capture of its newest image [s]
-  bool live{};                                          ///< its images are new: neither silent, late nor repeated
-  std::string reason;                                   ///< why it is not live, one sentence
+  double age{};        ///< since the capture of its newest image [s]
+  bool live{};         ///< its images are new: neither silent, late nor repeated
+  std::string reason;  ///< why it is not live, one sentence
 };
 
 /// Topic HumanState, profile state. Published at its rate even when nobody is there.
 struct HumanState {
-  Stamp stamp{};                    ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::vector<Person> people;       ///< everybody who may be there, lost people included; at most 16
-  bool covered{};                   ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
+  Stamp stamp{};               ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::vector<Person> people;  ///< everybody who may be there, lost people included; at most 16
+  bool covered{};  ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
   std::vector<SourceView> views{};  ///< of every source
-  std::uint32_t left_out{};         ///< people known but left out: farther from the robot than those named
+  std::uint32_t left_out{};  ///< people known but left out: farther from the robot than those named
 };
 
 enum class FactKind : std::uint8_t {
@@ -167,14 +167,14 @@ inline constexpr const char* kOwnLayers[] = {"safety", "visibility", "arm_comfor
 /// value(i,j,k) at origin + resolution*(i,j,k) in world; 255 = forbidden or out of reach, else
 /// cost*254.
 struct Costmap {
-  Stamp stamp{};                     ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::string layer;                 ///< one of kOwnLayers, or an outside one
-  std::string person;                ///< id of the person it refers to; empty: an outside layer about nobody
-  std::uint64_t revision{};          ///< grows with every new map; a repeated map keeps its number
-  Vector3 origin{Vector3::Zero()};   ///< position of value (0, 0, 0), world [m]
-  double resolution{};               ///< distance of neighbouring points [m]
-  std::uint32_t nx{}, ny{}, nz{};    ///< grid points along x, y and z, at most 1024 each
-  double weight{1};                  ///< factor on an outside layer's cost where planners add it; own layers: 1
+  Stamp stamp{};       ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::string layer;   ///< one of kOwnLayers, or an outside one
+  std::string person;  ///< id of the person it refers to; empty: an outside layer about nobody
+  std::uint64_t revision{};         ///< grows with every new map; a repeated map keeps its number
+  Vector3 origin{Vector3::Zero()};  ///< position of value (0, 0, 0), world [m]
+  double resolution{};              ///< distance of neighbouring points [m]
+  std::uint32_t nx{}, ny{}, nz{};   ///< grid points along x, y and z, at most 1024 each
+  double weight{1};  ///< factor on an outside layer's cost where planners add it; own layers: 1
   std::vector<std::uint8_t> values;  ///< index (k*ny + j)*nx + i
 };
 

@@ -2,10 +2,14 @@
 
 namespace handsel {
 
-ArmReach arm_reach(const RobotModel& robot) { return arm_reach(robot, robot.group("arm"), robot.tool_link()); }
+ArmReach arm_reach(const RobotModel& robot) {
+  return arm_reach(robot, robot.group("arm"), robot.tool_link());
+}
 
 ArmReach arm_reach(const RobotModel& robot, const Group* arm, int palm) {
-  const int first = arm == nullptr || arm->axes.empty() ? -1 : robot.axes()[static_cast<std::size_t>(arm->axes.front())].joint;
+  const int first = arm == nullptr || arm->axes.empty()
+                        ? -1
+                        : robot.axes()[static_cast<std::size_t>(arm->axes.front())].joint;
   ArmReach reach;
   bool whole = false;
   for (int link = palm; link > 0;) {

@@ -33,8 +33,8 @@ class HandModel {
   /// that carries it) as root.
   static HandModel load(const std::filesystem::path& description);
 
-  const std::string& name() const { return name_; }                ///< as in its description
-  const RobotModel& model() const { return model_; }               ///< root link = palm / hand frame
+  const std::string& name() const { return name_; }   ///< as in its description
+  const RobotModel& model() const { return model_; }  ///< root link = palm / hand frame
   const std::vector<Finger>& fingers() const { return fingers_; }  ///< thumb first
   /// Grasp frame: about where contacts happen.
   const Pose& T_hand_grasp() const { return T_hand_grasp_; }

@@ -36,15 +36,18 @@ struct Element {
 
 class Chain {
  public:
-  Chain(const RobotModel& robot, const Group& group, const Vector& q) : size_(static_cast<int>(group.axes.size())) {
+  Chain(const RobotModel& robot, const Group& group, const Vector& q)
+      : size_(static_cast<int>(group.axes.size())) {
     const int kept = std::min(size_, kMaxAxes);  // fits() tells that there are more
     lower_.resize(kept), upper_.resize(kept), rest_.resize(kept);
     for (int i = 0; i < kept; ++i) {
       const Axis& axis = robot.axes()[group.axes[i]];
-      lower_[i] = axis.lower, upper_[i] = axis.upper, rest_[i] = robot.rest_configuration()[group.axes[i]];
+      lower_[i] = axis.lower, upper_[i] = axis.upper,
+      rest_[i] = robot.rest_configuration()[group.axes[i]];
     }
     std::vector<int> path;
-    for (int link = group.tip; robot.links()[link].parent_joint >= 0; link = robot.joints()[path.back()].parent)
+    for (int link = group.tip; robot.links()[link].parent_joint >= 0;
+         link = robot.joints()[path.back()].parent)
       path.push_back(robot.links()[link].parent_joint);
     Pose T = Pose::Identity();
     for (auto j = path.rbegin(); j != path.rend(); ++j) {
@@ -55,7 +58,8 @@ class Chain {
       for (int c = 0; c < kept; ++c)
         if (group.axes[c] == joint.dof) column = c;
       if (column < 0) {
-        const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
+        const double value =
+            (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
         if (joint.kind == JointKind::prismatic)
           T.translation() += T.linear() * (value * joint.axis);
         else
@@ -64,23 +68,28 @@ class Chain {
       }
       const bool prismatic = joint.kind == JointKind::prismatic;
       if (!elements_.empty()) reach_ += T.translation().norm();
-      if (prismatic) reach_ += std::max(std::abs(lower_[column]), std::abs(upper_[column])) * std::abs(joint.mimic_factor);
-      elements_.push_back({T, joint.axis, prismatic, column, joint.mimic_factor, joint.mimic_offset});
+      if (prismatic)
+        reach_ += std::max(std::abs(lower_[column]), std::abs(upper_[column])) *
+                  std::abs(joint.mimic_factor);
+      elements_.push_back(
+          {T, joint.axis, prismatic, column, joint.mimic_factor, joint.mimic_offset});
       T = Pose::Identity();
     }
     T_after_ = T;
     reach_ += T.translation().norm();
   }
 
-  int size() const { return size_; }                                  ///< axes of the group
-  bool empty() const { return elements_.empty(); }                    ///< no axis of the group moves the tip
-  const Axes& lower() const { return lower_; }                        ///< position limits [rad] ([m])
-  const Axes& upper() const { return upper_; }                        ///< position limits [rad] ([m])
-  const Axes& rest() const { return rest_; }                          ///< rest configuration of the group
+  int size() const { return size_; }                ///< axes of the group
+  bool empty() const { return elements_.empty(); }  ///< no axis of the group moves the tip
+  const Axes& lower() const { return lower_; }      ///< position limits [rad] ([m])
+  const Axes& upper() const { return upper_; }      ///< position limits [rad] ([m])
+  const Axes& rest() const { return rest_; }        ///< rest configuration of the group
   const std::vector<Element>& elements() const { return elements_; }  ///< from root to tip
   /// Returns false for points (root frame [m]) that the tip cannot reach; true is no promise. The
   /// chain must not be empty.
-  bool within_reach(const Vector3& p) const { return (p - elements_.front().T_before.translation()).norm() <= reach_ + 1e-6; }
+  bool within_reach(const Vector3& p) const {
+    return (p - elements_.front().T_before.translation()).norm() <= reach_ + 1e-6;
+  }
 
   /// Returns the tip's pose in the root frame and writes its Jacobian (linear, then angular; root
   /// axes) unless J is null.

@@ -1,6 +1,7 @@
-// Closed form where the chain is shoulder-elbow-wrist (srs_arm.hpp); else damped least squares (Levenberg-Marquardt, damping by the
-// remaining error) on the chain of one group: joints that reach a limit are frozen there and the rest solved again; the null space pulls
-// toward the rest posture; seeded restarts. Ours.
+// Closed form where the chain is shoulder-elbow-wrist (srs_arm.hpp); else damped least squares
+// (Levenberg-Marquardt, damping by the remaining error) on the chain of one group: joints that
+// reach a limit are frozen there and the rest solved again; the null space pulls toward the rest
+// posture; seeded restarts. Ours.
 #include <Eigen/Cholesky>
 
 #include <cmath>
@@ -25,8 +26,10 @@ using ik::Jacobian;
 using ik::kMaxAxes;
 using ik::Vector6;
 
-/// One step; joints that would leave their range are put on the limit and the others make up for it.
-Axes step_of(const Chain& chain, const Axes& q, const Jacobian& J, const Vector6& error, double damping, double pull) {
+/// One step; joints that would leave their range are put on the limit and the others make up for
+/// it.
+Axes step_of(const Chain& chain, const Axes& q, const Jacobian& J, const Vector6& error,
+             double damping, double pull) {
   const int n = chain.size();
   Axes dq = Axes::Zero(n);
   bool frozen[kMaxAxes] = {};
@@ -58,13 +61,16 @@ Axes step_of(const Chain& chain, const Axes& q, const Jacobian& J, const Vector6
   return dq;
 }
 
-bool converge(const Chain& chain, const Pose& target, const IkOptions& options, double pull, Axes& q) {
+bool converge(const Chain& chain, const Pose& target, const IkOptions& options, double pull,
+              Axes& q) {
   Jacobian J;
   double best = std::numeric_limits<double>::infinity();
   int patience = kPatience;
   for (int i = 0; i < options.max_iterations; ++i) {
     Vector6 error = error_of(target, chain.forward(q, &J));
-    if (error.head<3>().norm() <= options.position_tolerance && error.tail<3>().norm() <= options.angle_tolerance) return true;
+    if (error.head<3>().norm() <= options.position_tolerance &&
+        error.tail<3>().norm() <= options.angle_tolerance)
+      return true;
     error.tail<3>() *= kMetresPerRadian;
     J.bottomRows<3>() *= kMetresPerRadian;
     const double size = error.squaredNorm();
@@ -82,11 +88,12 @@ bool converge(const Chain& chain, const Pose& target, const IkOptions& options, 
 
 }  // namespace
 
-std::optional<Vector> RobotModel::inverse(const Group& group, const Pose& T_root_tip, const Vector& q_seed,
-                                          const IkOptions& options) const {
+std::optional<Vector> RobotModel::inverse(const Group& group, const Pose& T_root_tip,
+                                          const Vector& q_seed, const IkOptions& options) const {
   if (group.tip < 0 || group.axes.empty()) return std::nullopt;
   const Chain chain(*this, group, q_seed);
-  if (chain.empty() || !chain.fits() || !T_root_tip.matrix().allFinite() || !chain.within_reach(T_root_tip.translation()))
+  if (chain.empty() || !chain.fits() || !T_root_tip.matrix().allFinite() ||
+      !chain.within_reach(T_root_tip.translation()))
     return std::nullopt;
 
   Axes q(chain.size());
@@ -96,7 +103,8 @@ std::optional<Vector> RobotModel::inverse(const Group& group, const Pose& T_root
     const auto solution = arm->solve(T_root_tip, q);
     if (!solution || solution->outside > kWorthTrying) return std::nullopt;
     q = solution->q;
-    if (solution->outside < kOnLimit || converge(chain, T_root_tip, options, 0.0, q)) return Vector(q);
+    if (solution->outside < kOnLimit || converge(chain, T_root_tip, options, 0.0, q))
+      return Vector(q);
     return std::nullopt;
   }
   if (converge(chain, T_root_tip, options, kPullNearSeed, q)) return Vector(q);
@@ -105,7 +113,8 @@ std::optional<Vector> RobotModel::inverse(const Group& group, const Pose& T_root
   const auto uniform = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
   for (int restart = 0; restart < options.restarts; ++restart) {
     for (int i = 0; i < chain.size(); ++i)
-      q[i] = restart == 0 ? chain.rest()[i] : chain.lower()[i] + uniform() * (chain.upper()[i] - chain.lower()[i]);
+      q[i] = restart == 0 ? chain.rest()[i]
+                          : chain.lower()[i] + uniform() * (chain.upper()[i] - chain.lower()[i]);
     if (converge(chain, T_root_tip, options, kPullElsewhere, q)) return Vector(q);
   }
   return std::nullopt;

@@ -22,9 +22,12 @@ bool hangs_on(const RobotModel& robot, int link, int of) {
 const Group* carrier(const RobotModel& robot, const Group& fingers) {
   const Group* nearest = nullptr;
   for (const Group& arm : robot.groups()) {
-    if (arm.tip < 0 || arm.axes.empty() || (nearest != nullptr && !hangs_on(robot, arm.tip, nearest->tip))) continue;
+    if (arm.tip < 0 || arm.axes.empty() ||
+        (nearest != nullptr && !hangs_on(robot, arm.tip, nearest->tip)))
+      continue;
     const bool carries = std::all_of(fingers.axes.begin(), fingers.axes.end(), [&](int axis) {
-      const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.axes()[static_cast<std::size_t>(axis)].joint)];
+      const Joint& joint = robot.joints()[static_cast<std::size_t>(
+          robot.axes()[static_cast<std::size_t>(axis)].joint)];
       return hangs_on(robot, joint.parent, arm.tip);
     });
     if (carries) nearest = &arm;
@@ -37,7 +40,8 @@ const Group* carrier(const RobotModel& robot, const Group& fingers) {
 std::vector<Manipulator> hands_of(const RobotModel& robot) {
   std::vector<Manipulator> out;
   if (robot.tool_link() >= 0 || robot.group("hand") != nullptr)
-    out.push_back({"arm", robot.group("arm"), robot.group("hand"), robot.hand(), robot.tool_link()});
+    out.push_back(
+        {"arm", robot.group("arm"), robot.group("hand"), robot.hand(), robot.tool_link()});
   for (const Group& fingers : robot.groups()) {
     if (fingers.tip >= 0 || fingers.axes.empty() || fingers.name == "hand") continue;
     const Group* arm = carrier(robot, fingers);
@@ -50,15 +54,18 @@ std::vector<Manipulator> hands_of(const RobotModel& robot) {
 int hand_index(const std::vector<Manipulator>& hands, const std::string& fingers) {
   if (fingers.empty()) return hands.empty() ? -1 : 0;
   for (std::size_t i = 0; i < hands.size(); ++i)
-    if (hands[i].fingers != nullptr && hands[i].fingers->name == fingers) return static_cast<int>(i);
+    if (hands[i].fingers != nullptr && hands[i].fingers->name == fingers)
+      return static_cast<int>(i);
   return -1;
 }
 
-std::vector<Manipulator> manipulators(const std::filesystem::path& description, const RobotModel& robot) {
+std::vector<Manipulator> manipulators(const std::filesystem::path& description,
+                                      const RobotModel& robot) {
   config::RobotDescription text;
   load_text_proto(description, text);
   std::vector<Manipulator> out;
-  const auto add = [&](const std::string& field, const std::string& arm, const std::string& fingers, const std::string& hand) {
+  const auto add = [&](const std::string& field, const std::string& arm, const std::string& fingers,
+                       const std::string& hand) {
     Manipulator m;
     m.name = arm;
     m.arm = robot.group(arm);
@@ -74,8 +81,10 @@ std::vector<Manipulator> manipulators(const std::filesystem::path& description, 
     if (m.palm < 0) fault("group \"" + arm + "\" has no tip_link, the palm of its hand");
     out.push_back(m);
   };
-  if (robot.group("arm") != nullptr && !robot.hand().empty()) add("arm", "arm", "hand", robot.hand());
-  for (const config::OtherArm& other : text.other_arms()) add("other_arms", other.arm(), other.hand_group(), other.hand());
+  if (robot.group("arm") != nullptr && !robot.hand().empty())
+    add("arm", "arm", "hand", robot.hand());
+  for (const config::OtherArm& other : text.other_arms())
+    add("other_arms", other.arm(), other.hand_group(), other.hand());
   return out;
 }
 

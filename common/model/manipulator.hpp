@@ -29,6 +29,7 @@ int hand_index(const std::vector<Manipulator>& hands, const std::string& fingers
 /// `description`: the file `robot` was loaded from; `robot` must outlive what is returned.
 /// ConfigError naming file and field when an arm's groups are not there, or the arm has no
 /// tip_link.
-std::vector<Manipulator> manipulators(const std::filesystem::path& description, const RobotModel& robot);
+std::vector<Manipulator> manipulators(const std::filesystem::path& description,
+                                      const RobotModel& robot);
 
 }  // namespace handsel

@@ -24,7 +24,8 @@ Eigen::AlignedBox3d object_extent(const ObjectModel* model, const Primitive& pri
     for (const Vector3& vertex : model->mesh.vertices) box.extend(vertex);
   if (const auto shape = primitive_shape(primitive); box.isEmpty() && shape) {
     Vector3 half = primitive.size / 2;
-    if (primitive.kind == PrimitiveKind::cylinder) half.head<2>().setConstant(half.head<2>().maxCoeff());
+    if (primitive.kind == PrimitiveKind::cylinder)
+      half.head<2>().setConstant(half.head<2>().maxCoeff());
     if (primitive.kind == PrimitiveKind::sphere) half.setConstant(half.maxCoeff());
     box.extend(half).extend(-half);
   }

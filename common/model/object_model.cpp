@@ -12,24 +12,30 @@ namespace {
 
 Shape to_shape(const config::ObjectPart& part, const fs::path& file, const Vector3& scale) {
   const auto positive = [&](double value, const char* key) {
-    if (!(value > 0) || !std::isfinite(value)) throw ConfigError(locate(file, key) + ": " + key + " of a part must be > 0");
+    if (!(value > 0) || !std::isfinite(value))
+      throw ConfigError(locate(file, key) + ": " + key + " of a part must be > 0");
     return value;
   };
   switch (part.shape_case()) {
     case config::ObjectPart::kBox:
-      return Box{{positive(part.box().x(), "box"), positive(part.box().y(), "box"), positive(part.box().z(), "box")}};
+      return Box{{positive(part.box().x(), "box"), positive(part.box().y(), "box"),
+                  positive(part.box().z(), "box")}};
     case config::ObjectPart::kCylinder:
-      return Cylinder{positive(part.cylinder().radius(), "cylinder"), positive(part.cylinder().length(), "cylinder")};
+      return Cylinder{positive(part.cylinder().radius(), "cylinder"),
+                      positive(part.cylinder().length(), "cylinder")};
     case config::ObjectPart::kCapsule:
-      return Capsule{positive(part.capsule().radius(), "capsule"), positive(part.capsule().length(), "capsule")};
+      return Capsule{positive(part.capsule().radius(), "capsule"),
+                     positive(part.capsule().length(), "capsule")};
     case config::ObjectPart::kSphere:
       return Sphere{positive(part.sphere(), "sphere")};
     case config::ObjectPart::kConvexMesh:
-      return std::make_shared<const TriangleMesh>(load_mesh(file.parent_path() / part.convex_mesh(), scale));
+      return std::make_shared<const TriangleMesh>(
+          load_mesh(file.parent_path() / part.convex_mesh(), scale));
     case config::ObjectPart::SHAPE_NOT_SET:
       break;
   }
-  throw ConfigError(locate(file, "parts") + ": a part needs a shape: box, cylinder, capsule, sphere or convex_mesh");
+  throw ConfigError(locate(file, "parts") +
+                    ": a part needs a shape: box, cylinder, capsule, sphere or convex_mesh");
 }
 
 }  // namespace
@@ -37,11 +43,14 @@ Shape to_shape(const config::ObjectPart& part, const fs::path& file, const Vecto
 ObjectModel ObjectModel::load(const fs::path& description) {
   config::ObjectDescription text;
   load_text_proto(description, text);
-  const auto fail = [&](const char* key, const std::string& what) { return ConfigError(locate(description, key) + ": " + what); };
+  const auto fail = [&](const char* key, const std::string& what) {
+    return ConfigError(locate(description, key) + ": " + what);
+  };
   if (text.name().empty()) throw fail("name", "name is missing");
   if (text.mesh().empty()) throw fail("mesh", "mesh is missing");
   if (!(text.mass() > 0) || !std::isfinite(text.mass())) throw fail("mass", "mass must be > 0");
-  if (!(text.friction() >= 0) || !std::isfinite(text.friction())) throw fail("friction", "friction must be >= 0");
+  if (!(text.friction() >= 0) || !std::isfinite(text.friction()))
+    throw fail("friction", "friction must be >= 0");
 
   ObjectModel object;
   object.name = text.name();
@@ -55,8 +64,10 @@ ObjectModel ObjectModel::load(const fs::path& description) {
     low = low.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  object.height_above_support = text.height_above_support() != 0 ? text.height_above_support() : -low.z();
-  for (const auto& part : text.parts()) object.parts.push_back({to_shape(part, description, scale), to_pose(part.pose())});
+  object.height_above_support =
+      text.height_above_support() != 0 ? text.height_above_support() : -low.z();
+  for (const auto& part : text.parts())
+    object.parts.push_back({to_shape(part, description, scale), to_pose(part.pose())});
   if (object.parts.empty()) object.parts.push_back({Box{high - low}, make_pose((low + high) / 2)});
   return object;
 }

@@ -19,19 +19,22 @@ Vector longer(const Vector& of_robot, double linear, double angular) {
 }
 
 KinematicLimits longer(const KinematicLimits& of_robot, double speed, double turn_speed) {
-  return {longer(of_robot.velocity, speed, turn_speed), longer(of_robot.acceleration, 2 * speed, 2 * turn_speed),
+  return {longer(of_robot.velocity, speed, turn_speed),
+          longer(of_robot.acceleration, 2 * speed, 2 * turn_speed),
           longer(of_robot.jerk, 6 * speed, 6 * turn_speed)};
 }
 
 }  // namespace
 
-RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed, double turn_speed) {
+RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
+                                          double turn_speed) {
   RobotModel out = robot;
   const char* names[kAdded] = {"platform_x", "platform_y", "platform_heading"};
   std::vector<Link> links(kAdded);
   std::vector<Joint> joints(kAdded);
   for (int i = 0; i < kAdded; ++i) {
-    links[static_cast<std::size_t>(i)].name = i == 0 ? "world" : std::string(names[i - 1]) + "_carriage";
+    links[static_cast<std::size_t>(i)].name =
+        i == 0 ? "world" : std::string(names[i - 1]) + "_carriage";
     links[static_cast<std::size_t>(i)].parent_joint = i - 1;
     Joint& joint = joints[static_cast<std::size_t>(i)];
     const double most = i < 2 ? kPlatformExtent : kMostHeading;
@@ -65,7 +68,8 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
     if (group.tip >= 0) group.tip += kAdded;
   if (out.tool_ >= 0) out.tool_ += kAdded;
   if (out.gaze_ >= 0) out.gaze_ += kAdded;
-  Group platform{kPlatformGroup, {robot.dof(), robot.dof() + 1, robot.dof() + 2}, kAdded}, whole = platform;
+  Group platform{kPlatformGroup, {robot.dof(), robot.dof() + 1, robot.dof() + 2}, kAdded},
+      whole = platform;
   whole.name = kWholeRobotGroup;
   if (const Group* arm = out.group("arm")) {
     whole.axes.insert(whole.axes.end(), arm->axes.begin(), arm->axes.end());
@@ -77,7 +81,8 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
   out.disabled_pairs_.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), true);
   for (int a = kAdded; a < n; ++a)
     for (int b = kAdded; b < n; ++b)
-      out.disabled_pairs_[static_cast<std::size_t>(a) * static_cast<std::size_t>(n) + static_cast<std::size_t>(b)] =
+      out.disabled_pairs_[static_cast<std::size_t>(a) * static_cast<std::size_t>(n) +
+                          static_cast<std::size_t>(b)] =
           robot.pair_disabled(a - kAdded, b - kAdded);
   out.comfort_ = longer(robot.comfort_, speed, turn_speed);
   out.guard_ = longer(robot.guard_, kGuardMargin * speed, kGuardMargin * turn_speed);
@@ -86,16 +91,19 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
   return out;
 }
 
-std::optional<RobotModel> on_platform(const RobotModel& robot, const std::filesystem::path& description) {
+std::optional<RobotModel> on_platform(const RobotModel& robot,
+                                      const std::filesystem::path& description) {
   config::RobotDescription text;
   load_text_proto(description, text);
   if (!text.has_platform()) return std::nullopt;
   const double speed = text.platform().speed(), turn_speed = text.platform().turn_speed();
   for (const double value : {speed, turn_speed})
-    if (!(value > 0) || !std::isfinite(value)) throw ConfigError(description.string() + ": platform.speed and turn_speed must be > 0");
+    if (!(value > 0) || !std::isfinite(value))
+      throw ConfigError(description.string() + ": platform.speed and turn_speed must be > 0");
   for (const char* name : {kPlatformGroup, kWholeRobotGroup})
     if (robot.group(name) != nullptr)
-      throw ConfigError(description.string() + ": a group is called \"" + name + "\", which a robot with a platform has by itself");
+      throw ConfigError(description.string() + ": a group is called \"" + name +
+                        "\", which a robot with a platform has by itself");
   return RobotModelBuilder::on_platform(robot, speed, turn_speed);
 }
 
@@ -106,6 +114,8 @@ Vector with_platform(const Vector& q, const Pose& T_world_base) {
   return out;
 }
 
-double nearest_heading(double heading, double near) { return near + std::remainder(heading - near, 2 * M_PI); }
+double nearest_heading(double heading, double near) {
+  return near + std::remainder(heading - near, 2 * M_PI);
+}
 
 }  // namespace handsel

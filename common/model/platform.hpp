@@ -19,7 +19,8 @@ inline constexpr double kPlatformExtent = 20.0;
 /// The robot with three more axes after its own: x, y [m] and heading [rad] of its root link in the
 /// world, which is the root of this model; with the groups above. nullopt where the description
 /// has no platform. Throws ConfigError.
-std::optional<RobotModel> on_platform(const RobotModel& robot, const std::filesystem::path& description);
+std::optional<RobotModel> on_platform(const RobotModel& robot,
+                                      const std::filesystem::path& description);
 
 /// All axes of the robot, then where its platform is.
 Vector with_platform(const Vector& q, const Pose& T_world_base);

@@ -35,7 +35,9 @@ Fit fit_along(const Points& points, const Vector3& axis) {
   radius = radius * 1.03 + 1e-9;
   double top = 0, bottom = 0;
   for (const auto& p : points) {
-    const double along = axis.dot(p - centre), cap = std::sqrt(std::max(radius * radius - axis.cross(p - centre).squaredNorm(), 0.0));
+    const double along = axis.dot(p - centre),
+                 cap = std::sqrt(
+                     std::max(radius * radius - axis.cross(p - centre).squaredNorm(), 0.0));
     top = std::max(top, along - cap);
     bottom = std::min(bottom, along + cap);
   }
@@ -48,10 +50,11 @@ Fit fit(const Points& points) {
   mean /= static_cast<double>(points.size());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const auto& p : points) covariance += (p - mean) * (p - mean).transpose();
-  const Eigen::Matrix3d main = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  const Eigen::Matrix3d main =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
   Fit best = fit_along(points, Vector3::UnitX());
-  for (const Vector3& axis :
-       {Vector3(Vector3::UnitY()), Vector3(Vector3::UnitZ()), Vector3(main.col(0)), Vector3(main.col(1)), Vector3(main.col(2))})
+  for (const Vector3& axis : {Vector3(Vector3::UnitY()), Vector3(Vector3::UnitZ()),
+                              Vector3(main.col(0)), Vector3(main.col(1)), Vector3(main.col(2))})
     if (const Fit other = fit_along(points, axis); other.volume() < best.volume()) best = other;
   return best;
 }
@@ -60,7 +63,8 @@ Fit fit(const Points& points) {
 void fit_box(const Vector3& size, std::vector<Fit>& out) {
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int i, int k) { return size[i] > size[k]; });
-  const int strips = std::clamp(static_cast<int>(std::ceil(size[order[1]] / std::max(size[order[2]], 0.05))), 1, 4);
+  const int strips = std::clamp(
+      static_cast<int>(std::ceil(size[order[1]] / std::max(size[order[2]], 0.05))), 1, 4);
   for (int s = 0; s < strips; ++s) {
     const double width = size[order[1]] / strips;
     Points corners;
@@ -77,14 +81,20 @@ void fit_box(const Vector3& size, std::vector<Fit>& out) {
 
 struct Fitter {
   std::vector<Fit>& out;
-  void operator()(const Sphere& s) const { out.push_back({Vector3::Zero(), Vector3::Zero(), s.radius}); }
+  void operator()(const Sphere& s) const {
+    out.push_back({Vector3::Zero(), Vector3::Zero(), s.radius});
+  }
   void operator()(const Box& b) const { fit_box(b.size, out); }
   void operator()(const Cylinder& c) const {
-    const double radius = std::max(c.radius * 1.08, c.length / 2 < 0.4 * c.radius ? std::hypot(c.radius, c.length / 2) : 0.0);
-    const double half = std::max(c.length / 2 - std::sqrt(radius * radius - c.radius * c.radius), 0.0);
+    const double radius = std::max(
+        c.radius * 1.08, c.length / 2 < 0.4 * c.radius ? std::hypot(c.radius, c.length / 2) : 0.0);
+    const double half =
+        std::max(c.length / 2 - std::sqrt(radius * radius - c.radius * c.radius), 0.0);
     out.push_back({{0, 0, -half}, {0, 0, half}, radius});
   }
-  void operator()(const Capsule& c) const { out.push_back({{0, 0, -c.length / 2}, {0, 0, c.length / 2}, c.radius}); }
+  void operator()(const Capsule& c) const {
+    out.push_back({{0, 0, -c.length / 2}, {0, 0, c.length / 2}, c.radius});
+  }
   void operator()(const MeshPtr& m) const { out.push_back(fit(m->vertices)); }
 };
 
@@ -105,13 +115,15 @@ std::vector<LinkCapsule> robot_capsules(const RobotModel& robot) {
       std::vector<Fit> fits;
       std::visit(Fitter{fits}, placed.shape);
       for (const auto& f : fits)
-        capsules.push_back({static_cast<int>(link), placed.T_parent_shape * f.a, placed.T_parent_shape * f.b, f.radius});
+        capsules.push_back({static_cast<int>(link), placed.T_parent_shape * f.a,
+                            placed.T_parent_shape * f.b, f.radius});
     }
   return capsules;
 }
 
-Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link, const Pose& T_world_base,
-                      const HumanState& people, const SeparationExemption& exception) {
+Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link,
+                      const Pose& T_world_base, const HumanState& people,
+                      const SeparationExemption& exception) {
   Separation best;
   best.distance = std::numeric_limits<double>::infinity();
   const Person* nearest = nullptr;
@@ -130,13 +142,15 @@ Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<P
     }
     for (const auto& capsule : robot) {
       const Pose& T = T_root_link[capsule.link];
-      const Vector3 a = T_world_base * (T * capsule.a), b = T_world_base * (T * capsule.b), m = (a + b) / 2;
+      const Vector3 a = T_world_base * (T * capsule.a), b = T_world_base * (T * capsule.b),
+                    m = (a + b) / 2;
       const double extent = (a - b).norm() / 2 + capsule.radius;
       for (std::size_t i = 0; i < body.size(); ++i) {
         const double bound = best.distance + extent + size[i];
         if (skip[i] || (bound > 0 && (m - middle[i]).squaredNorm() > bound * bound)) continue;
         Vector3 on_robot, on_person;
-        const double axes_apart = std::sqrt(nearest_points(a, b, body[i].a, body[i].b, on_robot, on_person));
+        const double axes_apart =
+            std::sqrt(nearest_points(a, b, body[i].a, body[i].b, on_robot, on_person));
         const double distance = axes_apart - capsule.radius - body[i].radius;
         if (distance >= best.distance) continue;
         best.distance = distance;

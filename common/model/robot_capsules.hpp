@@ -22,10 +22,10 @@ std::vector<LinkCapsule> robot_capsules(const RobotModel&);
 
 /// Nearest approach of robot and person.
 struct Separation {
-  double distance{};                                              ///< [m], may be negative when overlapping; +inf if nobody
-  int link{-1};                                                   ///< of the robot; -1 if nobody
-  BodyPart part{};                                                ///< of that person
-  std::string person;                                             ///< id; empty if nobody
+  double distance{};   ///< [m], may be negative when overlapping; +inf if nobody
+  int link{-1};        ///< of the robot; -1 if nobody
+  BodyPart part{};     ///< of that person
+  std::string person;  ///< id; empty if nobody
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< world [m]
 };
 
@@ -38,7 +38,8 @@ struct SeparationExemption {
 
 /// Returns the nearest approach; T_root_link from RobotModel::forward. Allocates nothing (person
 /// ids up to 15 characters, complete bodies).
-Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link, const Pose& T_world_base,
-                      const HumanState& people, const SeparationExemption& exception = {});
+Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link,
+                      const Pose& T_world_base, const HumanState& people,
+                      const SeparationExemption& exception = {});
 
 }  // namespace handsel

@@ -6,11 +6,13 @@ namespace {
 void advance(const Joint& joint, const Vector& q, const Pose& T_root_parent, Pose& T_root_child) {
   T_root_child = T_root_parent * joint.T_parent_joint;
   if (joint.kind == JointKind::fixed) return;
-  const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
+  const double value =
+      (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
   if (joint.kind == JointKind::prismatic)
     T_root_child.translation() += T_root_child.linear() * (value * joint.axis);
   else
-    T_root_child.linear() = T_root_child.linear() * Eigen::AngleAxisd(value, joint.axis).toRotationMatrix();
+    T_root_child.linear() =
+        T_root_child.linear() * Eigen::AngleAxisd(value, joint.axis).toRotationMatrix();
 }
 
 }  // namespace
@@ -35,13 +37,15 @@ const Group& RobotModel::require_group(const std::string& name) const {
 }
 
 bool RobotModel::pair_disabled(int link_a, int link_b) const {
-  return disabled_pairs_[static_cast<std::size_t>(link_a) * links_.size() + static_cast<std::size_t>(link_b)];
+  return disabled_pairs_[static_cast<std::size_t>(link_a) * links_.size() +
+                         static_cast<std::size_t>(link_b)];
 }
 
 void RobotModel::forward(const Vector& q, std::vector<Pose>& T_root_link) const {
   T_root_link.resize(links_.size());
   T_root_link[0].setIdentity();
-  for (const auto& joint : joints_) advance(joint, q, T_root_link[joint.parent], T_root_link[joint.child]);
+  for (const auto& joint : joints_)
+    advance(joint, q, T_root_link[joint.parent], T_root_link[joint.child]);
 }
 
 Pose RobotModel::link_pose(const Vector& q, int link) const {
@@ -77,13 +81,15 @@ Eigen::MatrixXd RobotModel::jacobian(const Vector& q, const Group& group) const 
 
 Vector RobotModel::with(const Vector& q, const Group& group, const Vector& group_q) {
   Vector out = q;
-  for (std::size_t i = 0; i < group.axes.size(); ++i) out[group.axes[i]] = group_q[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < group.axes.size(); ++i)
+    out[group.axes[i]] = group_q[static_cast<Eigen::Index>(i)];
   return out;
 }
 
 Vector RobotModel::part(const Vector& q, const Group& group) {
   Vector out(static_cast<Eigen::Index>(group.axes.size()));
-  for (std::size_t i = 0; i < group.axes.size(); ++i) out[static_cast<Eigen::Index>(i)] = q[group.axes[i]];
+  for (std::size_t i = 0; i < group.axes.size(); ++i)
+    out[static_cast<Eigen::Index>(i)] = q[group.axes[i]];
   return out;
 }
 

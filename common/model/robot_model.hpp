@@ -27,12 +27,12 @@ struct Link {
 enum class JointKind { fixed, revolute, continuous, prismatic };
 
 struct Joint {
-  std::string name;                             ///< as in the URDF
-  JointKind kind{JointKind::fixed};             ///< planar and floating joints of the URDF are fixed ones
-  int parent{}, child{};                        ///< link indices
-  Pose T_parent_joint{Pose::Identity()};        ///< joint frame in the parent link's
-  Vector3 axis{Vector3::UnitZ()};               ///< joint frame, unit
-  int dof{-1};                                  ///< axis that drives it, own or mimicked; -1: fixed, or held at mimic_offset
+  std::string name;                       ///< as in the URDF
+  JointKind kind{JointKind::fixed};       ///< planar and floating joints of the URDF are fixed ones
+  int parent{}, child{};                  ///< link indices
+  Pose T_parent_joint{Pose::Identity()};  ///< joint frame in the parent link's
+  Vector3 axis{Vector3::UnitZ()};         ///< joint frame, unit
+  int dof{-1};  ///< axis that drives it, own or mimicked; -1: fixed, or held at mimic_offset
   double mimic_factor{1.0}, mimic_offset{0.0};  ///< value = factor * q[dof] + offset
   bool is_mimic{false};                         ///< follows the axis of another joint
   double lower{}, upper{};                      ///< [rad] or [m]
@@ -76,7 +76,8 @@ class RobotModel {
   /// v (the chapter's planning ratio), comfort = guard / 1.1. Continuous joints get two turns;
   /// planar and floating joints are held. package:// is searched for in the URDF's folder and the
   /// folders above it.
-  static RobotModel load_urdf(const std::filesystem::path& urdf, const std::filesystem::path& srdf = {}, Meshes meshes = Meshes::load);
+  static RobotModel load_urdf(const std::filesystem::path& urdf,
+                              const std::filesystem::path& srdf = {}, Meshes meshes = Meshes::load);
 
   /// As in the description; of a bare URDF the robot's name in it.
   const std::string& name() const { return name_; }
@@ -101,8 +102,8 @@ class RobotModel {
   const Vector& rest_configuration() const { return rest_; }  ///< all axes
   int tool_link() const { return tool_; }                     ///< hand frame; -1 if none
   int redundancy_axis() const { return redundancy_; }         ///< -1 if none
-  const std::string& hand() const { return hand_; }           ///< name of the hand description, may be empty
-  int gaze_link() const { return gaze_; }                     ///< camera link, x forward; -1 if none
+  const std::string& hand() const { return hand_; }  ///< name of the hand description, may be empty
+  int gaze_link() const { return gaze_; }            ///< camera link, x forward; -1 if none
 
   /// Poses of all links in the root frame for the positions of all axes. `T_root_link` is resized
   /// once, then reused.
@@ -113,7 +114,8 @@ class RobotModel {
   /// Group axes such that the group's tip is at T_root_tip; the other axes as in q_seed. Inside
   /// position limits, near q_seed first, null-space pull toward the rest configuration. nullopt
   /// when none is found.
-  std::optional<Vector> inverse(const Group& group, const Pose& T_root_tip, const Vector& q_seed, const IkOptions& = {}) const;
+  std::optional<Vector> inverse(const Group& group, const Pose& T_root_tip, const Vector& q_seed,
+                                const IkOptions& = {}) const;
 
   /// Returns q with the group's entries replaced by group_q.
   static Vector with(const Vector& q, const Group& group, const Vector& group_q);

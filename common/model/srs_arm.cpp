@@ -24,7 +24,9 @@ bool meet(const Vector3& p, const Vector3& a, const Vector3& q, const Vector3& b
   return std::abs((q - p).dot(n)) < kSame;
 }
 
-bool on_line(const Vector3& x, const Vector3& p, const Vector3& a) { return a.cross(x - p).norm() < kSame; }
+bool on_line(const Vector3& x, const Vector3& p, const Vector3& a) {
+  return a.cross(x - p).norm() < kSame;
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ struct SrsArm::Problem {
 std::string SrsArm::why_none(const Group& group) {
   const std::size_t axes = group.axes.size();
   return axes == 7 ? "the axes of the group \"" + group.name +
-                         "\" do not meet in shoulder, elbow and wrist: they do not follow from tool pose and elbow angle"
+                         "\" do not meet in shoulder, elbow and wrist: they do not follow from "
+                         "tool pose and elbow angle"
                    : "the group \"" + group.name + "\" has " + std::to_string(axes) +
                          " axes; the seven of an arm with shoulder, elbow and wrist are needed";
 }
@@ -63,9 +66,13 @@ std::optional<SrsArm> SrsArm::recognise(const Chain& chain) {
   }
   const auto& a = arm.axis_;
   Vector3 elbow, wrist;
-  if (!meet(point[0], a[0], point[1], a[1], arm.shoulder_) || !on_line(arm.shoulder_, point[2], a[2])) return std::nullopt;
-  if (!meet(point[4], a[4], point[5], a[5], wrist) || !on_line(wrist, point[6], a[6])) return std::nullopt;
-  if (!meet(point[2], a[2], point[3], a[3], elbow) || !on_line(elbow, point[4], a[4])) return std::nullopt;
+  if (!meet(point[0], a[0], point[1], a[1], arm.shoulder_) ||
+      !on_line(arm.shoulder_, point[2], a[2]))
+    return std::nullopt;
+  if (!meet(point[4], a[4], point[5], a[5], wrist) || !on_line(wrist, point[6], a[6]))
+    return std::nullopt;
+  if (!meet(point[2], a[2], point[3], a[3], elbow) || !on_line(elbow, point[4], a[4]))
+    return std::nullopt;
   for (const auto& [i, k] : {std::pair(0, 2), std::pair(4, 6), std::pair(2, 4)})
     if (a[i].cross(a[k]).norm() > kSame) return std::nullopt;
   arm.to_elbow_ = elbow - arm.shoulder_;
@@ -88,14 +95,17 @@ double SrsArm::axis_cost(const Problem& problem, int axis, double& angle) const 
   if (angle > high && angle - 2 * M_PI >= low) angle -= 2 * M_PI;
   const double outside = std::max({low - angle, angle - high, 0.0});
   if (outside > M_PI) angle = wrap(angle);
-  const double inside = std::min(angle - low, high - angle), tight = std::max(kMargin - inside, 0.0);
+  const double inside = std::min(angle - low, high - angle),
+               tight = std::max(kMargin - inside, 0.0);
   const double from_seed = angle - seed, from_rest = angle - chain_->rest()[axis];
-  return from_seed * from_seed + kRestWeight * from_rest * from_rest + kMarginWeight * tight * tight +
-         kViolation * std::max({low - angle, angle - high, 0.0});
+  return from_seed * from_seed + kRestWeight * from_rest * from_rest +
+         kMarginWeight * tight * tight + kViolation * std::max({low - angle, angle - high, 0.0});
 }
 
-/// The two ways to split R into turns about three axes from `first`; one, twice, when they are in line.
-SrsArm::Solutions SrsArm::solutions(const Eigen::Matrix3d& R, int first, double first_when_in_line) const {
+/// The two ways to split R into turns about three axes from `first`; one, twice, when they are in
+/// line.
+SrsArm::Solutions SrsArm::solutions(const Eigen::Matrix3d& R, int first,
+                                    double first_when_in_line) const {
   const Eigen::Matrix3d& B = basis_[first / 4];
   const Eigen::Matrix3d Z = B.transpose() * R * B;
   const double sine = std::hypot(Z(0, 2), Z(1, 2)), middle = std::atan2(sine, Z(2, 2));
@@ -113,7 +123,8 @@ SrsArm::Solutions SrsArm::solutions(const Eigen::Matrix3d& R, int first, double 
 }
 
 /// Of the two ways the cheaper one goes into the candidate.
-void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const {
+void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first,
+                    Candidate& candidate) const {
   double best = std::numeric_limits<double>::infinity();
   std::array<double, 3> chosen{};
   for (std::array<double, 3> q : solutions(R, first, problem.seed[first])) {
@@ -128,7 +139,8 @@ void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first,
 SrsArm::Candidate SrsArm::at(const Problem& problem, double circle) const {
   Candidate candidate{problem.elbow_cost, Axes::Zero(7)};
   candidate.q[3] = problem.elbow;
-  const Eigen::Matrix3d R = Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
   choose(problem, R, 0, candidate);
   choose(problem, problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, candidate);
   return candidate;
@@ -171,7 +183,9 @@ std::optional<double> SrsArm::set_target(const Pose& T_root_tip, Problem& proble
 void SrsArm::bend(Problem& problem) const {
   const Eigen::Matrix3d R_elbow = Eigen::AngleAxisd(problem.elbow, axis_[3]).toRotationMatrix();
   problem.R_elbow_t = R_elbow.transpose();
-  problem.R_start = Eigen::Quaterniond::FromTwoVectors(to_elbow_ + R_elbow * to_wrist_, problem.to_target).toRotationMatrix();
+  problem.R_start =
+      Eigen::Quaterniond::FromTwoVectors(to_elbow_ + R_elbow * to_wrist_, problem.to_target)
+          .toRotationMatrix();
 }
 
 double SrsArm::angle_of(const Vector3& to_elbow, const Vector3& to_wrist) const {
@@ -180,7 +194,9 @@ double SrsArm::angle_of(const Vector3& to_elbow, const Vector3& to_wrist) const 
   if (up.norm() < 1e-6) up = line.unitOrthogonal();
   up.normalize();
   const Vector3 across = line.cross(up);
-  return to_elbow.dot(across) == 0 && to_elbow.dot(up) == 0 ? 0.0 : std::atan2(to_elbow.dot(across), to_elbow.dot(up));
+  return to_elbow.dot(across) == 0 && to_elbow.dot(up) == 0
+             ? 0.0
+             : std::atan2(to_elbow.dot(across), to_elbow.dot(up));
 }
 
 double SrsArm::elbow_angle(const Axes& q) const {
@@ -189,11 +205,13 @@ double SrsArm::elbow_angle(const Axes& q) const {
   return angle_of(shoulder * to_elbow_, shoulder * (to_elbow_ + turn(3) * to_wrist_));
 }
 
-/// One step onto the pose: a chain from a file is square and parallel to the digits of the file only.
+/// One step onto the pose: a chain from a file is square and parallel to the digits of the file
+/// only.
 Axes SrsArm::polished(const Pose& T_root_tip, const Axes& q) const {
   Jacobian J;
   const Vector6 error = error_of(T_root_tip, chain_->forward(q, &J));
-  const Eigen::Matrix<double, 6, 6> JJ = J * J.transpose() + 1e-12 * Eigen::Matrix<double, 6, 6>::Identity();
+  const Eigen::Matrix<double, 6, 6> JJ =
+      J * J.transpose() + 1e-12 * Eigen::Matrix<double, 6, 6>::Identity();
   const Axes better = q + J.transpose() * JJ.ldlt().solve(error);
   return error_of(T_root_tip, chain_->forward(better, nullptr)).norm() < error.norm() ? better : q;
 }
@@ -207,7 +225,8 @@ void SrsArm::each_branch(const Pose& T_root_tip, double elbow_angle, const Take&
     problem.elbow = side * *bent;
     bend(problem);
     const double circle = elbow_angle - angle_of(problem.R_start * to_elbow_, problem.to_target);
-    const Eigen::Matrix3d R = Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
+    const Eigen::Matrix3d R =
+        Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
     const Solutions wrists = solutions(problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, 0.0);
     for (const auto& shoulder : solutions(R, 0, 0.0))
       for (const auto& wrist : wrists) {
@@ -220,7 +239,8 @@ void SrsArm::each_branch(const Pose& T_root_tip, double elbow_angle, const Take&
 
 std::vector<Axes> SrsArm::branches(const Pose& T_root_tip, double elbow_angle) const {
   std::vector<Axes> out;
-  each_branch(T_root_tip, elbow_angle, [&](const Axes& q) { out.push_back(polished(T_root_tip, q)); });
+  each_branch(T_root_tip, elbow_angle,
+              [&](const Axes& q) { out.push_back(polished(T_root_tip, q)); });
   return out;
 }
 
@@ -235,7 +255,8 @@ std::optional<Axes> SrsArm::turned_inside(const Axes& q, const Axes& near) const
   return out;
 }
 
-std::optional<Axes> SrsArm::nearest(const Pose& T_root_tip, double elbow_angle, const Axes& near) const {
+std::optional<Axes> SrsArm::nearest(const Pose& T_root_tip, double elbow_angle,
+                                    const Axes& near) const {
   double least = std::numeric_limits<double>::infinity();
   std::optional<Axes> best;
   each_branch(T_root_tip, elbow_angle, [&](const Axes& q) {
@@ -249,7 +270,9 @@ std::optional<Axes> SrsArm::nearest(const Pose& T_root_tip, double elbow_angle, 
   return best ? turned_inside(polished(T_root_tip, *best), near) : std::nullopt;
 }
 
-double SrsArm::outside(const Axes& q) const { return std::max({0.0, (chain_->lower() - q).maxCoeff(), (q - chain_->upper()).maxCoeff()}); }
+double SrsArm::outside(const Axes& q) const {
+  return std::max({0.0, (chain_->lower() - q).maxCoeff(), (q - chain_->upper()).maxCoeff()});
+}
 
 std::optional<SrsArm::Solution> SrsArm::solve(const Pose& T_root_tip, const Axes& seed) const {
   Problem problem;
@@ -272,8 +295,10 @@ std::optional<SrsArm::Solution> SrsArm::solve(const Pose& T_root_tip, const Axes
     }
     keep(refine(problem, 2 * M_PI * least / kCircleSamples));
     for (int i = 0; i < kCircleSamples && outside(best.q) > kOnLimit; ++i) {
-      const double before = cost[(i + kCircleSamples - 1) % kCircleSamples], after = cost[(i + 1) % kCircleSamples];
-      if (i != least && cost[i] <= before && cost[i] <= after && cost[i] < kViolation * kWorthTrying)
+      const double before = cost[(i + kCircleSamples - 1) % kCircleSamples],
+                   after = cost[(i + 1) % kCircleSamples];
+      if (i != least && cost[i] <= before && cost[i] <= after &&
+          cost[i] < kViolation * kWorthTrying)
         keep(refine(problem, 2 * M_PI * i / kCircleSamples));
     }
   }

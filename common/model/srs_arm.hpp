@@ -63,7 +63,8 @@ class SrsArm {
   Solutions solutions(const Eigen::Matrix3d& R, int first, double first_when_in_line) const;
   double angle_of(const Vector3& to_elbow, const Vector3& to_wrist) const;
   Axes polished(const Pose& T_root_tip, const Axes& q) const;
-  void choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const;
+  void choose(const Problem& problem, const Eigen::Matrix3d& R, int first,
+              Candidate& candidate) const;
   Candidate at(const Problem& problem, double circle) const;
   Candidate refine(const Problem& problem, double centre) const;
   double outside(const Axes& q) const;

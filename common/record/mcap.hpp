@@ -35,7 +35,8 @@ using Metadata = std::map<std::string, std::string>;
 class Writer {
  public:
   /// Throws ConfigError when the file is there already or cannot be written.
-  Writer(const std::filesystem::path& file, const std::vector<Channel>& channels, const Metadata& metadata);
+  Writer(const std::filesystem::path& file, const std::vector<Channel>& channels,
+         const Metadata& metadata);
   ~Writer();  ///< closes; what cannot be written then is lost in silence
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;

@@ -9,7 +9,8 @@
 
 namespace handsel::mcap {
 
-static_assert(std::endian::native == std::endian::little, "the file is little-endian, and so must be the machine");
+static_assert(std::endian::native == std::endian::little,
+              "the file is little-endian, and so must be the machine");
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 

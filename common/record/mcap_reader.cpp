@@ -9,15 +9,18 @@ namespace {
 
 constexpr std::uint64_t kHead = 9;  // [bytes] of a record: what it is and how long
 constexpr std::uint64_t kEarliestMagic = kMagic.size();
-constexpr std::uint64_t kMaxRecord = 256u << 20;  // [bytes] of a record that is read into memory: chunks have a few MB
-constexpr std::size_t kMaxMessages = 1'000'000;   // of one chunk
+constexpr std::uint64_t kMaxRecord =
+    256u << 20;  // [bytes] of a record that is read into memory: chunks have a few MB
+constexpr std::size_t kMaxMessages = 1'000'000;  // of one chunk
 
 /// Whether the reader uses a record of this kind; the others are passed over without reading them.
 bool is_used(Op op) {
-  return op == Op::schema || op == Op::channel || op == Op::metadata || op == Op::message || op == Op::chunk || op == Op::data_end;
+  return op == Op::schema || op == Op::channel || op == Op::metadata || op == Op::message ||
+         op == Op::chunk || op == Op::data_end;
 }
 
-/// Takes one field after the other from the content of a record; `short_of` once there was none left.
+/// Takes one field after the other from the content of a record; `short_of` once there was none
+/// left.
 class Fields {
  public:
   explicit Fields(std::string_view bytes) : bytes_(bytes) {}
@@ -62,13 +65,15 @@ void Reader::damaged(std::uint64_t at, const std::string& what) const {
 Reader::Reader(const std::filesystem::path& file) : file_(file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) throw MissingError("no recording " + file.string());
-  if (!std::filesystem::is_regular_file(file, error)) throw ConfigError(file.string() + " is not a file");
+  if (!std::filesystem::is_regular_file(file, error))
+    throw ConfigError(file.string() + " is not a file");
   in_.open(file, std::ios::binary);
   if (!in_) throw MissingError("cannot read " + file.string());
   size_ = std::filesystem::file_size(file);
   std::string magic(kEarliestMagic, '\0');
   in_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (!in_ || magic != kMagic) throw ConfigError(file.string() + " is no MCAP recording: it does not begin like one");
+  if (!in_ || magic != kMagic)
+    throw ConfigError(file.string() + " is no MCAP recording: it does not begin like one");
   at_ = kMagic.size();
   // What stands in front of the first chunk: channels and what is said of the whole.
   Record record;
@@ -97,7 +102,8 @@ bool Reader::read(Record& record) {
     return true;
   }
   if (length > kMaxRecord)
-    damaged(record.at, "a record of " + std::to_string(length >> 20) + " MB; it may have " + std::to_string(kMaxRecord >> 20) + " MB");
+    damaged(record.at, "a record of " + std::to_string(length >> 20) + " MB; it may have " +
+                           std::to_string(kMaxRecord >> 20) + " MB");
   record.content.resize(length);
   in_.read(record.content.data(), static_cast<std::streamsize>(length));
   if (!in_) damaged(record.at, "cannot be read");
@@ -142,9 +148,11 @@ void Reader::take(const Record& record) {
       message.time = static_cast<std::int64_t>(fields.number<std::uint64_t>());
       fields.number<std::uint64_t>();
       if (!channels_.contains(message.channel))
-        damaged(record.at, "a message of channel " + std::to_string(message.channel) + ", which was not announced");
+        damaged(record.at, "a message of channel " + std::to_string(message.channel) +
+                               ", which was not announced");
       if (message.time < 0) damaged(record.at, "a message from after the year 2262");
-      if (waiting_.size() == kMaxMessages) damaged(record.at, "a chunk of more than a million messages");
+      if (waiting_.size() == kMaxMessages)
+        damaged(record.at, "a chunk of more than a million messages");
       message.data.assign(fields.rest().begin(), fields.rest().end());
       waiting_.push_back(std::move(message));
       break;
@@ -172,7 +180,8 @@ void Reader::take_chunk(const Record& record) {
   if (!compression.empty())
     damaged(record.at, "a chunk compressed with " + std::string(compression.substr(0, 20)) +
                            "; `mcap compress --compression none` makes it readable here");
-  if (crc != 0 && crc != crc32(records)) damaged(record.at, "a chunk is damaged: its checksum does not fit");
+  if (crc != 0 && crc != crc32(records))
+    damaged(record.at, "a chunk is damaged: its checksum does not fit");
   Record inner;
   for (std::size_t at = 0; at < records.size();) {
     if (records.size() - at < kHead) damaged(record.at, "a chunk ends within a record");
@@ -196,7 +205,9 @@ bool Reader::next(Message& out) {
     while (waiting_.empty() && !ended_ && read(record)) take(record);
   }
   if (next_ == waiting_.size()) return false;
-  if (next_ == 0) std::stable_sort(waiting_.begin(), waiting_.end(), [](const Message& a, const Message& b) { return a.time < b.time; });
+  if (next_ == 0)
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const Message& a, const Message& b) { return a.time < b.time; });
   out = std::move(waiting_[next_++]);
   return true;
 }

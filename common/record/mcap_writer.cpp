@@ -36,9 +36,11 @@ struct Writer::ChunkPlace {
   std::map<std::uint16_t, std::uint64_t> indexes;  ///< where the index of each channel stands
 };
 
-Writer::Writer(const std::filesystem::path& file, const std::vector<Channel>& channels, const Metadata& metadata)
+Writer::Writer(const std::filesystem::path& file, const std::vector<Channel>& channels,
+               const Metadata& metadata)
     : file_(file), counts_(channels.size()), sequences_(channels.size()) {
-  if (std::filesystem::exists(file)) throw ConfigError(file.string() + " is there already; a recording overwrites nothing");
+  if (std::filesystem::exists(file))
+    throw ConfigError(file.string() + " is there already; a recording overwrites nothing");
   out_.open(file, std::ios::binary);
   if (!out_) throw ConfigError("cannot write " + file.string() + ": " + std::strerror(errno));
   open_ = true;
@@ -96,7 +98,8 @@ void Writer::put(const std::string& bytes) {
 
 void Writer::write(const Message& message) {
   if (!open_) throw std::logic_error("the recording is closed");
-  if (message.channel >= counts_.size()) throw std::logic_error("no channel " + std::to_string(message.channel) + " was announced");
+  if (message.channel >= counts_.size())
+    throw std::logic_error("no channel " + std::to_string(message.channel) + " was announced");
   const auto time = static_cast<std::uint64_t>(std::max<std::int64_t>(0, message.time));
   index_[message.channel].emplace_back(time, chunk_.size());
   std::string head;
@@ -176,7 +179,8 @@ void Writer::close() {
   std::string records;
   for (const ChunkPlace& chunk : chunks_) {
     content.clear();
-    for (const std::uint64_t number : {chunk.first, chunk.last, chunk.offset, chunk.length}) append(content, number);
+    for (const std::uint64_t number : {chunk.first, chunk.last, chunk.offset, chunk.length})
+      append(content, number);
     append(content, static_cast<std::uint32_t>(10 * chunk.indexes.size()));
     for (const auto& [channel, offset] : chunk.indexes) {
       append(content, channel);

@@ -30,11 +30,13 @@ SetpointGateSettings gate_settings(const RobotSideSettings& s) {
 
 }  // namespace
 
-RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSideSettings& settings)
+RobotSide::RobotSide(const RobotModel& model, const Vector& start,
+                     const RobotSideSettings& settings)
     : settings_(settings),
       model_(model),
       limits_(model.stop_limits()),
-      gate_(model.guard_limits(), bounds(model, &Axis::lower), bounds(model, &Axis::upper), gate_settings(settings)),
+      gate_(model.guard_limits(), bounds(model, &Axis::lower), bounds(model, &Axis::upper),
+            gate_settings(settings)),
       position_(start),
       measured_(start),
       joined_(start) {
@@ -42,18 +44,24 @@ RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSi
   stops_.resize(start.size());
   joins_.resize(start.size());
   for (const Manipulator& hand : hands_of(model))
-    if (hand.fingers != nullptr) hand_axes_.insert(hand_axes_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
+    if (hand.fingers != nullptr)
+      hand_axes_.insert(hand_axes_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
   tolerance_ = Vector::Constant(start.size(), settings.resume_tolerance);
-  for (const int axis : hand_axes_) tolerance_[axis] = settings.resume_hand * (slides(model, axis) ? settings.hand_lever : 1.0);
+  for (const int axis : hand_axes_)
+    tolerance_[axis] = settings.resume_hand * (slides(model, axis) ? settings.hand_lever : 1.0);
 }
 
 bool RobotSide::command(const JointCommand& command, double now, double arrival) {
   const auto n = position_.size();
   if (command.effort.size() != 0 && command.effort.size() != n) return false;
-  if (command.position.size() != n || command.velocity.size() != n || command.acceleration.size() != n) return false;
-  const bool takes_up = mode_ == DriveMode::enabled || mode_ == DriveMode::braked || mode_ == DriveMode::protective_stop;
+  if (command.position.size() != n || command.velocity.size() != n ||
+      command.acceleration.size() != n)
+    return false;
+  const bool takes_up = mode_ == DriveMode::enabled || mode_ == DriveMode::braked ||
+                        mode_ == DriveMode::protective_stop;
   if (reference_ == Reference::stands && takes_up) {
-    // A set-point that rests where the one before did is still the same one while the reference moves to it.
+    // A set-point that rests where the one before did is still the same one while the reference
+    // moves to it.
     const bool same = matching_ > 0 && command.position == joined_ && command.velocity.isZero(0.0);
     matching_ = same || continues(command, kAtRest) ? matching_ + 1 : 0;
     joined_ = command.position;
@@ -72,7 +80,8 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
   return true;
 }
 
-/// Whether a set-point may be followed; if not, the reference begins to stop, or to move to where the first set-points rest.
+/// Whether a set-point may be followed; if not, the reference begins to stop, or to move to where
+/// the first set-points rest.
 bool RobotSide::accepted(const JointCommand& command, double arrival) {
   if (settings_.period <= 0) return true;
   if (!seen_ && !reached(command) && continues(command, settings_.resume_tolerance)) {
@@ -82,7 +91,9 @@ bool RobotSide::accepted(const JointCommand& command, double arrival) {
   }
   SetpointRefusal refusal;
   if (!seen_ && !reached(command)) refusal = {SetpointRefusal::Reason::position_step, -1, 0, 0};
-  if (!refusal) refusal = gate_.check(command.position, command.velocity, command.acceleration, command.sequence, arrival);
+  if (!refusal)
+    refusal = gate_.check(command.position, command.velocity, command.acceleration,
+                          command.sequence, arrival);
   if (refusal) refuse(refusal);
   return !refusal;
 }
@@ -92,18 +103,25 @@ void RobotSide::refuse(const SetpointRefusal& refusal) {
   if (refusal.reason == SetpointRefusal::Reason::order) return;
   begin_stop(mode_);
   refusal_ = "refused a set-point: " + std::string(name(refusal.reason));
-  if (refusal.axis >= 0) refusal_ += " of axis " + model_.axes()[static_cast<std::size_t>(refusal.axis)].name;
-  if (refusal.bound != 0) refusal_ += " is " + std::to_string(refusal.value) + ", the limit is " + std::to_string(refusal.bound);
+  if (refusal.axis >= 0)
+    refusal_ += " of axis " + model_.axes()[static_cast<std::size_t>(refusal.axis)].name;
+  if (refusal.bound != 0)
+    refusal_ +=
+        " is " + std::to_string(refusal.value) + ", the limit is " + std::to_string(refusal.bound);
   refusal_ += kAgain;
 }
 
-bool RobotSide::reached(const JointCommand& command) const { return (command.position - position_).cwiseAbs().maxCoeff() <= kReached; }
+bool RobotSide::reached(const JointCommand& command) const {
+  return (command.position - position_).cwiseAbs().maxCoeff() <= kReached;
+}
 
-/// A loaded arm sags and a closed hand is bent by what it holds: the measured posture counts as well as the one that is held to.
+/// A loaded arm sags and a closed hand is bent by what it holds: the measured posture counts as
+/// well as the one that is held to.
 bool RobotSide::continues(const JointCommand& command, double max_speed) const {
   if (!command.position.allFinite() || !command.velocity.allFinite()) return false;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
-    const double off = std::min(std::abs(command.position[i] - position_[i]), std::abs(command.position[i] - measured_[i]));
+    const double off = std::min(std::abs(command.position[i] - position_[i]),
+                                std::abs(command.position[i] - measured_[i]));
     if (off >= tolerance_[i] || std::abs(command.velocity[i]) >= max_speed) return false;
   }
   return true;
@@ -147,13 +165,16 @@ void RobotSide::begin_stop(DriveMode mode) {
     const AxisState s{position_[i], velocity_[i], acceleration_[i]};
     const AxisLimits limits = limits_of(limits_, i);
     // The guard limits where the stop limits would not stop the axis within its bounds.
-    stops_[i].init(s, gate_.stops_within_bounds(s, i, limits) ? limits : limits_of(gate_.limits(), i));
+    stops_[i].init(s,
+                   gate_.stops_within_bounds(s, i, limits) ? limits : limits_of(gate_.limits(), i));
   }
 }
 
 double RobotSide::payload(std::size_t hand) const {
   if (hand == 0) return payload_;
-  return hand <= static_cast<std::size_t>(other_payloads_.size()) ? other_payloads_[static_cast<Eigen::Index>(hand) - 1] : 0.0;
+  return hand <= static_cast<std::size_t>(other_payloads_.size())
+             ? other_payloads_[static_cast<Eigen::Index>(hand) - 1]
+             : 0.0;
 }
 
 void RobotSide::report(ServoReference& out) const {
@@ -175,7 +196,8 @@ void RobotSide::step_stop(double dt) {
     }
     if (!rests) return;
     reference_ = Reference::stands;
-    for (Eigen::Index i = 0; i < position_.size(); ++i) joins_[i] = SetpointFilter({position_[i], 0, 0}, limits_of(limits_, i));
+    for (Eigen::Index i = 0; i < position_.size(); ++i)
+      joins_[i] = SetpointFilter({position_[i], 0, 0}, limits_of(limits_, i));
     joined_ = position_;
     return;
   }
@@ -189,13 +211,15 @@ void RobotSide::step_stop(double dt) {
   }
 }
 
-/// Continues with the acceleration of the set-point before, as long as the robot can still be stopped within its limits afterwards.
+/// Continues with the acceleration of the set-point before, as long as the robot can still be
+/// stopped within its limits afterwards.
 void RobotSide::extrapolate(double dt) {
   for (Eigen::Index i = 0; i < position_.size() && settings_.period > 0; ++i) {
     const AxisState s = advanced({position_[i], velocity_[i], acceleration_[i]}, dt, 0);
     if (!gate_.check_state(s, i)) continue;
     begin_stop(mode_);
-    refusal_ = "no set-point came and axis " + model_.axes()[static_cast<std::size_t>(i)].name + " nears a limit" + kAgain;
+    refusal_ = "no set-point came and axis " + model_.axes()[static_cast<std::size_t>(i)].name +
+               " nears a limit" + kAgain;
     return step_stop(dt);
   }
   position_ += dt * velocity_ + dt * dt / 2 * acceleration_;
@@ -206,7 +230,8 @@ void RobotSide::step(double now, double dt) {
   in_mode_ += dt;
   if (reference_ == Reference::follows && seen_ && now - last_ > settings_.max_gap) {
     begin_stop(DriveMode::enabled);
-    refusal_ = "no set-point for more than " + std::to_string(std::lround(1e3 * settings_.max_gap)) + " ms" + kAgain;
+    refusal_ = "no set-point for more than " +
+               std::to_string(std::lround(1e3 * settings_.max_gap)) + " ms" + kAgain;
   }
   if (reference_ != Reference::follows) {
     if (!fresh_) step_stop(dt);  // else the set-point before the refused one was this step's

@@ -15,15 +15,17 @@ const TopicRow* find_topic(std::string_view wanted) {
   constexpr std::string_view kPrefix = "handsel/";
   for (const TopicRow& row : kTopics) {
     const std::string_view topic = row.topic;
-    if (wanted == row.type || wanted == topic || wanted == topic.substr(kPrefix.size())) return &row;
+    if (wanted == row.type || wanted == topic || wanted == topic.substr(kPrefix.size()))
+      return &row;
   }
   return nullptr;
 }
 
 bool has_one_writer(const TopicRow& row) {
-  constexpr std::string_view kSafety[] = {"handsel/joint_command", "handsel/go",           "handsel/safety_state",
-                                          "handsel/trajectory",    "handsel/hand_command", "handsel/human_state",
-                                          "handsel/robot_state",   "handsel/scene",        "handsel/action_status"};
+  constexpr std::string_view kSafety[] = {
+      "handsel/joint_command", "handsel/go",           "handsel/safety_state",
+      "handsel/trajectory",    "handsel/hand_command", "handsel/human_state",
+      "handsel/robot_state",   "handsel/scene",        "handsel/action_status"};
   return std::find(std::begin(kSafety), std::end(kSafety), row.topic) != std::end(kSafety);
 }
 

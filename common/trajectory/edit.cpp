@@ -24,7 +24,8 @@ Trajectory cut(const Trajectory& whole, double from, double to) {
     double t = 0;
     for (const Segment& g : axis.segments) {
       const double end = t + g.duration;
-      const double skip = std::clamp(from - t, 0.0, g.duration), take = std::clamp(to - t, 0.0, g.duration) - skip;
+      const double skip = std::clamp(from - t, 0.0, g.duration),
+                   take = std::clamp(to - t, 0.0, g.duration) - skip;
       if (end <= from || skip > 0) piece.start = advanced(piece.start, skip, g.jerk);
       if (take > 0) piece.segments.push_back({take, g.jerk});
       t = end;
@@ -59,7 +60,8 @@ Trajectory split_alike(const Trajectory& whole) {
     double end = axis.segments.empty() ? 0 : axis.segments[0].duration, t = 0;
     for (const double next : kept) {
       const double middle = (t + next) / 2;
-      while (k < axis.segments.size() && end <= middle) end += ++k < axis.segments.size() ? axis.segments[k].duration : 0;
+      while (k < axis.segments.size() && end <= middle)
+        end += ++k < axis.segments.size() ? axis.segments[k].duration : 0;
       piece.segments.push_back({next - t, k < axis.segments.size() ? axis.segments[k].jerk : 0.0});
       t = next;
     }
@@ -105,9 +107,11 @@ Trajectory to_trajectory(const SegmentTable& table) {
   MotionState3 start = rest_state(Eigen::VectorXd::Zero(table.axes()));
   int cursor = 0;
   table.evaluate(0, cursor, start);
-  for (int i = 0; i < table.axes(); ++i) out.axes.push_back({{start.position[i], start.velocity[i], start.acceleration[i]}, {}});
+  for (int i = 0; i < table.axes(); ++i)
+    out.axes.push_back({{start.position[i], start.velocity[i], start.acceleration[i]}, {}});
   for (int k = 0; k < table.segments(); ++k) {
-    for (std::size_t i = 0; i < n; ++i) out.axes[i].segments.push_back({table.knot(k + 1) - table.knot(k), table.jerks(k)[i]});
+    for (std::size_t i = 0; i < n; ++i)
+      out.axes[i].segments.push_back({table.knot(k + 1) - table.knot(k), table.jerks(k)[i]});
   }
   return out;
 }

@@ -17,7 +17,8 @@ std::string exceeded(int axis, const char* what, double value, double limit) {
 }  // namespace
 
 AxisExtremes extremes(const AxisState& start, const Segment* segments, int count) noexcept {
-  AxisExtremes e{start.position, start.position, std::abs(start.velocity), std::abs(start.acceleration), 0};
+  AxisExtremes e{start.position, start.position, std::abs(start.velocity),
+                 std::abs(start.acceleration), 0};
   AxisState s = start;
   const auto note_position = [&e](double x) {
     e.lowest = std::min(e.lowest, x);
@@ -50,7 +51,8 @@ AxisExtremes extremes(const AxisTrajectory& axis) noexcept {
 }
 
 AxisExtremes rate_extremes(const AxisState& start, const Segment* segments, int count) noexcept {
-  double v = start.velocity, a = start.acceleration, max_v = std::abs(v), max_a = std::abs(a), most_j = 0;
+  double v = start.velocity, a = start.acceleration, max_v = std::abs(v), max_a = std::abs(a),
+         most_j = 0;
   for (int k = 0; k < count; ++k) {
     const double T = segments[k].duration, j = segments[k].jerk, a_next = a + T * j;
     most_j = std::max(most_j, std::abs(j));
@@ -67,14 +69,17 @@ double limit_ratio(const Trajectory& trajectory, const KinematicLimits& limits) 
   double share = 0;
   for (int i = 0; i < trajectory.size(); ++i) {
     const AxisExtremes e = extremes(trajectory.axes[i]);
-    share = std::max({share, e.velocity / limits.velocity[i], e.acceleration / limits.acceleration[i], e.jerk / limits.jerk[i]});
+    share = std::max({share, e.velocity / limits.velocity[i],
+                      e.acceleration / limits.acceleration[i], e.jerk / limits.jerk[i]});
   }
   return share;
 }
 
 std::string why_bad_limits(const KinematicLimits& limits, int axes) {
-  if (limits.velocity.size() != axes || limits.acceleration.size() != axes || limits.jerk.size() != axes) {
-    return "limits are given for " + std::to_string(limits.velocity.size()) + ", " + std::to_string(limits.acceleration.size()) + " and " +
+  if (limits.velocity.size() != axes || limits.acceleration.size() != axes ||
+      limits.jerk.size() != axes) {
+    return "limits are given for " + std::to_string(limits.velocity.size()) + ", " +
+           std::to_string(limits.acceleration.size()) + " and " +
            std::to_string(limits.jerk.size()) + " axes, wanted " + std::to_string(axes);
   }
   for (int i = 0; i < axes; ++i) {
@@ -86,26 +91,32 @@ std::string why_bad_limits(const KinematicLimits& limits, int axes) {
   return {};
 }
 
-std::string why_not_within(const Trajectory& trajectory, const KinematicLimits& limits, double tol) {
+std::string why_not_within(const Trajectory& trajectory, const KinematicLimits& limits,
+                           double tol) {
   if (std::string why = why_bad_limits(limits, trajectory.size()); !why.empty()) return why;
   double first = -1;
   for (int i = 0; i < trajectory.size(); ++i) {
     const AxisTrajectory& axis = trajectory.axes[i];
     double sum = 0;
-    bool usable = std::isfinite(axis.start.position) && std::isfinite(axis.start.velocity) && std::isfinite(axis.start.acceleration);
+    bool usable = std::isfinite(axis.start.position) && std::isfinite(axis.start.velocity) &&
+                  std::isfinite(axis.start.acceleration);
     for (const Segment& s : axis.segments) {
       usable = usable && std::isfinite(s.duration) && std::isfinite(s.jerk) && s.duration >= 0;
       sum += s.duration;
     }
-    if (!usable) return "axis " + std::to_string(i) + ": a number is not finite or a duration is negative";
+    if (!usable)
+      return "axis " + std::to_string(i) + ": a number is not finite or a duration is negative";
     if (first < 0) first = sum;
     if (std::abs(sum - first) > 1e-6) {
-      return "axis " + std::to_string(i) + " lasts " + std::to_string(sum) + " s, axis 0 " + std::to_string(first) + " s";
+      return "axis " + std::to_string(i) + " lasts " + std::to_string(sum) + " s, axis 0 " +
+             std::to_string(first) + " s";
     }
     const AxisExtremes e = extremes(axis);
     const double allowed = 1 + tol;
-    if (e.velocity > limits.velocity[i] * allowed) return exceeded(i, "velocity", e.velocity, limits.velocity[i]);
-    if (e.acceleration > limits.acceleration[i] * allowed) return exceeded(i, "acceleration", e.acceleration, limits.acceleration[i]);
+    if (e.velocity > limits.velocity[i] * allowed)
+      return exceeded(i, "velocity", e.velocity, limits.velocity[i]);
+    if (e.acceleration > limits.acceleration[i] * allowed)
+      return exceeded(i, "acceleration", e.acceleration, limits.acceleration[i]);
     if (e.jerk > limits.jerk[i] * allowed) return exceeded(i, "jerk", e.jerk, limits.jerk[i]);
   }
   return {};

@@ -16,10 +16,13 @@ double lobe(double v, double a, double a1, double hold, double J, double over_J)
   const double t = (a1 - a) * over_J;
   const double v1 = v + 0.5 * t * (a1 + a);
   const double v2 = v1 + a1 * hold;
-  return t * (v + t * (a / 2 + J * t * (1.0 / 6))) + hold * (v1 + v2) * 0.5 + a1 * over_J * (v2 + a1 * a1 * over_J * (1.0 / 3));
+  return t * (v + t * (a / 2 + J * t * (1.0 / 6))) + hold * (v1 + v2) * 0.5 +
+         a1 * over_J * (v2 + a1 * a1 * over_J * (1.0 / 3));
 }
 
-bool finite(const AxisState& s) noexcept { return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration); }
+bool finite(const AxisState& s) noexcept {
+  return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration);
+}
 }  // namespace
 
 const char* reason(AxisOutcome outcome) noexcept {
@@ -44,8 +47,14 @@ const char* reason(AxisOutcome outcome) noexcept {
 
 namespace detail {
 
-MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const AxisLimits& limits, bool mirrored) noexcept
-    : V_(limits.velocity), A_(limits.acceleration), J_(limits.jerk), over_J_(1 / J_), over_JA_(over_J_ / A_), mirrored_(mirrored) {
+MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const AxisLimits& limits,
+                           bool mirrored) noexcept
+    : V_(limits.velocity),
+      A_(limits.acceleration),
+      J_(limits.jerk),
+      over_J_(1 / J_),
+      over_JA_(over_J_ / A_),
+      mirrored_(mirrored) {
   if (mirrored) v0 = -v0, a0 = -a0, vf = -vf, af = -af;
   const double tolerance = 256 * kEps * (a0 * a0 + af * af + J_ * (std::abs(v0) + std::abs(vf)));
   C_ = J_ * (vf - v0) + (a0 - af) * (a0 + af) / 2;
@@ -79,7 +88,9 @@ MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const Axi
   at_limit_ = duration(s_hi);
 }
 
-bool MotionFamily::gap_is_rounding() const noexcept { return island && island_hi * island_hi <= 1e-13 * A_ * (a0_ + std::sqrt(C_)); }
+bool MotionFamily::gap_is_rounding() const noexcept {
+  return island && island_hi * island_hi <= 1e-13 * A_ * (a0_ + std::sqrt(C_));
+}
 
 void MotionFamily::close_gap() noexcept {
   s_lo = C_ == 0 ? std::max(island_lo, 0.0) : island_lo;
@@ -89,7 +100,8 @@ void MotionFamily::close_gap() noexcept {
 double MotionFamily::duration(double s) const noexcept {
   const double R = s * s + C_, A2 = A_ * A_;
   const double a1 = R < A2 ? std::sqrt(R) : A_;
-  const double changes = std::max(0.0, a1 - a0_) + std::max(0.0, a1 + std::min(s, A_)) + std::max(0.0, af_ + std::min(s, A_));
+  const double changes = std::max(0.0, a1 - a0_) + std::max(0.0, a1 + std::min(s, A_)) +
+                         std::max(0.0, af_ + std::min(s, A_));
   double t = changes * over_J_;
   if (R > A2) t += (R - A2) * over_JA_;
   if (s > A_) t += (s * s - A2) * over_JA_;
@@ -232,15 +244,16 @@ double MotionFamily::root(double D, double from, double* cruise) const noexcept 
   const double base = std::clamp(from, A_, s_hi), f_base = displacement(base) - D;
   const double centre = vf_ + (base * base - af_ * af_ / 2) / J_ + A_ * A_ / (2 * J_);
   const double square = std::max(0.0, centre * centre - A_ * f_base);
-  const double step = centre >= 0 ? -A_ * f_base / (std::sqrt(square) + centre) : std::sqrt(square) - centre;
+  const double step =
+      centre >= 0 ? -A_ * f_base / (std::sqrt(square) + centre) : std::sqrt(square) - centre;
   return std::clamp(std::sqrt(base * base + J_ * std::max(0.0, step)), base, s_hi);
 }
 
 void MotionFamily::emit(double s, double cruise, AxisProfile& out, double scale) const noexcept {
   const double R = s * s + C_, A2 = A_ * A_, j = scale * (mirrored_ ? -J_ : J_);
   const double a1 = R < A2 ? std::sqrt(R) : A_, a2 = std::min(s, A_);
-  const double t1 = (a1 - a0_) * over_J_, h1 = R > A2 ? (R - A2) * over_JA_ : 0.0, h2 = s > A_ ? (s * s - A2) * over_JA_ : 0.0,
-               t5 = (a2 + af_) * over_J_;
+  const double t1 = (a1 - a0_) * over_J_, h1 = R > A2 ? (R - A2) * over_JA_ : 0.0,
+               h2 = s > A_ ? (s * s - A2) * over_JA_ : 0.0, t5 = (a2 + af_) * over_J_;
   if (reversed_) {
     out.push(t5, j);
     out.push(h2, 0);
@@ -268,7 +281,8 @@ void MotionFamily::emit(double s, double cruise, AxisProfile& out, double scale)
 
 namespace {
 
-/// Brings a state with v beyond +V (or heading beyond it) back to V as fast as possible without heading beyond -V then; `side` -1 mirrors.
+/// Brings a state with v beyond +V (or heading beyond it) back to V as fast as possible without
+/// heading beyond -V then; `side` -1 mirrors.
 void brake_velocity(AxisState& s, const AxisLimits& l, double side, AxisProfile& out) noexcept {
   const double V = l.velocity, A = l.acceleration, J = l.jerk;
   const double v = side * s.velocity, a = side * s.acceleration;
@@ -296,18 +310,25 @@ void bring_inside(AxisState& s, const AxisLimits& l, AxisProfile& out, double sl
     s.acceleration = side * A;
   }
   for (int pass = 0; pass < 2; ++pass) {
-    const double a = s.acceleration, rest = s.velocity + a * std::abs(a) / (2 * J), bound = V * (1 + slack);
+    const double a = s.acceleration, rest = s.velocity + a * std::abs(a) / (2 * J),
+                 bound = V * (1 + slack);
     const bool below = a < 0 && rest<-bound, above = a> 0 && rest > bound;
-    const double side = below ? -1 : above ? 1 : s.velocity > bound ? 1 : s.velocity < -bound ? -1 : 0;
+    const double side = below                 ? -1
+                        : above               ? 1
+                        : s.velocity > bound  ? 1
+                        : s.velocity < -bound ? -1
+                                              : 0;
     if (side == 0) return;
     brake_velocity(s, l, side, out);
   }
 }
 
 /// Adds weight * jerk of one profile to another, cutting both at each other's ends.
-void blend(const AxisProfile& p, double weight_p, const AxisProfile& q, double weight_q, AxisProfile& out) noexcept {
+void blend(const AxisProfile& p, double weight_p, const AxisProfile& q, double weight_q,
+           AxisProfile& out) noexcept {
   int i = 0, k = 0;
-  double left_p = p.count ? p.segments[0].duration : 0, left_q = q.count ? q.segments[0].duration : 0;
+  double left_p = p.count ? p.segments[0].duration : 0,
+         left_q = q.count ? q.segments[0].duration : 0;
   while (i < p.count && k < q.count) {
     const double step = std::min(left_p, left_q);
     out.push(step, weight_p * p.segments[i].jerk + weight_q * q.segments[k].jerk);
@@ -316,18 +337,23 @@ void blend(const AxisProfile& p, double weight_p, const AxisProfile& q, double w
     if (left_p <= 0 && ++i < p.count) left_p = p.segments[i].duration;
     if (left_q <= 0 && ++k < q.count) left_q = q.segments[k].duration;
   }
-  for (; i < p.count; ++i, left_p = i < p.count ? p.segments[i].duration : 0) out.push(left_p, weight_p * p.segments[i].jerk);
-  for (; k < q.count; ++k, left_q = k < q.count ? q.segments[k].duration : 0) out.push(left_q, weight_q * q.segments[k].jerk);
+  for (; i < p.count; ++i, left_p = i < p.count ? p.segments[i].duration : 0)
+    out.push(left_p, weight_p * p.segments[i].jerk);
+  for (; k < q.count; ++k, left_q = k < q.count ? q.segments[k].duration : 0)
+    out.push(left_q, weight_q * q.segments[k].jerk);
 }
 
 }  // namespace
 
-AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const AxisLimits& l) noexcept {
-  if (!finite(from) || !finite(to) || !std::isfinite(l.velocity + l.acceleration + l.jerk)) return AxisOutcome::not_finite;
+AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to,
+                              const AxisLimits& l) noexcept {
+  if (!finite(from) || !finite(to) || !std::isfinite(l.velocity + l.acceleration + l.jerk))
+    return AxisOutcome::not_finite;
   if (!(l.velocity > 0) || !(l.acceleration > 0) || !(l.jerk > 0)) return AxisOutcome::bad_limits;
   constexpr double kSlack = 1e-12;
   const double end = to.velocity - to.acceleration * std::abs(to.acceleration) / (2 * l.jerk);
-  if (std::abs(to.velocity) > l.velocity * (1 + kSlack) || std::abs(to.acceleration) > l.acceleration * (1 + kSlack) ||
+  if (std::abs(to.velocity) > l.velocity * (1 + kSlack) ||
+      std::abs(to.acceleration) > l.acceleration * (1 + kSlack) ||
       std::abs(end) > l.velocity * (1 + kSlack)) {
     return AxisOutcome::end_beyond_limits;
   }
@@ -340,9 +366,12 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
   over_J_ = 1 / l.jerk;
   speed_ = std::abs(start.velocity) + std::abs(to.velocity) +
            (start.acceleration * start.acceleration + to.acceleration * to.acceleration) * over_J_;
-  still_ = distance_ == 0 && start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
-  rest_ = start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
-  up_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, false);
+  still_ = distance_ == 0 && start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 &&
+           to.acceleration == 0;
+  rest_ =
+      start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
+  up_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l,
+                             false);
   if (still_) {
     best_ = {0, 0, 0, false};
     minimum_ = brake_time_;
@@ -355,7 +384,8 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
     minimum_ = brake_time_ + best_.duration;
     return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
   }
-  down_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, true);
+  down_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l,
+                               true);
   start_ = from;
   end_ = to;
   limits_ = l;
@@ -365,8 +395,8 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
   return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
 }
 
-/// The durations possible are the same for the largest and the least displacement; where the two families see that differently, rounding
-/// has decided in one of them.
+/// The durations possible are the same for the largest and the least displacement; where the two
+/// families see that differently, rounding has decided in one of them.
 void AxisProblem::settle_islands() noexcept {
   for (detail::MotionFamily* f : {&up_, &down_}) {
     if (f->gap_is_rounding()) f->close_gap();
@@ -378,7 +408,8 @@ void AxisProblem::settle_islands() noexcept {
 
 double AxisProblem::slack(const Span& at) const noexcept {
   const double speed = speed_ + (at.s_up * at.s_up + at.s_down * at.s_down) * over_J_;
-  return 256 * kEps * (scale_ + std::abs(at.smallest) + std::abs(at.largest)) + 16 * kEps * at.T * speed;
+  return 256 * kEps * (scale_ + std::abs(at.smallest) + std::abs(at.largest)) +
+         16 * kEps * at.T * speed;
 }
 
 AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
@@ -392,11 +423,14 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
       const double largest = up_.displacement(s_up), smallest = -down_.displacement(s_down);
       const double tolerance = 2 * slack({from, s_up, s_down, 0, 0, largest, smallest});
       if (D <= largest + tolerance && D >= smallest - tolerance) {
-        return D - smallest > largest - D ? Choice{from, s_up, 0, false} : Choice{from, s_down, 0, true};
+        return D - smallest > largest - D ? Choice{from, s_up, 0, false}
+                                          : Choice{from, s_down, 0, true};
       }
       double s;
-      if (D > largest && up_.first_root(D, s_up, up_.island_hi, &s)) return {up_.duration(s), s, 0, false};
-      if (D < smallest && down_.first_root(-D, s_down, down_.island_hi, &s)) return {down_.duration(s), s, 0, true};
+      if (D > largest && up_.first_root(D, s_up, up_.island_hi, &s))
+        return {up_.duration(s), s, 0, false};
+      if (D < smallest && down_.first_root(-D, s_down, down_.island_hi, &s))
+        return {down_.duration(s), s, 0, true};
       const double ending = up_.displacement(up_.island_hi);
       if (std::abs(D - ending) <= tolerance) return {last, up_.island_hi, 0, false};
     }
@@ -409,7 +443,8 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
     const double s = up_.root(D, at.s_up, &cruise);
     return {up_.duration(s) + cruise, s, cruise, false};
   }
-  if (D < at.smallest && (D < at.smallest - tolerance || (at.s_down >= 0 && down_.gain(at.s_down) >= 0))) {
+  if (D < at.smallest &&
+      (D < at.smallest - tolerance || (at.s_down >= 0 && down_.gain(at.s_down) >= 0))) {
     const double s = down_.root(-D, at.s_down, &cruise);
     return {down_.duration(s) + cruise, s, cruise, true};
   }
@@ -483,7 +518,8 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
 
 AxisOutcome AxisProblem::profile_in(const Span& at, AxisProfile& out) const noexcept {
   const double D = distance_, tolerance = slack(at), width = at.largest - at.smallest;
-  if (D > at.largest + 2 * tolerance || D < at.smallest - 2 * tolerance) return AxisOutcome::blocked;
+  if (D > at.largest + 2 * tolerance || D < at.smallest - 2 * tolerance)
+    return AxisOutcome::blocked;
   const double weight = width > 0 ? std::clamp((D - at.smallest) / width, 0.0, 1.0) : 0.5;
   out = brake_;
   if (weight == 1.0) {
@@ -510,11 +546,14 @@ bool AxisProblem::arrives(const AxisProfile& profile, double duration) const noe
     T += profile.segments[k].duration;
   }
   const double hardest = std::max(limits_.acceleration, std::abs(start_.acceleration));
-  return std::abs(T - duration) <= kNear * duration && std::abs(s.position - end_.position) <= kNear * (scale_ + fastest * T) &&
-         std::abs(s.velocity - end_.velocity) <= kNear * fastest && std::abs(s.acceleration - end_.acceleration) <= kNear * hardest;
+  return std::abs(T - duration) <= kNear * duration &&
+         std::abs(s.position - end_.position) <= kNear * (scale_ + fastest * T) &&
+         std::abs(s.velocity - end_.velocity) <= kNear * fastest &&
+         std::abs(s.acceleration - end_.acceleration) <= kNear * hardest;
 }
 
-AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept {
+AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits,
+                       AxisProfile& out) noexcept {
   AxisProblem problem;
   const AxisOutcome outcome = problem.init(from, to, limits);
   if (outcome == AxisOutcome::ok) problem.minimum_profile(out);

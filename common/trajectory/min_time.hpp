@@ -72,8 +72,8 @@ const char* reason(AxisOutcome) noexcept;
 
 /// State after `duration` of constant jerk.
 inline AxisState advanced(const AxisState& s, double t, double jerk) noexcept {
-  return {s.position + t * (s.velocity + t * (s.acceleration / 2 + t * jerk / 6)), s.velocity + t * (s.acceleration + t * jerk / 2),
-          s.acceleration + t * jerk};
+  return {s.position + t * (s.velocity + t * (s.acceleration / 2 + t * jerk / 6)),
+          s.velocity + t * (s.acceleration + t * jerk / 2), s.acceleration + t * jerk};
 }
 
 namespace detail {
@@ -83,7 +83,8 @@ namespace detail {
 class MotionFamily {
  public:
   MotionFamily() = default;
-  MotionFamily(double v0, double a0, double vf, double af, const AxisLimits& limits, bool mirrored) noexcept;
+  MotionFamily(double v0, double a0, double vf, double af, const AxisLimits& limits,
+               bool mirrored) noexcept;
 
   double duration(double s) const noexcept;
   double displacement(double s) const noexcept { return displacement(s, nullptr); }
@@ -170,7 +171,8 @@ class AxisProblem {
 };
 
 /// Minimum time between two states. `out` is untouched unless ok.
-AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept;
+AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits,
+                       AxisProfile& out) noexcept;
 
 /// Minimum time of a rest-to-rest motion over a distance, in closed form (chapter section 4.3.1)
 /// [s].

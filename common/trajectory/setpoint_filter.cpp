@@ -8,10 +8,14 @@
 namespace handsel {
 
 namespace {
-double usable(double x, double bound) noexcept { return std::isfinite(x) ? std::clamp(x, -bound, bound) : 0.0; }
+double usable(double x, double bound) noexcept {
+  return std::isfinite(x) ? std::clamp(x, -bound, bound) : 0.0;
+}
 
-/// Acceleration that can be kept for a tick at this velocity without leading beyond the velocity limit, before or after.
-double reachable_acceleration(double velocity, double acceleration, const AxisLimits& l, double dt) noexcept {
+/// Acceleration that can be kept for a tick at this velocity without leading beyond the velocity
+/// limit, before or after.
+double reachable_acceleration(double velocity, double acceleration, const AxisLimits& l,
+                              double dt) noexcept {
   const double room = std::max(0.0, l.velocity - std::abs(velocity) - l.acceleration * dt);
   return usable(acceleration, std::min(l.acceleration, std::sqrt(2 * l.jerk * room)));
 }
@@ -28,11 +32,13 @@ void SetpointFilter::follow(const AxisProfile& profile, double dt) noexcept {
   if (dt > 0) state_ = advanced(state_, dt, 0);
 }
 
-const AxisState& SetpointFilter::toward_velocity(double velocity, double acceleration, double dt) noexcept {
+const AxisState& SetpointFilter::toward_velocity(double velocity, double acceleration,
+                                                 double dt) noexcept {
   velocity = usable(velocity, limits_.velocity);
   acceleration = reachable_acceleration(velocity, acceleration, limits_, dt);
   AxisProfile profile;
-  critical_movement(state_.velocity, state_.acceleration, velocity, acceleration, limits_.acceleration, limits_.jerk, profile);
+  critical_movement(state_.velocity, state_.acceleration, velocity, acceleration,
+                    limits_.acceleration, limits_.jerk, profile);
   follow(profile, dt);
   return state_;
 }
@@ -40,17 +46,22 @@ const AxisState& SetpointFilter::toward_velocity(double velocity, double acceler
 const AxisState& SetpointFilter::toward(const AxisState& target, double dt) noexcept {
   const double carried = usable(target.velocity, limits_.velocity);
   const double pushed = usable(target.acceleration, limits_.acceleration / 2);
-  const AxisLimits left{limits_.velocity - std::abs(carried), limits_.acceleration - std::abs(pushed), limits_.jerk};
-  const AxisState relative{state_.position - target.position, state_.velocity - carried, state_.acceleration - pushed};
+  const AxisLimits left{limits_.velocity - std::abs(carried),
+                        limits_.acceleration - std::abs(pushed), limits_.jerk};
+  const AxisState relative{state_.position - target.position, state_.velocity - carried,
+                           state_.acceleration - pushed};
   AxisProfile profile;
-  if (!(left.velocity > 1e-9 * limits_.velocity) || solve_axis(relative, {}, left, profile) != AxisOutcome::ok) {
+  if (!(left.velocity > 1e-9 * limits_.velocity) ||
+      solve_axis(relative, {}, left, profile) != AxisOutcome::ok) {
     return toward_velocity(carried, 0, dt);
   }
   const AxisState before = state_;
   follow(profile, dt);
-  const double rest = state_.velocity + state_.acceleration * std::abs(state_.acceleration) / (2 * limits_.jerk);
+  const double rest =
+      state_.velocity + state_.acceleration * std::abs(state_.acceleration) / (2 * limits_.jerk);
   const double bound = limits_.velocity * (1 + 1e-9), push = limits_.acceleration * (1 + 1e-9);
-  if (std::abs(state_.velocity) > bound || std::abs(rest) > bound || std::abs(state_.acceleration) > push) {
+  if (std::abs(state_.velocity) > bound || std::abs(rest) > bound ||
+      std::abs(state_.acceleration) > push) {
     state_ = before;
     return toward_velocity(carried, 0, dt);
   }

@@ -10,7 +10,8 @@ namespace handsel {
 class SetpointFilter {
  public:
   SetpointFilter() = default;
-  SetpointFilter(const AxisState& state, const AxisLimits& limits) noexcept : state_(state), limits_(limits) {}
+  SetpointFilter(const AxisState& state, const AxisLimits& limits) noexcept
+      : state_(state), limits_(limits) {}
 
   /// One tick toward a velocity and acceleration (clamped to the limits; not finite: 0).
   const AxisState& toward_velocity(double velocity, double acceleration, double dt) noexcept;

@@ -47,8 +47,8 @@ std::string_view name(SetpointRefusal::Reason reason);
 class SetpointGate {
  public:
   /// Axes with lower >= upper have no bounds.
-  SetpointGate(const KinematicLimits& limits, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
-               const SetpointGateSettings& settings);
+  SetpointGate(const KinematicLimits& limits, const Eigen::VectorXd& lower,
+               const Eigen::VectorXd& upper, const SetpointGateSettings& settings);
 
   /// The next set-point is the first: it must continue from rest at its own position. Whether that
   /// position may be followed is the caller's.
@@ -56,19 +56,22 @@ class SetpointGate {
   /// Checks a set-point that arrived at `now` [s], by a clock that never stands still; one that is
   /// not refused becomes the one the next is checked against. The vectors have as many elements as
   /// there are axes.
-  SetpointRefusal check(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
-                        std::uint64_t sequence, double now) noexcept;
+  SetpointRefusal check(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity,
+                        const Eigen::VectorXd& acceleration, std::uint64_t sequence,
+                        double now) noexcept;
   /// Checks one state by itself: is it within the limits and bounds, and can it be stopped within
   /// them?
   SetpointRefusal check_state(const AxisState& s, Eigen::Index axis) const noexcept;
   /// Whether a stop from this state with these limits stays within the bounds.
-  bool stops_within_bounds(const AxisState& s, Eigen::Index axis, const AxisLimits& limits) const noexcept;
+  bool stops_within_bounds(const AxisState& s, Eigen::Index axis,
+                           const AxisLimits& limits) const noexcept;
   /// Returns the limits given at construction.
   const KinematicLimits& limits() const { return limits_; }
 
  private:
   double margin(Eigen::Index axis) const noexcept;
-  SetpointRefusal check_step(const AxisState& from, const AxisState& to, Eigen::Index axis, double t) const noexcept;
+  SetpointRefusal check_step(const AxisState& from, const AxisState& to, Eigen::Index axis,
+                             double t) const noexcept;
 
   KinematicLimits limits_;
   Eigen::VectorXd lower_, upper_;

@@ -37,15 +37,21 @@ class SynchronisedBatch {
 
   /// Of a problem that was not solved only outcome() and axis() are to be used: what failed and
   /// where.
-  AxisOutcome outcome(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].outcome; }
+  AxisOutcome outcome(int problem) const noexcept {
+    return problems_[static_cast<std::size_t>(problem)].outcome;
+  }
   /// Returns the axis at which the problem failed; without meaning when its outcome is ok.
   int axis(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].axis; }
   /// Returns the duration that all axes of a solved problem have [s].
-  double duration(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].duration; }
+  double duration(int problem) const noexcept {
+    return problems_[static_cast<std::size_t>(problem)].duration;
+  }
   /// Returns the minimum duration of one axis alone [s].
   double minimum(int problem, int axis) const noexcept { return minima_[entry(problem, axis)]; }
   /// Returns the motion of one axis of a solved problem; valid until the next solve().
-  const AxisProfile& profile(int problem, int axis) const noexcept { return profiles_[entry(problem, axis)]; }
+  const AxisProfile& profile(int problem, int axis) const noexcept {
+    return profiles_[entry(problem, axis)];
+  }
 
  private:
   struct Problem {
@@ -55,7 +61,8 @@ class SynchronisedBatch {
     bool open{};
   };
   std::size_t entry(int problem, int axis) const noexcept {
-    return static_cast<std::size_t>(problem) * static_cast<std::size_t>(axes_) + static_cast<std::size_t>(axis);
+    return static_cast<std::size_t>(problem) * static_cast<std::size_t>(axes_) +
+           static_cast<std::size_t>(axis);
   }
   void take_over(const detail::AxisBatchInput& in, int entry) noexcept;
   void find_durations(int count) noexcept;
@@ -75,7 +82,8 @@ class SynchronisedAxes {
  public:
   explicit SynchronisedAxes(int axes) : batch_(axes, 1), axes_(axes) {}
   /// On false `outcome()` and `axis()` say what failed and where; the profiles are not to be used.
-  bool solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept;
+  bool solve(const MotionState3& from, const MotionState3& to,
+             const KinematicLimits& limits) noexcept;
   /// Returns the duration that all axes have [s].
   double duration() const noexcept { return batch_.duration(0); }
   /// Returns the minimum duration of one axis alone [s].
@@ -83,7 +91,9 @@ class SynchronisedAxes {
   /// Returns the motion of one axis; valid until the next solve().
   const AxisProfile& profile(int axis) const noexcept { return batch_.profile(0, axis); }
   /// Returns what failed, wrong_size also for vectors that do not have as many elements as axes.
-  AxisOutcome outcome() const noexcept { return wrong_size_ ? AxisOutcome::wrong_size : batch_.outcome(0); }
+  AxisOutcome outcome() const noexcept {
+    return wrong_size_ ? AxisOutcome::wrong_size : batch_.outcome(0);
+  }
   /// Returns the axis that failed; without meaning for ok and wrong_size.
   int axis() const noexcept { return batch_.axis(0); }
 
@@ -96,7 +106,7 @@ class SynchronisedAxes {
 /// `imposed`: duration wanted [s]. Below the minimum of an axis it is refused; where an axis cannot
 /// keep its limits for exactly that duration, that axis gets three segments and `excess` says by
 /// how much they break the limits.
-Solution solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits, Sync sync = Sync::time,
-               std::optional<double> imposed = std::nullopt);
+Solution solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits,
+               Sync sync = Sync::time, std::optional<double> imposed = std::nullopt);
 
 }  // namespace handsel

@@ -5,7 +5,8 @@
 
 namespace handsel {
 
-void critical_movement(double v, double a, double v_end, double a_end, double A, double J, AxisProfile& out) noexcept {
+void critical_movement(double v, double a, double v_end, double a_end, double A, double J,
+                       AxisProfile& out) noexcept {
   out.clear();
   if (std::abs(a) > A) {
     const double side = a > 0 ? 1 : -1, t = (std::abs(a) - A) / J;
@@ -41,7 +42,8 @@ StopMeasure measure_stop(double v, double a, double A, double J) noexcept {
 
 void JerkLimitedStop::init(const AxisState& state, const AxisLimits& limits) noexcept {
   state_ = segment_start_ = state;
-  critical_movement(state.velocity, state.acceleration, 0, 0, limits.acceleration, limits.jerk, profile_);
+  critical_movement(state.velocity, state.acceleration, 0, 0, limits.acceleration, limits.jerk,
+                    profile_);
   segment_ = 0;
   elapsed_ = 0;
 }
@@ -71,8 +73,10 @@ Trajectory stop_trajectory(const MotionState3& state, const KinematicLimits& lim
   Trajectory out;
   for (Eigen::Index i = 0; i < state.position.size(); ++i) {
     AxisProfile p;
-    critical_movement(state.velocity[i], state.acceleration[i], 0, 0, limits.acceleration[i], limits.jerk[i], p);
-    out.axes.push_back({{state.position[i], state.velocity[i], state.acceleration[i]}, {p.segments.begin(), p.segments.begin() + p.count}});
+    critical_movement(state.velocity[i], state.acceleration[i], 0, 0, limits.acceleration[i],
+                      limits.jerk[i], p);
+    out.axes.push_back({{state.position[i], state.velocity[i], state.acceleration[i]},
+                        {p.segments.begin(), p.segments.begin() + p.count}});
   }
   const double longest = out.duration();
   for (AxisTrajectory& axis : out.axes) {

@@ -9,8 +9,9 @@ namespace handsel {
 /// Fastest change from (v, a) to (v_end, a_end), position free: at most three segments, four when
 /// |a| starts beyond the limit. The velocity goes beyond both ends only where the start
 /// acceleration makes it. Never fails for finite numbers and positive limits.
-void critical_movement(double velocity, double acceleration, double velocity_end, double acceleration_end, double max_acceleration,
-                       double max_jerk, AxisProfile& out) noexcept;
+void critical_movement(double velocity, double acceleration, double velocity_end,
+                       double acceleration_end, double max_acceleration, double max_jerk,
+                       AxisProfile& out) noexcept;
 
 /// Time and distance of the minimum-time stop.
 struct StopMeasure {
@@ -19,7 +20,8 @@ struct StopMeasure {
 };
 /// Returns duration and distance of the stop from this velocity and acceleration by
 /// critical_movement().
-StopMeasure measure_stop(double velocity, double acceleration, double max_acceleration, double max_jerk) noexcept;
+StopMeasure measure_stop(double velocity, double acceleration, double max_acceleration,
+                         double max_jerk) noexcept;
 
 /// A stop in progress, for a cycle: no allocation.
 class JerkLimitedStop {

@@ -38,17 +38,27 @@ const char* reason(SwitchOutcome outcome) noexcept {
 }
 
 bool same_motion(const MotionState3& a, const MotionState3& b) noexcept {
-  const auto same = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y) { return ((x - y).array().abs() <= kRounding).all(); };
-  return same(a.position, b.position) && same(a.velocity, b.velocity) && same(a.acceleration, b.acceleration);
+  const auto same = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+    return ((x - y).array().abs() <= kRounding).all();
+  };
+  return same(a.position, b.position) && same(a.velocity, b.velocity) &&
+         same(a.acceleration, b.acceleration);
 }
 
 TrajectorySwitch::TrajectorySwitch(int axes)
-    : n_(axes), problems_(axes), profiles_(axes), start_(axes), there_(rest_state(Eigen::VectorXd::Zero(axes))), at_(axes), left_(axes) {
+    : n_(axes),
+      problems_(axes),
+      profiles_(axes),
+      start_(axes),
+      there_(rest_state(Eigen::VectorXd::Zero(axes))),
+      at_(axes),
+      left_(axes) {
   jerk_ = Eigen::VectorXd::Zero(axes);
   reduced_ = {jerk_, jerk_, jerk_};
 }
 
-double TrajectorySwitch::meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t,
+double TrajectorySwitch::meeting(const MotionState3& now, const SegmentTable& next,
+                                 const KinematicLimits& limits, double t,
                                  double min_duration) noexcept {
   next.evaluate(t, cursor_, there_);
   if (min_duration == 0 && same_motion(now, there_)) return 0;
@@ -69,9 +79,11 @@ double TrajectorySwitch::meeting(const MotionState3& now, const SegmentTable& ne
   return common;
 }
 
-bool TrajectorySwitch::best_place(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits,
+bool TrajectorySwitch::best_place(const MotionState3& now, const SegmentTable& next,
+                                  const KinematicLimits& limits,
                                   const SwitchSettings& settings) noexcept {
-  const double first = std::clamp(settings.first, 0.0, next.duration()), last = std::clamp(settings.last, first, next.duration());
+  const double first = std::clamp(settings.first, 0.0, next.duration()),
+               last = std::clamp(settings.last, first, next.duration());
   const int tries = std::max(2, settings.tries);
   const double spacing = (last - first) / (tries - 1);
   double best = kNever;
@@ -92,7 +104,8 @@ bool TrajectorySwitch::best_place(const MotionState3& now, const SegmentTable& n
   return true;
 }
 
-bool TrajectorySwitch::earliest_meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits,
+bool TrajectorySwitch::earliest_meeting(const MotionState3& now, const SegmentTable& next,
+                                        const KinematicLimits& limits,
                                         const SwitchSettings& settings) noexcept {
   constexpr double kStep = 2e-3;
   double t = std::max(0.0, settings.first), missed = -1;
@@ -115,7 +128,8 @@ bool TrajectorySwitch::earliest_meeting(const MotionState3& now, const SegmentTa
   return connect_ <= good;
 }
 
-bool TrajectorySwitch::make_profiles(const MotionState3& now, const KinematicLimits& guard) noexcept {
+bool TrajectorySwitch::make_profiles(const MotionState3& now,
+                                     const KinematicLimits& guard) noexcept {
   for (int i = 0; i < n_; ++i) {
     if (connect_ == 0) {
       profiles_[i].clear();
@@ -124,36 +138,44 @@ bool TrajectorySwitch::make_profiles(const MotionState3& now, const KinematicLim
     }
     if (problems_[i].profile(connect_, profiles_[i]) != AxisOutcome::ok) return false;
     start_[i] = {now.position[i], now.velocity[i], now.acceleration[i]};
-    const AxisExtremes e = rate_extremes(start_[i], profiles_[i].segments.data(), profiles_[i].count);
+    const AxisExtremes e =
+        rate_extremes(start_[i], profiles_[i].segments.data(), profiles_[i].count);
     const double allowed = 1 + kTolerance;
-    if (e.velocity > guard.velocity[i] * allowed || e.acceleration > guard.acceleration[i] * allowed || e.jerk > guard.jerk[i] * allowed) {
+    if (e.velocity > guard.velocity[i] * allowed ||
+        e.acceleration > guard.acceleration[i] * allowed || e.jerk > guard.jerk[i] * allowed) {
       return false;
     }
   }
   return true;
 }
 
-SwitchOutcome TrajectorySwitch::plan(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits,
+SwitchOutcome TrajectorySwitch::plan(const MotionState3& now, const SegmentTable& next,
+                                     const KinematicLimits& limits,
                                      const SwitchSettings& settings) noexcept {
-  if (n_ == 0 || next.axes() != n_ || now.position.size() != n_ || now.velocity.size() != n_ || now.acceleration.size() != n_ ||
-      limits.velocity.size() != n_ || limits.acceleration.size() != n_ || limits.jerk.size() != n_) {
+  if (n_ == 0 || next.axes() != n_ || now.position.size() != n_ || now.velocity.size() != n_ ||
+      now.acceleration.size() != n_ || limits.velocity.size() != n_ ||
+      limits.acceleration.size() != n_ || limits.jerk.size() != n_) {
     return SwitchOutcome::wrong_size;
   }
-  if (!now.position.allFinite() || !now.velocity.allFinite() || !now.acceleration.allFinite()) return SwitchOutcome::not_finite;
+  if (!now.position.allFinite() || !now.velocity.allFinite() || !now.acceleration.allFinite())
+    return SwitchOutcome::not_finite;
   const double reserve = std::max(1.0, settings.reserve);
   bool beyond = false;
   for (int i = 0; i < n_; ++i) {
-    const double V = limits.velocity[i], A = limits.acceleration[i], J = limits.jerk[i], a = now.acceleration[i];
+    const double V = limits.velocity[i], A = limits.acceleration[i], J = limits.jerk[i],
+                 a = now.acceleration[i];
     if (!(V > 0 && A > 0 && J > 0) || !std::isfinite(V + A + J)) return SwitchOutcome::bad_limits;
     const double leads_to = now.velocity[i] + a * std::abs(a) / (2 * J), allowed = 1 + kTolerance;
-    beyond = beyond || std::abs(a) > A * allowed || std::abs(now.velocity[i]) > V * allowed || std::abs(leads_to) > V * allowed;
+    beyond = beyond || std::abs(a) > A * allowed || std::abs(now.velocity[i]) > V * allowed ||
+             std::abs(leads_to) > V * allowed;
   }
   if (beyond) return SwitchOutcome::start_beyond_limits;
   for (const double share : {reserve, std::sqrt(reserve), 1.0}) {
     reduced_.velocity = limits.velocity / share;
     reduced_.acceleration = limits.acceleration / share;
     reduced_.jerk = limits.jerk / share;
-    const bool found = settings.on_clock ? earliest_meeting(now, next, reduced_, settings) : best_place(now, next, reduced_, settings);
+    const bool found = settings.on_clock ? earliest_meeting(now, next, reduced_, settings)
+                                         : best_place(now, next, reduced_, settings);
     if (found && make_profiles(now, limits)) return SwitchOutcome::ok;
   }
   return SwitchOutcome::nowhere;
@@ -179,22 +201,28 @@ void TrajectorySwitch::add_to(SegmentTable& out, const SegmentTable& next) noexc
       there_.acceleration[i] = start_[i].acceleration;
       jerk_[i] = at_[i] < profiles_[i].count ? profiles_[i].segments[at_[i]].jerk : 0.0;
       start_[i] = advanced(start_[i], step, jerk_[i]);
-      if ((left_[i] -= step) <= 0) left_[i] = ++at_[i] < profiles_[i].count ? profiles_[i].segments[at_[i]].duration : kNever;
+      if ((left_[i] -= step) <= 0)
+        left_[i] = ++at_[i] < profiles_[i].count ? profiles_[i].segments[at_[i]].duration : kNever;
     }
     t += step;
-    if (step > kShortest) out.add(step, there_.position.data(), there_.velocity.data(), there_.acceleration.data(), jerk_.data());
+    if (step > kShortest)
+      out.add(step, there_.position.data(), there_.velocity.data(), there_.acceleration.data(),
+              jerk_.data());
   }
   add_part(next, join_, next.duration(), out, there_);
 }
 
-AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept {
+AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits,
+                        AxisProfile& out) noexcept {
   AxisProblem problem, wider;
   const AxisOutcome outcome = problem.init(from, to, limits);
   if (outcome != AxisOutcome::ok) return outcome;
   problem.minimum_profile(out);
   for (const double by : {1e-9, 1e-7}) {
-    const AxisLimits l{limits.velocity * (1 + by), limits.acceleration * (1 + by), limits.jerk * (1 + by)};
-    if (wider.init(from, to, l) == AxisOutcome::ok && wider.minimum() < problem.minimum() * (1 - 1e-3) - 1e-9) {
+    const AxisLimits l{limits.velocity * (1 + by), limits.acceleration * (1 + by),
+                       limits.jerk * (1 + by)};
+    if (wider.init(from, to, l) == AxisOutcome::ok &&
+        wider.minimum() < problem.minimum() * (1 - 1e-3) - 1e-9) {
       wider.minimum_profile(out);
       break;
     }
@@ -202,19 +230,23 @@ AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLi
   return AxisOutcome::ok;
 }
 
-void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state) noexcept {
+void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out,
+              MotionState3& state) noexcept {
   if (!(end - begin > kShortest)) return;
   int cursor = 0;
   for (int k = from.find(begin, 0); k < from.segments() && from.knot(k) < end; ++k) {
-    const double start = std::max(begin, from.knot(k)), length = std::min(end, from.knot(k + 1)) - start;
+    const double start = std::max(begin, from.knot(k)),
+                 length = std::min(end, from.knot(k + 1)) - start;
     if (!(length > kShortest)) continue;
     cursor = k;
     from.evaluate(start, cursor, state);
-    out.add(length, state.position.data(), state.velocity.data(), state.acceleration.data(), from.jerks(k));
+    out.add(length, state.position.data(), state.velocity.data(), state.acceleration.data(),
+            from.jerks(k));
   }
 }
 
-Switched switch_to(const MotionState3& now, const Trajectory& next, const KinematicLimits& limits, const SwitchSettings& settings) {
+Switched switch_to(const MotionState3& now, const Trajectory& next, const KinematicLimits& limits,
+                   const SwitchSettings& settings) {
   Switched out;
   if (out.reason = why_not_within(next, limits, kTolerance); !out.ok()) {
     out.reason = "the new trajectory: " + out.reason;
@@ -222,7 +254,8 @@ Switched switch_to(const MotionState3& now, const Trajectory& next, const Kinema
   }
   const SegmentTable table(next);
   TrajectorySwitch connection(next.size());
-  if (const SwitchOutcome outcome = connection.plan(now, table, limits, settings); outcome != SwitchOutcome::ok) {
+  if (const SwitchOutcome outcome = connection.plan(now, table, limits, settings);
+      outcome != SwitchOutcome::ok) {
     out.reason = reason(outcome);
     return out;
   }

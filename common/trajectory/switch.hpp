@@ -53,7 +53,8 @@ class TrajectorySwitch {
 
   /// Plans the connecting motion from `now` to a state of `next`. On anything but ok the functions
   /// below are not to be used.
-  SwitchOutcome plan(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
+  SwitchOutcome plan(const MotionState3& now, const SegmentTable& next,
+                     const KinematicLimits& limits, const SwitchSettings&) noexcept;
 
   /// On the new trajectory's own time; beyond its end only on the clock [s].
   double joins_at() const noexcept { return join_; }
@@ -63,9 +64,12 @@ class TrajectorySwitch {
   void add_to(SegmentTable& out, const SegmentTable& next) noexcept;
 
  private:
-  double meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t, double min_duration) noexcept;
-  bool best_place(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
-  bool earliest_meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
+  double meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits,
+                 double t, double min_duration) noexcept;
+  bool best_place(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits,
+                  const SwitchSettings&) noexcept;
+  bool earliest_meeting(const MotionState3& now, const SegmentTable& next,
+                        const KinematicLimits& limits, const SwitchSettings&) noexcept;
   bool make_profiles(const MotionState3& now, const KinematicLimits& guard) noexcept;
 
   int n_;
@@ -85,11 +89,13 @@ class TrajectorySwitch {
 /// when it is planned anew each tick. Such a motion is often the only one for its duration, and
 /// rounding decides whether it is found; so limits wider by 1e-9, then 1e-7, are tried too, and
 /// taken where the motion is then shorter by more than that could make it.
-AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept;
+AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits,
+                        AxisProfile& out) noexcept;
 
 /// The rows of `from` in [begin, its end], or up to `end`, added to `out`. No allocation within the
 /// room of `out`.
-void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state) noexcept;
+void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out,
+              MotionState3& state) noexcept;
 
 struct Switched {
   /// From the present state: the connecting motion, then the rest of the new trajectory.
@@ -103,6 +109,7 @@ struct Switched {
 
 /// The same outside of a cycle. `limits` as for the time scaling (time_scaling.hpp): what must hold
 /// at every instant.
-Switched switch_to(const MotionState3& now, const Trajectory& next, const KinematicLimits& limits, const SwitchSettings& settings = {});
+Switched switch_to(const MotionState3& now, const Trajectory& next, const KinematicLimits& limits,
+                   const SwitchSettings& settings = {});
 
 }  // namespace handsel

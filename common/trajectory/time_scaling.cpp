@@ -11,7 +11,8 @@
 namespace handsel {
 
 namespace {
-// Of the guard: what is planned with leaves something for what happens between two steps, and for rounding of what was planned.
+// Of the guard: what is planned with leaves something for what happens between two steps, and for
+// rounding of what was planned.
 constexpr double kMargin = 0.99;
 constexpr double kAllowed = 1 + 5e-7;
 constexpr double kWhole = 1 - 1e-4;
@@ -23,7 +24,8 @@ constexpr double kLanded = 1e-9;
 /// What happens to tau, alpha and its rate in a time of constant alpha''.
 template <typename State>
 State moved(const State& s, double u, double t) noexcept {
-  return {s.tau + t * (s.alpha + t * (s.beta / 2 + t * u / 6)), s.alpha + t * (s.beta + t * u / 2), s.beta + t * u};
+  return {s.tau + t * (s.alpha + t * (s.beta / 2 + t * u / 6)), s.alpha + t * (s.beta + t * u / 2),
+          s.beta + t * u};
 }
 
 bool still(const MotionState3& s) noexcept {
@@ -38,9 +40,11 @@ std::string why_not_runnable(const Trajectory& trajectory, const KinematicLimits
   return {};
 }
 
-std::string TimeScaling::init(const Trajectory& trajectory, const KinematicLimits& guard, double step, double alpha) {
+std::string TimeScaling::init(const Trajectory& trajectory, const KinematicLimits& guard,
+                              double step, double alpha) {
   if (std::string why = why_not_runnable(trajectory, guard); !why.empty()) return why;
-  if (!(step > 0) || !(std::abs(alpha) <= 1)) return "the step must be positive and alpha in [-1, 1]";
+  if (!(step > 0) || !(std::abs(alpha) <= 1))
+    return "the step must be positive and alpha in [-1, 1]";
   const MotionState3 start = trajectory.at(0);
   const bool starts_still = still(start);
   if (!starts_still && alpha != 1) return "a trajectory that starts moving must start with alpha 1";
@@ -70,12 +74,16 @@ std::string TimeScaling::init(const Trajectory& trajectory, const KinematicLimit
   return {};
 }
 
-SwitchOutcome TimeScaling::take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
+SwitchOutcome TimeScaling::take_over(const MotionState3& from, const Now& at, double keep_from,
+                                     double leave, const SegmentTable& next,
                                      const SwitchSettings& settings) noexcept {
-  if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings); found != SwitchOutcome::ok) return found;
+  if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings);
+      found != SwitchOutcome::ok)
+    return found;
   const int coming = connection_.segments() + next.segments() + 1;
   const auto fits = [&](double begin) {
-    return (begin < leave ? table_.find(leave, 0) - table_.find(begin, 0) + 1 : 0) + coming <= spare_.room();
+    return (begin < leave ? table_.find(leave, 0) - table_.find(begin, 0) + 1 : 0) + coming <=
+           spare_.room();
   };
   const bool ahead = leave > at.tau;
   const double kept = fits(keep_from) ? keep_from : ahead ? std::max(0.0, at.tau) : leave;
@@ -86,7 +94,9 @@ SwitchOutcome TimeScaling::take_over(const MotionState3& from, const Now& at, do
   const bool has_past = spare_.segments() > 0;
   switched_at_ = has_past ? spare_.duration() : 0.0;
   connection_.add_to(spare_, next);
-  if (spare_.segments() == 0) spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), jerk_.setZero().data());
+  if (spare_.segments() == 0)
+    spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(),
+               jerk_.setZero().data());
   std::swap(table_, spare_);
   now_ = {ahead ? at.tau - kept : switched_at_, at.alpha, at.beta};
   if (!has_past)
@@ -124,7 +134,8 @@ void TimeScaling::undo_switch() noexcept {
   back_to_before();
 }
 
-SwitchOutcome TimeScaling::switch_to(const SegmentTable& next, const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::switch_to(const SegmentTable& next,
+                                     const SwitchSettings& settings) noexcept {
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   table_.evaluate(now_.tau, cursor_, from_);
   const bool ended = now_.tau <= 0 ? lowest_ < 0 && still(from_) : now_.tau >= duration();
@@ -140,7 +151,8 @@ SwitchOutcome TimeScaling::switch_to(const SegmentTable& next, const SwitchSetti
   return take_over(from_, now_, lowest_ < 0 ? 0.0 : now_.tau, now_.tau, next, settings);
 }
 
-SwitchOutcome TimeScaling::switch_at(double leave, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::switch_at(double leave, const SegmentTable& next,
+                                     const SwitchSettings& settings) noexcept {
   if (!(leave > now_.tau) || !(now_.tau < duration())) return switch_to(next, settings);
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   leave = std::min(leave, duration());
@@ -152,7 +164,8 @@ SwitchOutcome TimeScaling::switch_at(double leave, const SegmentTable& next, con
   return take_over(from_, now_, lowest_ < 0 ? 0.0 : std::max(0.0, now_.tau), leave, next, settings);
 }
 
-SwitchOutcome TimeScaling::start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::start_from(const MotionState3& state, const SegmentTable& next,
+                                      const SwitchSettings& settings) noexcept {
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   const double target = target_;
   target_ = 1;
@@ -171,7 +184,9 @@ bool TimeScaling::begin_with(double alpha) noexcept {
   return true;
 }
 
-void TimeScaling::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
+void TimeScaling::set_target(double alpha) noexcept {
+  target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0;
+}
 
 void TimeScaling::rates_at(double tau, Rates& r) const noexcept {
   if (tau < 0 || tau >= table_.duration()) {
@@ -187,7 +202,8 @@ detail::ScalingStep TimeScaling::step_from(const Now& s) const noexcept {
   return {s.alpha, s.beta, step_, kMargin, kWhole, limits_.data()->value, table_.stride()};
 }
 
-bool TimeScaling::pushes(const Now& s, const Rates& begin, const Rates& end, double* range) noexcept {
+bool TimeScaling::pushes(const Now& s, const Rates& begin, const Rates& end,
+                         double* range) noexcept {
   const detail::BatchKernels& kernels = detail::batch_kernels();
   const detail::ScalingStep at = step_from(s);
   const double h = step_;
@@ -196,11 +212,13 @@ bool TimeScaling::pushes(const Now& s, const Rates& begin, const Rates& end, dou
   bool possible = kernels.push_range(at, begin.data(), end.data(), range);
   const int from = std::min(begin.segment, end.segment), to = std::max(begin.segment, end.segment);
   // Where a step ends is known up to what alpha'' adds; a knot that near is passed, or not.
-  const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h / 6, stop = s.tau + span;
+  const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h / 6,
+               stop = s.tau + span;
   const bool on = span >= 0 && to + 1 < table_.segments() && table_.knot(to + 1) - stop < unsure;
   const bool back = span < 0 && from > 0 && stop - table_.knot(from) < unsure;
   for (int k = from - back; k < to + on; ++k) {
-    const double knot = table_.knot(k + 1), after = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
+    const double knot = table_.knot(k + 1),
+                 after = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
     for (const int side : {k, k + 1}) {
       table_.rates(knot, side, between_.data());
       possible = kernels.push_range_at(at, after, between_.data(), range) && possible;
@@ -210,12 +228,16 @@ bool TimeScaling::pushes(const Now& s, const Rates& begin, const Rates& end, dou
 }
 
 bool TimeScaling::holds(const Now& s, const Now& next, double push) const noexcept {
-  return detail::batch_kernels().step_holds(step_from(s), step_from(next), push, kAllowed, begin_.data(), end_.data());
+  return detail::batch_kernels().step_holds(step_from(s), step_from(next), push, kAllowed,
+                                            begin_.data(), end_.data());
 }
 
-/// False if the way back to a constant alpha leaves the limits anywhere; where alpha leaves its range, that is what it ends with.
+/// False if the way back to a constant alpha leaves the limits anywhere; where alpha leaves its
+/// range, that is what it ends with.
 bool TimeScaling::recover(Now s, Recovery& out) noexcept {
-  const auto allowed = [this](double alpha) { return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded; };
+  const auto allowed = [this](double alpha) {
+    return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded;
+  };
   out.next = out.count = 0;
   out.end = std::numeric_limits<double>::quiet_NaN();
   rates_at(s.tau, begin_);
@@ -259,7 +281,9 @@ double TimeScaling::choose() noexcept {
   rates_at(now_.tau + step_ * (now_.alpha + step_ * now_.beta / 2), end_);
   double range[2];
   if (!pushes(now_, begin_, end_, range)) return recovery_.take();
-  const double safe = recovery_.next < recovery_.count ? recovery_.pushes[static_cast<std::size_t>(recovery_.next)] : 0.0,
+  const double safe = recovery_.next < recovery_.count
+                          ? recovery_.pushes[static_cast<std::size_t>(recovery_.next)]
+                          : 0.0,
                full = range[want > 0] - safe;
   const auto miss = [&](double share, double* out) {
     const double u = safe + share * full;

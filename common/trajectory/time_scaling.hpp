@@ -32,7 +32,8 @@ class TimeScaling {
   /// backwards. Returns why not, or nothing. Allocates; nothing else does as long as what a switch
   /// makes stays below kRoom segments (all axes split alike). `step`: how often alpha'' is chosen
   /// [s]; best the control period. `alpha`: in force at first.
-  std::string init(const Trajectory&, const KinematicLimits& guard, double step = 0.001, double alpha = 1.0);
+  std::string init(const Trajectory&, const KinematicLimits& guard, double step = 0.001,
+                   double alpha = 1.0);
 
   /// Switches to another trajectory from where the path is now; alpha is kept. At rest it starts
   /// from rest; while running back the motion continues in its direction, and never runs back
@@ -41,12 +42,14 @@ class TimeScaling {
   SwitchOutcome switch_to(const SegmentTable& next, const SwitchSettings& = {}) noexcept;
   /// The same, but the switch point is `leave` on its time() [s]; the path beyond is given up. A
   /// time already passed counts as now.
-  SwitchOutcome switch_at(double leave, const SegmentTable& next, const SwitchSettings& = {}) noexcept;
+  SwitchOutcome switch_at(double leave, const SegmentTable& next,
+                          const SwitchSettings& = {}) noexcept;
   /// Takes the last switch back, as if it had not been; before the next advance() only.
   void undo_switch() noexcept;
   /// Starts on a trajectory from any state of the axes, moving or not, whatever ran before; alpha
   /// is 1, and it never runs back beyond here.
-  SwitchOutcome start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& = {}) noexcept;
+  SwitchOutcome start_from(const MotionState3& state, const SegmentTable& next,
+                           const SwitchSettings& = {}) noexcept;
 
   /// Sets alpha and the target at once, clamped to [0, 1], where the path itself is at rest (as at
   /// its beginning). Returns false, and changes nothing, elsewhere.
@@ -110,8 +113,8 @@ class TimeScaling {
   };
   bool recover(Now s, Recovery& out) noexcept;
   Now next_of(const Now& s, double u) const noexcept;
-  SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
-                          const SwitchSettings& settings) noexcept;
+  SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, double leave,
+                          const SegmentTable& next, const SwitchSettings& settings) noexcept;
   void back_to_before() noexcept;
   double choose() noexcept;
   void publish() noexcept;
@@ -125,8 +128,9 @@ class TimeScaling {
   struct Before {
     Now now;
     double lowest{}, target{}, offset{}, joined_at{}, switched_at{};
-  } before_;                              // the last switch
-  std::vector<detail::BatchRow> limits_;  // of acceleration, then of jerk; as table_ lays out its axes
+  } before_;  // the last switch
+  std::vector<detail::BatchRow>
+      limits_;  // of acceleration, then of jerk; as table_ lays out its axes
   double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{};
   Now now_, tick_;
   Recovery recovery_, tried_, best_;  // from now; of the choice tried; of the best choice so far

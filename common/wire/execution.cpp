@@ -75,7 +75,8 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.integer("cycles", m.cycles, w.cycles);
   io.integer("late_cycles", m.late_cycles, w.late_cycles);
   io.number("limit_ratio_velocity", m.limit_ratio_velocity, w.limit_ratio_velocity, kLimitRatio);
-  io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration, kLimitRatio);
+  io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration,
+            kLimitRatio);
   io.number("limit_ratio_jerk", m.limit_ratio_jerk, w.limit_ratio_jerk, kLimitRatio);
   io.horizon("separation", m.separation, w.separation, -1e4);
   io.number("separation_limit", m.separation_limit, w.separation_limit, {0, 1e4});
@@ -97,8 +98,10 @@ void describe(WireIo& io, ActiveTrajectory& m, handsel_ActiveTrajectory& w) {
   io.part("rest", m.rest, w.rest);
   io.part("attachment", m.attachment, w.attachment);
   describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
-  io.check(m.velocity.size() == m.position.size(), "velocity", "has not as many values as position");
-  io.check(m.acceleration.size() == m.position.size(), "acceleration", "has not as many values as position");
+  io.check(m.velocity.size() == m.position.size(), "velocity",
+           "has not as many values as position");
+  io.check(m.acceleration.size() == m.position.size(), "acceleration",
+           "has not as many values as position");
   io.check(m.axes.size() == m.rest.axes.size(), "axes", "are not as many as rest.axes");
 }
 

@@ -60,7 +60,8 @@ class MessageType {
   /// As above. In an observation, malformed elements of a list are left out singly and counted
   /// (idl/README.md); every other message is accepted or
   /// rejected whole.
-  virtual bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements& left_out) const = 0;
+  virtual bool from_wire(const void* wire, void* message, std::string& why,
+                         LeftOutElements& left_out) const = 0;
   /// Returns the stamp of an IDL sample [ns]; 0: unknown.
   virtual Stamp stamp(const void* wire) const = 0;
   /// Replaces the stamp of an IDL sample [ns].

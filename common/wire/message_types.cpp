@@ -9,7 +9,8 @@ const MessageType& message_type(std::size_t index) {
 #define HANDSEL_ROW(type, topic, ...) &message_type<type>,
   static constexpr Get kTypes[] = {HANDSEL_TOPICS(HANDSEL_ROW)};
 #undef HANDSEL_ROW
-  if (index >= std::size(kTypes)) throw std::out_of_range("message_type: index beyond the table of topics");
+  if (index >= std::size(kTypes))
+    throw std::out_of_range("message_type: index beyond the table of topics");
   return kTypes[index]();
 }
 

@@ -56,6 +56,8 @@ void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w) {
   io.number("age", m.age, w.age, kTime);
 }
 
-void describe(WireIo& io, Vector& m, handsel_AxisPoint& w) { io.vector("values", m, w.values, kCoordinate); }
+void describe(WireIo& io, Vector& m, handsel_AxisPoint& w) {
+  io.vector("values", m, w.values, kCoordinate);
+}
 
 }  // namespace handsel

@@ -18,7 +18,7 @@ using Text = WireIo::Text;
 
 /// Texts that are too long are cut when sent.
 void describe(WireIo& io, Refusal& m, handsel_Refusal& w);
-void describe(WireIo& io, Segment& m, handsel_Segment& w);                ///< duration [0, 1e4] s, |jerk| <= 1e9
+void describe(WireIo& io, Segment& m, handsel_Segment& w);  ///< duration [0, 1e4] s, |jerk| <= 1e9
 void describe(WireIo& io, AxisTrajectory& m, handsel_AxisTrajectory& w);  ///< at most 4096 segments
 /// At most 64 axes of equal duration (1e-6 s).
 void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w);
@@ -30,7 +30,9 @@ void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);    ///< needs a n
 void describe(WireIo& io, Person& m, handsel_Person& w);
 
 /// Describes the field `allowed_contacts`: at most 32 names, none empty.
-inline void describe_contacts(WireIo& io, std::vector<std::string>& m, dds_sequence_string64& w) { io.texts("allowed_contacts", m, w, 32); }
+inline void describe_contacts(WireIo& io, std::vector<std::string>& m, dds_sequence_string64& w) {
+  io.texts("allowed_contacts", m, w, 32);
+}
 
 /// Describes one point of a path: a struct of its own on the wire, a vector in the domain.
 void describe(WireIo& io, Vector& m, handsel_AxisPoint& w);
@@ -47,7 +49,8 @@ template <class M, class W>
 class DescribedType final : public MessageType {
  public:
   using Key = std::string_view (*)(const W&);
-  DescribedType(const dds_topic_descriptor_t& description, Key key_of) : descriptor_(description), key_(key_of) {}
+  DescribedType(const dds_topic_descriptor_t& description, Key key_of)
+      : descriptor_(description), key_(key_of) {}
 
   const TopicRow& row() const override { return TopicOf<M>::row; }
   const void* descriptor() const override { return &descriptor_; }
@@ -58,14 +61,17 @@ class DescribedType final : public MessageType {
     return io.ok();
   }
   using MessageType::from_wire;
-  bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements& left_out) const override {
+  bool from_wire(const void* wire, void* message, std::string& why,
+                 LeftOutElements& left_out) const override {
     WireIo io = WireIo::from_wire(row().type, why, &left_out);
     describe(io, *static_cast<M*>(message), *const_cast<W*>(static_cast<const W*>(wire)));
     return io.ok();
   }
   Stamp stamp(const void* wire) const override { return static_cast<const W*>(wire)->stamp; }
   void set_stamp(void* wire, Stamp stamp) const override { static_cast<W*>(wire)->stamp = stamp; }
-  std::string_view key(const void* wire) const override { return key_ ? key_(*static_cast<const W*>(wire)) : std::string_view(); }
+  std::string_view key(const void* wire) const override {
+    return key_ ? key_(*static_cast<const W*>(wire)) : std::string_view();
+  }
   std::string to_json(const void* message) const override {
     std::string out;
     W none{};
@@ -106,9 +112,10 @@ class DescribedType final : public MessageType {
     static const DescribedType<M, handsel_##M> type(handsel_##M##_desc, nullptr); \
     return type;                                                                  \
   }
-#define HANDSEL_WIRE_KEYED(M, KEY)                                                                                                     \
-  template <>                                                                                                                          \
-  const MessageType& message_type<M>() {                                                                                               \
-    static const DescribedType<M, handsel_##M> type(handsel_##M##_desc, [](const handsel_##M& w) { return std::string_view(w.KEY); }); \
-    return type;                                                                                                                       \
+#define HANDSEL_WIRE_KEYED(M, KEY)                                                         \
+  template <>                                                                              \
+  const MessageType& message_type<M>() {                                                   \
+    static const DescribedType<M, handsel_##M> type(                                       \
+        handsel_##M##_desc, [](const handsel_##M& w) { return std::string_view(w.KEY); }); \
+    return type;                                                                           \
   }

@@ -25,7 +25,8 @@ void describe(WireIo& io, ObservedPerson& m, handsel_ObservedPerson& w) {
     m.gaze_origin.setZero();
     m.gaze_direction = Vector3::UnitX();
   }
-  io.check(!m.joints.empty() || m.has_gaze, "joints", "hold no well-formed joint, and there is no well-formed gaze");
+  io.check(!m.joints.empty() || m.has_gaze, "joints",
+           "hold no well-formed joint, and there is no well-formed gaze");
 }
 
 void describe(WireIo& io, Coverage& m, handsel_Coverage& w) {

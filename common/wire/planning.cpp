@@ -7,7 +7,8 @@ namespace handsel {
 namespace {
 constexpr const char* kPlanners[] = {"automatic", "rrt", "rrt_connect", "trrt", "bitrrt"};
 constexpr const char* kSpaces[] = {"joint", "cartesian"};
-constexpr const char* kOutcomes[] = {"planned", "kept", "improved", "repaired", "replanned", "blocked"};
+constexpr const char* kOutcomes[] = {"planned",  "kept",      "improved",
+                                     "repaired", "replanned", "blocked"};
 constexpr Range kTurn{0, 3.1416};  // [rad]
 }  // namespace
 
@@ -36,8 +37,8 @@ void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
   io.flag("has_platform", m.has_platform, w.has_platform);
   io.point("platform", m.platform, w.platform);
   io.number("visible", m.visible, w.visible, {0, 1});
-  io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0, "pregrasp_joints",
-           "has not as many values as hand_joints");
+  io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0,
+           "pregrasp_joints", "has not as many values as hand_joints");
   io.check(m.hand_effort.size() == m.hand_joints.size() || m.hand_effort.size() == 0, "hand_effort",
            "has not as many values as hand_joints");
 }
@@ -69,8 +70,10 @@ void describe(WireIo& io, PathRequest& m, handsel_PathRequest& w) {
   io.flag("straight", m.straight, w.straight);
   io.list("running", m.running, w.running, 4096);
   io.flag("cancel", m.cancel, w.cancel);
-  io.check(static_cast<std::size_t>(m.also_goal.size()) == m.also.size(), "also_goal", "has not as many values as also");
-  io.check(m.cancel || m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
+  io.check(static_cast<std::size_t>(m.also_goal.size()) == m.also.size(), "also_goal",
+           "has not as many values as also");
+  io.check(m.cancel || m.start.size() > 0, "start",
+           "is empty, one value per axis of the robot is needed");
   io.check(equally_wide(m.goals), "goals", "have different numbers of axes");
   io.check(equally_wide(m.running), "running", "has points with different numbers of axes");
 }

@@ -18,7 +18,8 @@ void describe(WireIo& io, ServoReference& m, handsel_ServoReference& w) {
   io.number("payload", m.payload, w.payload, {0, 1e3});
   io.vector("other_payloads", m.other_payloads, w.other_payloads, {0, 1e3}, 3);
   const auto n = m.position.size();
-  io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has not as many values as position");
+  io.check(m.effort.size() == n || m.effort.size() == 0, "effort",
+           "has not as many values as position");
 }
 
 void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
@@ -41,10 +42,12 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
-  io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has not as many values as position");
+  io.check(m.effort.size() == n || m.effort.size() == 0, "effort",
+           "has not as many values as position");
   const auto held = m.reference.position.size();
   io.check(held == n || held == 0, "reference", "has not as many values as position");
-  io.check(m.external_torque.size() == n || m.external_torque.size() == 0, "external_torque", "has not as many values as position");
+  io.check(m.external_torque.size() == n || m.external_torque.size() == 0, "external_torque",
+           "has not as many values as position");
 }
 
 void describe(WireIo& io, JointCommand& m, handsel_JointCommand& w) {
@@ -61,7 +64,8 @@ void describe(WireIo& io, JointCommand& m, handsel_JointCommand& w) {
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
   io.check(m.acceleration.size() == n, "acceleration", "has not as many values as position");
-  io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has neither as many values as position nor none");
+  io.check(m.effort.size() == n || m.effort.size() == 0, "effort",
+           "has neither as many values as position nor none");
 }
 
 HANDSEL_WIRE_KEYED(RobotState, robot)

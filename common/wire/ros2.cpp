@@ -11,7 +11,8 @@
 namespace handsel {
 namespace {
 
-constexpr double kLargest = 1e4;  // [m], [rad], and their first derivatives, as everywhere on our wire
+constexpr double kLargest =
+    1e4;  // [m], [rad], and their first derivatives, as everywhere on our wire
 constexpr double kForce = 1e5;    // [N], [Nm]
 constexpr double kUnit = 1e-3;    // of a quaternion's norm
 constexpr double kLongest = 1e4;  // [s] of a trajectory
@@ -26,7 +27,9 @@ struct Judge {
   }
 };
 
-Stamp stamp_of(const builtin_interfaces_msg_dds__Time_& t) { return t.sec_ * 1'000'000'000LL + t.nanosec_; }
+Stamp stamp_of(const builtin_interfaces_msg_dds__Time_& t) {
+  return t.sec_ * 1'000'000'000LL + t.nanosec_;
+}
 void put(Stamp stamp, builtin_interfaces_msg_dds__Time_& out) {
   out.sec_ = static_cast<std::int32_t>(stamp / 1'000'000'000);
   out.nanosec_ = static_cast<std::uint32_t>(stamp % 1'000'000'000);
@@ -34,8 +37,10 @@ void put(Stamp stamp, builtin_interfaces_msg_dds__Time_& out) {
 
 std::string text_of(Judge& judge, const char* field, const char* text) {
   std::string value = text ? text : "";
-  const bool printable = std::all_of(value.begin(), value.end(), [](char c) { return c > 31 && c < 127; });
-  if (value.size() > kRosText) judge.fail(field, "is longer than " + std::to_string(kRosText) + " bytes");
+  const bool printable =
+      std::all_of(value.begin(), value.end(), [](char c) { return c > 31 && c < 127; });
+  if (value.size() > kRosText)
+    judge.fail(field, "is longer than " + std::to_string(kRosText) + " bytes");
   if (!printable) judge.fail(field, "holds bytes that are not printable ASCII");
   return value;
 }
@@ -46,34 +51,41 @@ void put(const std::string& text, char*& out) {
 }
 
 template <class Seq>
-void texts_of(Judge& judge, const char* field, const Seq& seq, std::size_t most, std::vector<std::string>& out) {
+void texts_of(Judge& judge, const char* field, const Seq& seq, std::size_t most,
+              std::vector<std::string>& out) {
   out.clear();
   if (seq._length > most) {
-    judge.fail(field, "has " + std::to_string(seq._length) + " elements, at most " + std::to_string(most) + " are taken");
+    judge.fail(field, "has " + std::to_string(seq._length) + " elements, at most " +
+                          std::to_string(most) + " are taken");
     return;
   }
-  for (std::uint32_t i = 0; i < seq._length && judge.good; ++i) out.push_back(text_of(judge, field, seq._buffer[i]));
+  for (std::uint32_t i = 0; i < seq._length && judge.good; ++i)
+    out.push_back(text_of(judge, field, seq._buffer[i]));
 }
 
 /// As many as `count`, or none.
 template <class Seq>
-void numbers_of(Judge& judge, const char* field, const Seq& seq, std::size_t count, double largest, Vector& out) {
+void numbers_of(Judge& judge, const char* field, const Seq& seq, std::size_t count, double largest,
+                Vector& out) {
   if (seq._length != count && seq._length != 0) {
-    judge.fail(field, "has " + std::to_string(seq._length) + " elements for " + std::to_string(count) + " names");
+    judge.fail(field, "has " + std::to_string(seq._length) + " elements for " +
+                          std::to_string(count) + " names");
     return;
   }
   out.resize(static_cast<Eigen::Index>(seq._length));
   for (std::uint32_t i = 0; i < seq._length; ++i) {
     out[i] = seq._buffer[i];
     if (std::abs(out[i]) <= largest) continue;
-    judge.fail(std::string(field) + "[" + std::to_string(i) + "]", std::isfinite(out[i]) ? "is out of range" : "is not finite");
+    judge.fail(std::string(field) + "[" + std::to_string(i) + "]",
+               std::isfinite(out[i]) ? "is out of range" : "is not finite");
     return;
   }
 }
 
 template <class Seq>
 void resize(Seq& seq, std::size_t n) {
-  seq._buffer = static_cast<decltype(seq._buffer)>(dds_alloc(std::max<std::size_t>(1, n * sizeof *seq._buffer)));
+  seq._buffer = static_cast<decltype(seq._buffer)>(
+      dds_alloc(std::max<std::size_t>(1, n * sizeof *seq._buffer)));
   std::memset(static_cast<void*>(seq._buffer), 0, n * sizeof *seq._buffer);
   seq._maximum = seq._length = static_cast<std::uint32_t>(n);
   seq._release = true;
@@ -88,7 +100,8 @@ void put(const Vector& values, Seq& seq) {
 template <class Seq>
 void put(const std::vector<std::string>& values, Seq& seq) {
   resize(seq, values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) seq._buffer[i] = dds_string_dup(values[i].c_str());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    seq._buffer[i] = dds_string_dup(values[i].c_str());
 }
 
 void put_header(Stamp stamp, const std::string& frame, std_msgs_msg_dds__Header_& out) {
@@ -113,20 +126,25 @@ void write(const ros2::JointState& m, sensor_msgs_msg_dds__JointState_& w) {
   put(m.effort, w.effort_);
 }
 
-bool read(const trajectory_msgs_msg_dds__JointTrajectory_& w, ros2::JointTrajectory& m, Judge& judge) {
+bool read(const trajectory_msgs_msg_dds__JointTrajectory_& w, ros2::JointTrajectory& m,
+          Judge& judge) {
   m.stamp = stamp_of(w.header_.stamp_);
   texts_of(judge, "joint_names", w.joint_names_, kRosJoints, m.joint_names);
-  if (w.points_._length > kRosPoints) return judge.fail("points", "are more than " + std::to_string(kRosPoints));
+  if (w.points_._length > kRosPoints)
+    return judge.fail("points", "are more than " + std::to_string(kRosPoints));
   m.points.assign(w.points_._length, {});
   double before = 0;
   for (std::uint32_t i = 0; i < w.points_._length && judge.good; ++i) {
     const auto& point = w.points_._buffer[i];
     const std::string field = "points[" + std::to_string(i) + "].";
-    numbers_of(judge, (field + "positions").c_str(), point.positions_, m.joint_names.size(), kLargest, m.points[i].positions);
+    numbers_of(judge, (field + "positions").c_str(), point.positions_, m.joint_names.size(),
+               kLargest, m.points[i].positions);
     if (point.positions_._length == 0) return judge.fail(field + "positions", "are missing");
-    m.points[i].time_from_start = point.time_from_start_.sec_ + 1e-9 * point.time_from_start_.nanosec_;
+    m.points[i].time_from_start =
+        point.time_from_start_.sec_ + 1e-9 * point.time_from_start_.nanosec_;
     if (m.points[i].time_from_start < before || m.points[i].time_from_start > kLongest)
-      return judge.fail(field + "time_from_start", "is not between that of the point before and " + std::to_string(int(kLongest)) + " s");
+      return judge.fail(field + "time_from_start", "is not between that of the point before and " +
+                                                       std::to_string(int(kLongest)) + " s");
     before = m.points[i].time_from_start;
   }
   return judge.good;
@@ -139,9 +157,11 @@ void write(const ros2::JointTrajectory& m, trajectory_msgs_msg_dds__JointTraject
   for (std::size_t i = 0; i < m.points.size(); ++i) {
     auto& point = w.points_._buffer[i];
     put(m.points[i].positions, point.positions_);
-    for (auto* empty : {&point.velocities_, &point.accelerations_, &point.effort_}) resize(*empty, 0);
+    for (auto* empty : {&point.velocities_, &point.accelerations_, &point.effort_})
+      resize(*empty, 0);
     point.time_from_start_.sec_ = static_cast<std::int32_t>(m.points[i].time_from_start);
-    point.time_from_start_.nanosec_ = static_cast<std::uint32_t>(1e9 * (m.points[i].time_from_start - point.time_from_start_.sec_));
+    point.time_from_start_.nanosec_ = static_cast<std::uint32_t>(
+        1e9 * (m.points[i].time_from_start - point.time_from_start_.sec_));
   }
 }
 
@@ -152,7 +172,8 @@ std::string frame_of(Judge& judge, const std::string& field, const char* text) {
 }
 
 bool read(const tf2_msgs_msg_dds__TFMessage_& w, ros2::Transforms& m, Judge& judge) {
-  if (w.transforms_._length > kRosTransforms) return judge.fail("transforms", "are more than " + std::to_string(kRosTransforms));
+  if (w.transforms_._length > kRosTransforms)
+    return judge.fail("transforms", "are more than " + std::to_string(kRosTransforms));
   m.transforms.assign(w.transforms_._length, {});
   for (std::uint32_t i = 0; i < w.transforms_._length && judge.good; ++i) {
     const auto& from = w.transforms_._buffer[i];
@@ -164,9 +185,11 @@ bool read(const tf2_msgs_msg_dds__TFMessage_& w, ros2::Transforms& m, Judge& jud
     const auto& t = from.transform_.translation_;
     const auto& q = from.transform_.rotation_;
     const Vector3 p(t.x_, t.y_, t.z_);
-    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kLargest) judge.fail(field + "translation", "is not finite within 1e4 m");
+    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kLargest)
+      judge.fail(field + "translation", "is not finite within 1e4 m");
     const Eigen::Quaterniond rotation(q.w_, q.x_, q.y_, q.z_);
-    if (!(std::abs(rotation.norm() - 1) <= kUnit)) judge.fail(field + "rotation", "is no unit quaternion");
+    if (!(std::abs(rotation.norm() - 1) <= kUnit))
+      judge.fail(field + "rotation", "is no unit quaternion");
     to.T_parent_child = make_pose(p, rotation.normalized());
   }
   return judge.good;
@@ -220,7 +243,9 @@ template <class M, class W>
 class RosType final : public MessageType {
  public:
   RosType(const dds_topic_descriptor_t& descriptor, const std::string& name, Profile profile)
-      : descriptor_(descriptor), topic_("rt/" + name), row_{descriptor.m_typename, topic_.c_str(), profile, 0, 0, 0, "", ""} {}
+      : descriptor_(descriptor),
+        topic_("rt/" + name),
+        row_{descriptor.m_typename, topic_.c_str(), profile, 0, 0, 0, "", ""} {}
 
   const TopicRow& row() const override { return row_; }
   const void* descriptor() const override { return &descriptor_; }
@@ -231,7 +256,8 @@ class RosType final : public MessageType {
     return true;
   }
   using MessageType::from_wire;
-  bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements&) const override {
+  bool from_wire(const void* wire, void* message, std::string& why,
+                 LeftOutElements&) const override {
     Judge judge{why};
     if (read(*static_cast<const W*>(wire), *static_cast<M*>(message), judge)) return true;
     why = topic_ + ": " + why;
@@ -241,7 +267,9 @@ class RosType final : public MessageType {
   void set_stamp(void*, Stamp) const override {}
   std::string_view key(const void*) const override { return {}; }
   /// Of our own messages only; those of others have no viewer and no tests that walk them.
-  std::string to_json(const void*) const override { return std::string("{\"type\":\"") + row_.type + "\"}"; }
+  std::string to_json(const void*) const override {
+    return std::string("{\"type\":\"") + row_.type + "\"}";
+  }
   void leaves(void*, const std::function<void(const WireLeaf&)>&) const override {}
   void fill(void*, bool) const override {}
   std::shared_ptr<void> new_wire() const override {
@@ -261,29 +289,34 @@ class RosType final : public MessageType {
 
 template <>
 std::unique_ptr<MessageType> ros2_type<ros2::JointState>(const std::string& name, Profile profile) {
-  return std::make_unique<RosType<ros2::JointState, sensor_msgs_msg_dds__JointState_>>(sensor_msgs_msg_dds__JointState__desc, name,
-                                                                                       profile);
+  return std::make_unique<RosType<ros2::JointState, sensor_msgs_msg_dds__JointState_>>(
+      sensor_msgs_msg_dds__JointState__desc, name, profile);
 }
 
 template <>
-std::unique_ptr<MessageType> ros2_type<ros2::JointTrajectory>(const std::string& name, Profile profile) {
-  return std::make_unique<RosType<ros2::JointTrajectory, trajectory_msgs_msg_dds__JointTrajectory_>>(
+std::unique_ptr<MessageType> ros2_type<ros2::JointTrajectory>(const std::string& name,
+                                                              Profile profile) {
+  return std::make_unique<
+      RosType<ros2::JointTrajectory, trajectory_msgs_msg_dds__JointTrajectory_>>(
       trajectory_msgs_msg_dds__JointTrajectory__desc, name, profile);
 }
 
 template <>
 std::unique_ptr<MessageType> ros2_type<ros2::Transforms>(const std::string& name, Profile profile) {
-  return std::make_unique<RosType<ros2::Transforms, tf2_msgs_msg_dds__TFMessage_>>(tf2_msgs_msg_dds__TFMessage__desc, name, profile);
+  return std::make_unique<RosType<ros2::Transforms, tf2_msgs_msg_dds__TFMessage_>>(
+      tf2_msgs_msg_dds__TFMessage__desc, name, profile);
 }
 
 template <>
 std::unique_ptr<MessageType> ros2_type<ros2::Ids>(const std::string& name, Profile profile) {
-  return std::make_unique<RosType<ros2::Ids, hri_msgs_msg_dds__IdsList_>>(hri_msgs_msg_dds__IdsList__desc, name, profile);
+  return std::make_unique<RosType<ros2::Ids, hri_msgs_msg_dds__IdsList_>>(
+      hri_msgs_msg_dds__IdsList__desc, name, profile);
 }
 
 template <>
 std::unique_ptr<MessageType> ros2_type<ros2::Text>(const std::string& name, Profile profile) {
-  return std::make_unique<RosType<ros2::Text, std_msgs_msg_dds__String_>>(std_msgs_msg_dds__String__desc, name, profile);
+  return std::make_unique<RosType<ros2::Text, std_msgs_msg_dds__String_>>(
+      std_msgs_msg_dds__String__desc, name, profile);
 }
 
 }  // namespace handsel

@@ -11,7 +11,8 @@
 namespace handsel {
 
 /// Longest names and lists taken; what is longer is malformed.
-inline constexpr std::size_t kRosText = 256, kRosJoints = 128, kRosPoints = 1024, kRosTransforms = 512;
+inline constexpr std::size_t kRosText = 256, kRosJoints = 128, kRosPoints = 1024,
+                             kRosTransforms = 512;
 
 /// How a topic of ROS is written or read. The profiles that ROS knows: `sensor` (best effort, keep
 /// last: its sensor data; a reader of that kind receives from reliable writers too), `goal`
@@ -24,7 +25,8 @@ std::unique_ptr<MessageType> ros2_type(const std::string& name, Profile profile)
 template <>
 std::unique_ptr<MessageType> ros2_type<ros2::JointState>(const std::string& name, Profile profile);
 template <>
-std::unique_ptr<MessageType> ros2_type<ros2::JointTrajectory>(const std::string& name, Profile profile);
+std::unique_ptr<MessageType> ros2_type<ros2::JointTrajectory>(const std::string& name,
+                                                              Profile profile);
 template <>
 std::unique_ptr<MessageType> ros2_type<ros2::Transforms>(const std::string& name, Profile profile);
 template <>

@@ -8,7 +8,8 @@ namespace {
 
 using Files = std::map<std::string, std::string_view>;
 
-void append(const Files& files, const std::string& name, std::set<std::string>& done, std::string& out) {
+void append(const Files& files, const std::string& name, std::set<std::string>& done,
+            std::string& out) {
   if (!done.insert(name).second) return;
   const auto file = files.find(name);
   if (file == files.end()) throw std::logic_error("IDL: no file " + name);

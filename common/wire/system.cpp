@@ -94,7 +94,8 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.number("constraint_time", m.constraint_time, w.constraint_time, kTime);
   io.number("lifted", m.lifted, w.lifted, kCoordinate);
   io.number("max_lifted", m.max_lifted, w.max_lifted, kCoordinate);
-  io.number("human_contact_before_release", m.human_contact_before_release, w.human_contact_before_release, kTime);
+  io.number("human_contact_before_release", m.human_contact_before_release,
+            w.human_contact_before_release, kTime);
   io.number("human_alone", m.human_alone, w.human_alone, kTime);
   io.flag("dropped", m.dropped, w.dropped);
   io.flag("handover_done", m.handover_done, w.handover_done);
@@ -104,7 +105,8 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.number("peak_closing_speed", m.peak_closing_speed, w.peak_closing_speed, kCoordinate);
   io.number("contact_force", m.contact_force, w.contact_force, {0, 1e9});
   io.number("limit_ratio_velocity", m.limit_ratio_velocity, w.limit_ratio_velocity, kLimitRatio);
-  io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration, kLimitRatio);
+  io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration,
+            kLimitRatio);
   io.number("limit_ratio_jerk", m.limit_ratio_jerk, w.limit_ratio_jerk, kLimitRatio);
   io.integer("limit_violations", m.limit_violations, w.limit_violations);
   io.integer("self_or_scene_collisions", m.self_or_scene_collisions, w.self_or_scene_collisions);

@@ -19,7 +19,8 @@ void describe(WireIo& io, TaskGoal& m, handsel_TaskGoal& w) {
   io.text("human", m.human, w.human, Text::maybe_empty);
   io.text("surface", m.surface, w.surface, Text::maybe_empty);
   io.number("value", m.value, w.value, {-1e9, 1e9});
-  io.check(m.kind != TaskKind::speed || (m.value >= 0 && m.value <= 1), "value", "must be from 0 to 1 for a speed goal");
+  io.check(m.kind != TaskKind::speed || (m.value >= 0 && m.value <= 1), "value",
+           "must be from 0 to 1 for a speed goal");
   io.text("onto", m.onto, w.onto, Text::maybe_empty);
 }
 

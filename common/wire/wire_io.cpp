@@ -63,7 +63,8 @@ std::string WireIo::path(const char* field) const {
     if (index >= 0) out += '[' + std::to_string(index) + ']';
   };
   for (int i = 0; i < depth_; ++i) {
-    const bool leaf_of_list = i + 1 == depth_ && stack_[i].index >= 0 && field && stack_[i].field == field;
+    const bool leaf_of_list =
+        i + 1 == depth_ && stack_[i].index >= 0 && field && stack_[i].field == field;
     add(stack_[i].field, stack_[i].index);
     if (leaf_of_list) return out;
   }
@@ -90,14 +91,16 @@ void WireIo::check(bool holds, const char* field, const char* sentence) {
 
 bool WireIo::fits(const char* field, std::size_t size, std::size_t bound) {
   if (size <= bound) return true;
-  fail(field, "has " + std::to_string(size) + " elements, at most " + std::to_string(bound) + " are allowed");
+  fail(field, "has " + std::to_string(size) + " elements, at most " + std::to_string(bound) +
+                  " are allowed");
   return false;
 }
 
 bool WireIo::in_range(const char* field, double value, Range range) {
-  if (value >= range.low && value <= range.high && !(range.open_low && value == range.low)) return true;
-  fail(field, "is " + number_text(value) + ", must be a number from " + number_text(range.low) + (range.open_low ? " (excluded)" : "") +
-                  " to " + number_text(range.high));
+  if (value >= range.low && value <= range.high && !(range.open_low && value == range.low))
+    return true;
+  fail(field, "is " + number_text(value) + ", must be a number from " + number_text(range.low) +
+                  (range.open_low ? " (excluded)" : "") + " to " + number_text(range.high));
   return false;
 }
 
@@ -238,7 +241,8 @@ void WireIo::integer(const char* field, std::uint64_t& m, std::uint64_t& w) {
   }
 }
 
-void WireIo::integer(const char* field, std::uint32_t& m, std::uint32_t& w, std::uint32_t low, std::uint32_t high) {
+void WireIo::integer(const char* field, std::uint32_t& m, std::uint32_t& w, std::uint32_t low,
+                     std::uint32_t high) {
   if (failed_) return;
   if (mode_ == Mode::json) {
     json_key(field);
@@ -252,7 +256,8 @@ void WireIo::integer(const char* field, std::uint32_t& m, std::uint32_t& w, std:
   }
   const std::uint32_t value = mode_ == Mode::to_wire ? m : w;
   if (value < low || value > high)
-    return fail(field, "is " + std::to_string(value) + ", must be from " + std::to_string(low) + " to " + std::to_string(high));
+    return fail(field, "is " + std::to_string(value) + ", must be from " + std::to_string(low) +
+                           " to " + std::to_string(high));
   (mode_ == Mode::to_wire ? w : m) = value;
 }
 
@@ -281,7 +286,8 @@ void WireIo::flag(const char* field, bool& m, bool& w) {
   }
 }
 
-void WireIo::choice_field(const char* field, std::uint32_t& m, std::uint32_t& w, void* at, std::span<const char* const> names) {
+void WireIo::choice_field(const char* field, std::uint32_t& m, std::uint32_t& w, void* at,
+                          std::span<const char* const> names) {
   if (failed_) return;
   if (mode_ == Mode::leaves) return leaf(field, WireLeaf::Kind::choice, at, sizeof w);
   if (mode_ == Mode::fill) {
@@ -298,8 +304,9 @@ void WireIo::choice_field(const char* field, std::uint32_t& m, std::uint32_t& w,
   }
   const std::uint32_t value = mode_ == Mode::to_wire ? m : w;
   if (value >= names.size())
-    return fail(field, "is the unknown choice " + std::to_string(value) + ", the last known one is " + std::to_string(names.size() - 1) +
-                           " (" + names.back() + ')');
+    return fail(field, "is the unknown choice " + std::to_string(value) +
+                           ", the last known one is " + std::to_string(names.size() - 1) + " (" +
+                           names.back() + ')');
   (mode_ == Mode::to_wire ? w : m) = value;
 }
 
@@ -327,9 +334,11 @@ void WireIo::text_field(const char* field, std::string& m, char* w, std::size_t 
   } else {
     value = std::string_view(w, strnlen(w, bound + 1));
   }
-  if (value.size() > bound) return fail(field, "is longer than " + std::to_string(bound) + " bytes");
+  if (value.size() > bound)
+    return fail(field, "is longer than " + std::to_string(bound) + " bytes");
   if (kind == Text::name && value.empty()) return fail(field, "is empty, a name is needed");
-  if (valid_prefix(value) != value.size()) return fail(field, "holds bytes that are not text (UTF-8 without control characters)");
+  if (valid_prefix(value) != value.size())
+    return fail(field, "holds bytes that are not text (UTF-8 without control characters)");
   if (mode_ == Mode::to_wire) {
     std::memcpy(w, value.data(), value.size());
     w[value.size()] = '\0';
@@ -338,7 +347,8 @@ void WireIo::text_field(const char* field, std::string& m, char* w, std::size_t 
   }
 }
 
-void WireIo::numbers(const char* field, Vector& m, double* w, std::size_t length, std::size_t bound, Range range) {
+void WireIo::numbers(const char* field, Vector& m, double* w, std::size_t length, std::size_t bound,
+                     Range range) {
   if (failed_) return;
   if (mode_ == Mode::json) {
     begin_json_list(field);
@@ -361,8 +371,8 @@ void WireIo::numbers(const char* field, Vector& m, double* w, std::size_t length
   --depth_;
 }
 
-void WireIo::octets(const char* field, std::vector<std::uint8_t>& m, std::uint8_t* w, std::size_t length, std::size_t bound,
-                    std::uint8_t high) {
+void WireIo::octets(const char* field, std::vector<std::uint8_t>& m, std::uint8_t* w,
+                    std::size_t length, std::size_t bound, std::uint8_t high) {
   if (failed_) return;
   if (mode_ == Mode::json) {
     begin_json_list(field);
@@ -426,7 +436,8 @@ void WireIo::direction(const char* field, Vector3& m, handsel_Vector3& w, bool m
   if (mode_ == Mode::fill) w = {1, 0, 0};
   if (!converting()) return;
   const double norm = m.norm();
-  if (std::abs(norm - 1) > 1e-3) return fail(field, "has length " + number_text(norm) + ", must be a unit vector");
+  if (std::abs(norm - 1) > 1e-3)
+    return fail(field, "has length " + number_text(norm) + ", must be a unit vector");
   if (mode_ == Mode::from_wire)
     m /= norm;
   else

@@ -43,7 +43,8 @@ class WireIo {
   static WireIo to_wire(const char* message, Stamp now, std::string& why);
   /// Wire -> domain, validated. `left_out`: receives the count of left-out elements; may be
   /// null.
-  static WireIo from_wire(const char* message, std::string& why, LeftOutElements* left_out = nullptr);
+  static WireIo from_wire(const char* message, std::string& why,
+                          LeftOutElements* left_out = nullptr);
   /// Appends the domain value to `out` as JSON; numbers that are not finite become null.
   static WireIo json(std::string& out);
   /// Calls `visit`, which must outlive the visitor, with each leaf of the wire sample.
@@ -68,7 +69,8 @@ class WireIo {
   /// An integer of any value.
   void integer(const char* field, std::uint64_t& m, std::uint64_t& w);
   /// An integer from `low` to `high`, both included.
-  void integer(const char* field, std::uint32_t& m, std::uint32_t& w, std::uint32_t low = 0, std::uint32_t high = UINT32_MAX);
+  void integer(const char* field, std::uint32_t& m, std::uint32_t& w, std::uint32_t low = 0,
+               std::uint32_t high = UINT32_MAX);
   /// A truth value; a received byte other than 0 and 1 is malformed.
   void flag(const char* field, bool& m, bool& w);
 
@@ -108,13 +110,15 @@ class WireIo {
   template <class Seq>
   void vector(const char* field, Vector& m, Seq& w, Range range, std::size_t bound = kMaxAxes) {
     if (failed_) return;
-    if (mode_ == Mode::to_wire && fits(field, static_cast<std::size_t>(m.size()), bound)) resize(w, static_cast<std::size_t>(m.size()));
+    if (mode_ == Mode::to_wire && fits(field, static_cast<std::size_t>(m.size()), bound))
+      resize(w, static_cast<std::size_t>(m.size()));
     if (mode_ == Mode::fill) resize(w, full_ ? bound : kFew);
     numbers(field, m, w._buffer, w._length, bound, range);
   }
   /// At most `bound` indices from 0 to `high`.
   template <class Seq>
-  void indices(const char* field, std::vector<std::uint32_t>& m, Seq& w, std::size_t bound, std::uint32_t high) {
+  void indices(const char* field, std::vector<std::uint32_t>& m, Seq& w, std::size_t bound,
+               std::uint32_t high) {
     if (!open_list(field, m, w, bound)) return;
     for (std::size_t i = 0; i < size(m, w); ++i) {
       at(static_cast<int>(i));
@@ -125,7 +129,8 @@ class WireIo {
   }
   /// At most `bound` bytes, none above `high`.
   template <class Seq>
-  void bytes(const char* field, std::vector<std::uint8_t>& m, Seq& w, std::size_t bound, std::uint8_t high = 255) {
+  void bytes(const char* field, std::vector<std::uint8_t>& m, Seq& w, std::size_t bound,
+             std::uint8_t high = 255) {
     if (failed_) return;
     if (mode_ == Mode::to_wire && fits(field, m.size(), bound)) resize(w, m.size());
     if (mode_ == Mode::fill) resize(w, full_ ? bound : 1);
@@ -142,7 +147,8 @@ class WireIo {
     for (std::size_t i = 0; i < size(m, w, bound) && !failed_; ++i) {
       at(static_cast<int>(i));
       open(nullptr);
-      describe(*this, wire_only() ? no_element : m[i], mode_ == Mode::json ? no_wire : w._buffer[i]);
+      describe(*this, wire_only() ? no_element : m[i],
+               mode_ == Mode::json ? no_wire : w._buffer[i]);
       close();
     }
     close_list();
@@ -189,13 +195,15 @@ class WireIo {
   /// At most `bound` texts, each as in text(). `cut`: what exceeds the bound is left out when sent
   /// instead of refused.
   template <class Seq>
-  void texts(const char* field, std::vector<std::string>& m, Seq& w, std::size_t bound, Text kind = Text::name, bool cut = false) {
+  void texts(const char* field, std::vector<std::string>& m, Seq& w, std::size_t bound,
+             Text kind = Text::name, bool cut = false) {
     if (!open_list(field, m, w, bound, cut)) return;
     std::string no_text;
     for (std::size_t i = 0; i < size(m, w, bound); ++i) {
       at(static_cast<int>(i));
       char no_wire[sizeof(*w._buffer)] = {};
-      text_field(field, wire_only() ? no_text : m[i], mode_ == Mode::json ? no_wire : w._buffer[i], sizeof(*w._buffer) - 1, kind);
+      text_field(field, wire_only() ? no_text : m[i], mode_ == Mode::json ? no_wire : w._buffer[i],
+                 sizeof(*w._buffer) - 1, kind);
     }
     close_list();
   }
@@ -212,7 +220,9 @@ class WireIo {
   void check(bool holds, const char* field, const char* sentence);
   /// Returns whether the visitor converts and has not failed: then rules may be computed from
   /// domain values.
-  bool converting() const { return !failed_ && (mode_ == Mode::to_wire || mode_ == Mode::from_wire); }
+  bool converting() const {
+    return !failed_ && (mode_ == Mode::to_wire || mode_ == Mode::from_wire);
+  }
 
   /// Opens the whole message; needed for JSON only.
   void begin();
@@ -228,9 +238,12 @@ class WireIo {
   explicit WireIo(Mode mode) : mode_(mode) {}
 
   void text_field(const char* field, std::string& m, char* w, std::size_t bound, Text kind);
-  void choice_field(const char* field, std::uint32_t& m, std::uint32_t& w, void* leaf, std::span<const char* const> names);
-  void numbers(const char* field, Vector& m, double* w, std::size_t length, std::size_t bound, Range range);
-  void octets(const char* field, std::vector<std::uint8_t>& m, std::uint8_t* w, std::size_t length, std::size_t bound, std::uint8_t high);
+  void choice_field(const char* field, std::uint32_t& m, std::uint32_t& w, void* leaf,
+                    std::span<const char* const> names);
+  void numbers(const char* field, Vector& m, double* w, std::size_t length, std::size_t bound,
+               Range range);
+  void octets(const char* field, std::vector<std::uint8_t>& m, std::uint8_t* w, std::size_t length,
+              std::size_t bound, std::uint8_t high);
   bool in_range(const char* field, double value, Range range);
   void leaf(const char* field, WireLeaf::Kind kind, void* value, std::size_t size);
   bool fits(const char* field, std::size_t size, std::size_t bound);
@@ -247,7 +260,8 @@ class WireIo {
 
   /// Prepares the receiving side of a list; false when there is nothing to walk.
   template <class T, class Seq>
-  bool open_list(const char* field, std::vector<T>& m, Seq& w, std::size_t bound, bool cut = false) {
+  bool open_list(const char* field, std::vector<T>& m, Seq& w, std::size_t bound,
+                 bool cut = false) {
     if (failed_) return false;
     if (mode_ == Mode::to_wire) {
       const std::size_t n = cut && m.size() > bound ? bound : m.size();
@@ -276,7 +290,8 @@ class WireIo {
       auto* grown = static_cast<decltype(w._buffer)>(dds_alloc(n * sizeof(*w._buffer)));
       std::memset(static_cast<void*>(grown), 0, n * sizeof(*w._buffer));
       if (w._buffer) {
-        std::memcpy(static_cast<void*>(grown), static_cast<const void*>(w._buffer), w._maximum * sizeof(*w._buffer));
+        std::memcpy(static_cast<void*>(grown), static_cast<const void*>(w._buffer),
+                    w._maximum * sizeof(*w._buffer));
         dds_free(w._buffer);
       }
       w._buffer = grown;

@@ -74,7 +74,8 @@ void describe(WireIo& io, Scene& m, handsel_Scene& w) {
   io.list("objects", m.objects, w.objects, 64);
   io.list("boxes", m.boxes, w.boxes, 64);
   io.integer("left_out", m.left_out, w.left_out);
-  io.check(m.robot_known == (m.robot_position.size() > 0), "robot_position", "must be there exactly when robot_known is true");
+  io.check(m.robot_known == (m.robot_position.size() > 0), "robot_position",
+           "must be there exactly when robot_known is true");
 }
 
 void describe(WireIo& io, SourceView& m, handsel_SourceView& w) {

@@ -8,20 +8,28 @@ namespace handsel::attention {
 
 AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, const std::string& what)
     : settings_(settings), slack_(slack), period_(settings.p_min) {
-  if (!(settings.p_min > 0)) throw ConfigError("attention: behaviour " + what + ": p_min must be above 0 s");
-  if (!(settings.p_max >= settings.p_min)) throw ConfigError("attention: behaviour " + what + ": p_max must not be below p_min");
-  if (!(settings.far > settings.near)) throw ConfigError("attention: behaviour " + what + ": far must be above near");
-  if (!(settings.weber_gain > 0)) throw ConfigError("attention: behaviour " + what + ": weber_gain must be above 0");
-  if (settings.law == ClockLaw::fixed && !(settings.period >= settings.p_min && settings.period <= settings.p_max))
-    throw ConfigError("attention: behaviour " + what + ": period must be from p_min to p_max where the law is FIXED");
+  if (!(settings.p_min > 0))
+    throw ConfigError("attention: behaviour " + what + ": p_min must be above 0 s");
+  if (!(settings.p_max >= settings.p_min))
+    throw ConfigError("attention: behaviour " + what + ": p_max must not be below p_min");
+  if (!(settings.far > settings.near))
+    throw ConfigError("attention: behaviour " + what + ": far must be above near");
+  if (!(settings.weber_gain > 0))
+    throw ConfigError("attention: behaviour " + what + ": weber_gain must be above 0");
+  if (settings.law == ClockLaw::fixed &&
+      !(settings.period >= settings.p_min && settings.period <= settings.p_max))
+    throw ConfigError("attention: behaviour " + what +
+                      ": period must be from p_min to p_max where the law is FIXED");
 }
 
 void AdaptiveClock::fire(double stimulus, TimePoint now) {
-  const double s = std::isfinite(stimulus) ? std::clamp(stimulus, 0.0, settings_.far) : settings_.far;
+  const double s =
+      std::isfinite(stimulus) ? std::clamp(stimulus, 0.0, settings_.far) : settings_.far;
   if (settings_.law == ClockLaw::fixed) {
     period_ = settings_.period;
   } else if (settings_.law == ClockLaw::linear) {
-    period_ = settings_.p_max * (0.1 + 0.9 * (s - settings_.near) / (settings_.far - settings_.near));
+    period_ =
+        settings_.p_max * (0.1 + 0.9 * (s - settings_.near) / (settings_.far - settings_.near));
   } else {
     const double floor = 0.01 * settings_.far;
     const double before = activations_ == 0 ? settings_.far : previous_;
@@ -38,7 +46,9 @@ void AdaptiveClock::fire(double stimulus, TimePoint now) {
 }
 
 std::uint64_t AdaptiveClock::activations_at_fastest(TimePoint now) const {
-  return started_ ? 1 + static_cast<std::uint64_t>(std::max(0.0, to_seconds(now - first_)) / settings_.p_min) : 0;
+  return started_ ? 1 + static_cast<std::uint64_t>(std::max(0.0, to_seconds(now - first_)) /
+                                                   settings_.p_min)
+                  : 0;
 }
 
 }  // namespace handsel::attention

@@ -10,27 +10,33 @@ namespace handsel::attention {
 
 Attention::Attention(const AttentionSettings& settings, const Body& body) : settings_(settings) {
   if (!(settings.tick > 0)) throw ConfigError("attention: tick must be above 0 s");
-  if (!(settings.motor.avoid_slow > settings.motor.avoid_stop)) throw ConfigError("attention: avoid_slow must be above avoid_stop");
-  if (!(settings.near_cost_gain >= 1)) throw ConfigError("attention: near_cost_gain must not be below 1");
+  if (!(settings.motor.avoid_slow > settings.motor.avoid_stop))
+    throw ConfigError("attention: avoid_slow must be above avoid_stop");
+  if (!(settings.near_cost_gain >= 1))
+    throw ConfigError("attention: near_cost_gain must not be below 1");
   if (settings.behaviours.empty()) throw ConfigError("attention: no behaviour is described");
   std::vector<Releaser> releasers;
   for (const BehaviourSettings& b : settings.behaviours) {
     const std::string called = b.name.empty() ? name(b.behaviour) : b.name;
-    if (find(called) != nullptr) throw ConfigError("attention: behaviour " + called + " is described twice");
-    entries_.push_back({called, make_schema(b.behaviour, body, settings.motor, settings.zones, b.watch),
-                        AdaptiveClock(b.clock, from_seconds(0.5 * settings.tick), called), b.clock, b.conditions});
+    if (find(called) != nullptr)
+      throw ConfigError("attention: behaviour " + called + " is described twice");
+    entries_.push_back(
+        {called, make_schema(b.behaviour, body, settings.motor, settings.zones, b.watch),
+         AdaptiveClock(b.clock, from_seconds(0.5 * settings.tick), called), b.clock, b.conditions});
     releasers.push_back({called, b.conditions});
   }
   order_ = releaser_order(releasers);
   std::set<Work> seen;
   for (const WorkSettings& w : settings.works) {
-    const std::string what = std::string("attention: work ") + kWorkNames[static_cast<std::size_t>(w.work)];
+    const std::string what =
+        std::string("attention: work ") + kWorkNames[static_cast<std::size_t>(w.work)];
     if (!seen.insert(w.work).second) throw ConfigError(what + " is described twice");
     if (!(w.p_min > 0)) throw ConfigError(what + ": p_min must be above 0 s");
     if (!(w.p_max >= w.p_min)) throw ConfigError(what + ": p_max must not be below p_min");
     if (w.serves.empty()) throw ConfigError(what + " serves nobody");
     for (const std::string& behaviour : w.serves)
-      if (find(behaviour) == nullptr) throw ConfigError(what + " serves \"" + behaviour + "\", which is not described");
+      if (find(behaviour) == nullptr)
+        throw ConfigError(what + " serves \"" + behaviour + "\", which is not described");
   }
 }
 
@@ -41,9 +47,12 @@ const Attention::Entry* Attention::find(const std::string& behaviour) const {
 }
 
 bool Attention::conditions_met(const Entry& entry, const World& world) const {
-  return std::all_of(entry.conditions.begin(), entry.conditions.end(), [&](const Condition& condition) {
-    return met(condition, world, condition.kind == Condition::Kind::behaviour && find(condition.behaviour)->released);
-  });
+  return std::all_of(
+      entry.conditions.begin(), entry.conditions.end(), [&](const Condition& condition) {
+        return met(
+            condition, world,
+            condition.kind == Condition::Kind::behaviour && find(condition.behaviour)->released);
+      });
 }
 
 double Attention::period(const WorkSettings& work) const {
@@ -52,7 +61,8 @@ double Attention::period(const WorkSettings& work) const {
   for (const std::string& behaviour : work.serves) {
     const Entry& e = *find(behaviour);
     if (e.clock.activations() == 0) return work.p_min;
-    ease = std::min(ease, (e.clock.period() - e.settings.p_min) / std::max(1e-9, e.settings.p_max - e.settings.p_min));
+    ease = std::min(ease, (e.clock.period() - e.settings.p_min) /
+                              std::max(1e-9, e.settings.p_max - e.settings.p_min));
   }
   return work.p_min + (work.p_max - work.p_min) * std::clamp(ease, 0.0, 1.0);
 }
@@ -75,12 +85,15 @@ void Attention::choose_gaze(TimePoint now) {
   const auto wants = [](const Entry& e) { return e.released && e.schema->gaze().has_value(); };
   int best = -1;
   for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (wants(entries_[i]) && (best < 0 || entries_[i].clock.period() < entries_[static_cast<std::size_t>(best)].clock.period()))
+    if (wants(entries_[i]) &&
+        (best < 0 ||
+         entries_[i].clock.period() < entries_[static_cast<std::size_t>(best)].clock.period()))
       best = static_cast<int>(i);
   if (gaze_ >= 0 && wants(entries_[static_cast<std::size_t>(gaze_)])) {
     if (best == gaze_ || to_seconds(now - gaze_since_) < settings_.gaze_dwell) return;
     const double mine = entries_[static_cast<std::size_t>(gaze_)].clock.period();
-    if (entries_[static_cast<std::size_t>(best)].clock.period() >= settings_.gaze_advantage * mine) return;
+    if (entries_[static_cast<std::size_t>(best)].clock.period() >= settings_.gaze_advantage * mine)
+      return;
   }
   if (best != gaze_) gaze_since_ = now;
   gaze_ = best;
@@ -103,7 +116,8 @@ AttentionAdvice Attention::advice() const {
       advice.reason = e.schema->reason();
     }
     if (kind == Behaviour::avoid) {
-      const double urgency = 1.0 - (e.clock.period() - e.settings.p_min) / std::max(1e-9, e.settings.p_max - e.settings.p_min);
+      const double urgency = 1.0 - (e.clock.period() - e.settings.p_min) /
+                                       std::max(1e-9, e.settings.p_max - e.settings.p_min);
       advice.cost_gain = 1.0 + (settings_.near_cost_gain - 1.0) * urgency;
     }
     if (const auto shift = e.schema->target_shift()) {
@@ -111,9 +125,11 @@ AttentionAdvice Attention::advice() const {
       advice.target_shift = *shift;
     }
   }
-  const std::array<double*, std::size(kWorkNames)> periods{&advice.people_period, &advice.objects_period, &advice.forecast_period,
-                                                           &advice.cost_map_period, &advice.replan_period};
-  for (const WorkSettings& work : settings_.works) *periods[static_cast<std::size_t>(work.work)] = period(work);
+  const std::array<double*, std::size(kWorkNames)> periods{
+      &advice.people_period, &advice.objects_period, &advice.forecast_period,
+      &advice.cost_map_period, &advice.replan_period};
+  for (const WorkSettings& work : settings_.works)
+    *periods[static_cast<std::size_t>(work.work)] = period(work);
   if (gaze_ >= 0) {
     if (const auto target = entries_[static_cast<std::size_t>(gaze_)].schema->gaze()) {
       advice.has_gaze_target = true;

@@ -1,4 +1,6 @@
 #include "common/bus/process.hpp"
 #include "components/attention/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::attention::Node>(argc, argv, "attention"); }
+int main(int argc, char** argv) {
+  return handsel::run_process<handsel::attention::Node>(argc, argv, "attention");
+}

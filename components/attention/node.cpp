@@ -12,8 +12,10 @@ constexpr Duration kAdvicePeriod = std::chrono::milliseconds(20);
 constexpr Duration kStatePeriod = std::chrono::milliseconds(100);
 
 Vector3 grasp_in_tool(const RobotModel& robot) {
-  return robot.hand().empty() ? Vector3(Vector3::Zero())
-                              : Vector3(HandModel::load(hand_description(robot.hand())).T_hand_grasp().translation());
+  return robot.hand().empty()
+             ? Vector3(Vector3::Zero())
+             : Vector3(
+                   HandModel::load(hand_description(robot.hand())).T_hand_grasp().translation());
 }
 
 template <class M>
@@ -36,13 +38,15 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& m, const Receipt&) {
     if (m.robot == robot_->name()) active_ = m;
   });
-  bus.subscribe<TrajectoryForecast>([this](const TrajectoryForecast& m, const Receipt&) { forecast_ = m; });
+  bus.subscribe<TrajectoryForecast>(
+      [this](const TrajectoryForecast& m, const Receipt&) { forecast_ = m; });
   bus.subscribe<Scene>([this](const Scene& m, const Receipt&) { scene_ = m; });
   bus.every(from_seconds(settings_.tick), [this](TimePoint now) { tick(now); });
 }
 
 void Node::tick(TimePoint now) {
-  core_.step({get(people_), get(facts_), get(action_), get(active_), get(forecast_), get(scene_)}, now);
+  core_.step({get(people_), get(facts_), get(action_), get(active_), get(forecast_), get(scene_)},
+             now);
   if (now >= next_advice_) {
     advice_->publish(core_.advice());
     next_advice_ = now + kAdvicePeriod - from_seconds(0.5 * settings_.tick);

@@ -20,8 +20,8 @@ E named(const std::string& what, const std::string& word, std::span<const char* 
 
 enum class Mark { unseen, open, closed };
 
-void visit(std::size_t index, const std::vector<Releaser>& releasers, std::vector<Mark>& marks, std::vector<std::size_t>& way,
-           std::vector<std::size_t>& order) {
+void visit(std::size_t index, const std::vector<Releaser>& releasers, std::vector<Mark>& marks,
+           std::vector<std::size_t>& way, std::vector<std::size_t>& order) {
   if (marks[index] == Mark::closed) return;
   way.push_back(index);
   if (marks[index] == Mark::open) {
@@ -33,9 +33,12 @@ void visit(std::size_t index, const std::vector<Releaser>& releasers, std::vecto
   marks[index] = Mark::open;
   for (const Condition& condition : releasers[index].conditions) {
     if (condition.kind != Condition::Kind::behaviour) continue;
-    const auto at = std::find_if(releasers.begin(), releasers.end(), [&](const Releaser& r) { return r.behaviour == condition.behaviour; });
+    const auto at = std::find_if(releasers.begin(), releasers.end(), [&](const Releaser& r) {
+      return r.behaviour == condition.behaviour;
+    });
     if (at == releasers.end())
-      throw ConfigError("behaviour " + releasers[index].behaviour + " waits for \"" + condition.behaviour + "\", which is not described");
+      throw ConfigError("behaviour " + releasers[index].behaviour + " waits for \"" +
+                        condition.behaviour + "\", which is not described");
     visit(static_cast<std::size_t>(at - releasers.begin()), releasers, marks, way, order);
   }
   marks[index] = Mark::closed;
@@ -68,7 +71,8 @@ Condition parse_condition(const std::string& text) {
     condition.behaviour = subject;
   } else {
     throw ConfigError("\"" + text +
-                      "\" is none of: holding, action KIND, fact NAME, behaviour NAME, each with or without \"not\" before it");
+                      "\" is none of: holding, action KIND, fact NAME, behaviour NAME, each with "
+                      "or without \"not\" before it");
   }
   return condition;
 }

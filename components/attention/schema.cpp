@@ -23,7 +23,9 @@ Separation Body::separation_at(const Vector& q, const Pose& T_world_base, const 
 Vector3 Body::grasp_point(const Vector& q, const Pose& T_world_base) const {
   robot_.forward(q, links_);
   const int tool = robot_.tool_link();
-  return T_world_base * (tool < 0 ? Vector3(0, 0, 0) : Vector3(links_[static_cast<std::size_t>(tool)] * p_tool_grasp_));
+  return T_world_base * (tool < 0
+                             ? Vector3(0, 0, 0)
+                             : Vector3(links_[static_cast<std::size_t>(tool)] * p_tool_grasp_));
 }
 
 namespace {
@@ -41,13 +43,16 @@ class Search : public Schema {
     const double since = to_seconds(now - last_seen_);
     if (w.active) {
       const double angle = 0.9 * std::sin(0.6 * since);
-      target_ = body_.base_point(w.active->T_world_base, Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.3));
+      target_ = body_.base_point(w.active->T_world_base,
+                                 Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.3));
       aimed_ = true;
     }
     return since;
   }
   bool released(const World&) const override { return searching_; }
-  std::optional<Vector3> gaze() const override { return aimed_ ? std::optional(target_) : std::nullopt; }
+  std::optional<Vector3> gaze() const override {
+    return aimed_ ? std::optional(target_) : std::nullopt;
+  }
 
  private:
   const Body& body_;
@@ -77,7 +82,9 @@ class Track : public Schema {
     return kAngle / std::max(1e-3, speed / distance);
   }
   bool released(const World&) const override { return tracked_; }
-  std::optional<Vector3> gaze() const override { return tracked_ ? std::optional(target_) : std::nullopt; }
+  std::optional<Vector3> gaze() const override {
+    return tracked_ ? std::optional(target_) : std::nullopt;
+  }
 
  private:
   MotorSettings motor_;
@@ -88,7 +95,8 @@ class Track : public Schema {
 
 class Avoid : public Schema {
  public:
-  Avoid(const Body& body, const MotorSettings& motor, const ZoneSettings& zones) : body_(body), motor_(motor), zone_(zones) {}
+  Avoid(const Body& body, const MotorSettings& motor, const ZoneSettings& zones)
+      : body_(body), motor_(motor), zone_(zones) {}
   Behaviour kind() const override { return Behaviour::avoid; }
   double perceive(const World& w, TimePoint now) override {
     factor_ = 1.0;
@@ -96,11 +104,13 @@ class Avoid : public Schema {
     if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
     const SeparationExemption exception = handover_exemption(w);
     const ActiveTrajectory& active = *w.active;
-    const Separation s = body_.separation_at(active.position, active.T_world_base, *w.people, exception);
+    const Separation s =
+        body_.separation_at(active.position, active.T_world_base, *w.people, exception);
     near_ = zone_.update(s.distance, now) <= Zone::interaction;
     double closing = 0.0;
     for (const Person& person : w.people->people)
-      if (person.id == s.person) closing = directed_speed(person, s.part, (s.on_robot - s.on_person).normalized());
+      if (person.id == s.person)
+        closing = directed_speed(person, s.part, (s.on_robot - s.on_person).normalized());
     double stimulus = urgency(s.distance, closing);
     if (w.forecast && w.forecast->trajectory != 0 && w.forecast->trajectory == active.trajectory)
       stimulus = std::min(stimulus, std::max(0.0, w.forecast->clearance));
@@ -108,7 +118,8 @@ class Avoid : public Schema {
 
     const bool partner = in_handover_with(w, s.person);
     const double contact_time = partner ? motor_.partner_contact_time : motor_.avoid_contact_time;
-    factor_ = ramp(s.distance, motor_.avoid_stop, partner ? motor_.partner_slow : motor_.avoid_slow);
+    factor_ =
+        ramp(s.distance, motor_.avoid_stop, partner ? motor_.partner_slow : motor_.avoid_slow);
     reason_ = "a person is near";
     if (closing > motor_.recoil_speed && s.distance / closing < contact_time * factor_) {
       factor_ = s.distance / closing / contact_time;
@@ -118,7 +129,8 @@ class Avoid : public Schema {
       constexpr double kSame = 2e-4, kFarther = 1e-3;  // [m]
       const double ahead = least_along(active, *w.people, exception, 1);
       const bool closes_in = s.distance < motor_.avoid_stop && closing > motor_.recoil_speed;
-      if (closes_in && ahead < s.distance + kFarther && least_along(active, *w.people, exception, -1) > s.distance + kFarther) {
+      if (closes_in && ahead < s.distance + kFarther &&
+          least_along(active, *w.people, exception, -1) > s.distance + kFarther) {
         factor_ = motor_.recoil_factor;
         reason_ = "recoil: a person closes in";
       } else if (ahead > s.distance + (closing > motor_.recoil_speed ? kFarther : -kSame)) {
@@ -135,16 +147,21 @@ class Avoid : public Schema {
   const char* reason() const override { return reason_; }
 
  private:
-  /// The least distance along the running trajectory before long. At first alone would not do: what begins or ends softly seems to stand.
-  double least_along(const ActiveTrajectory& active, const HumanState& people, const SeparationExemption& exception, int way) {
+  /// The least distance along the running trajectory before long. At first alone would not do: what
+  /// begins or ends softly seems to stand.
+  double least_along(const ActiveTrajectory& active, const HumanState& people,
+                     const SeparationExemption& exception, int way) {
     constexpr double kFirst = 0.15, kSoon = 0.4;  // [s]
-    return std::min(distance_along(active, people, exception, way * kFirst), distance_along(active, people, exception, way * kSoon));
+    return std::min(distance_along(active, people, exception, way * kFirst),
+                    distance_along(active, people, exception, way * kSoon));
   }
-  double distance_along(const ActiveTrajectory& active, const HumanState& people, const SeparationExemption& exception, double ahead) {
+  double distance_along(const ActiveTrajectory& active, const HumanState& people,
+                        const SeparationExemption& exception, double ahead) {
     sample_ = active.rest.at(active.time + ahead);
     posture_ = active.position;
     for (std::size_t i = 0; i < active.axes.size() && static_cast<int>(i) < active.rest.size(); ++i)
-      if (active.axes[i] < posture_.size()) posture_[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
+      if (active.axes[i] < posture_.size())
+        posture_[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
     return body_.separation_at(posture_, active.T_world_base, people, exception).distance;
   }
 
@@ -172,12 +189,17 @@ class Pick : public Schema {
     }
     return distance_;
   }
-  bool released(const World& w) const override { return doing(w, ActionKind::pick) && !w.action->holding && std::isfinite(distance_); }
+  bool released(const World& w) const override {
+    return doing(w, ActionKind::pick) && !w.action->holding && std::isfinite(distance_);
+  }
   double speed_factor() const override {
-    return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(distance_, 0.0, motor_.ease_distance);
+    return motor_.ease_factor +
+           (1.0 - motor_.ease_factor) * ramp(distance_, 0.0, motor_.ease_distance);
   }
   const char* reason() const override { return "easing onto the object"; }
-  std::optional<Vector3> gaze() const override { return std::isfinite(distance_) ? std::optional(target_) : std::nullopt; }
+  std::optional<Vector3> gaze() const override {
+    return std::isfinite(distance_) ? std::optional(target_) : std::nullopt;
+  }
 
  private:
   const Body& body_;
@@ -189,7 +211,8 @@ class Pick : public Schema {
 /// Somebody whose hand has been coming for what the robot holds, and for how long.
 class ReachWatch {
  public:
-  explicit ReachWatch(const MotorSettings& motor) : near_(motor.reach_near), hold_(motor.reach_hold) {}
+  explicit ReachWatch(const MotorSettings& motor)
+      : near_(motor.reach_near), hold_(motor.reach_hold) {}
 
   /// Distance of the nearest hand that reaches [m]; +inf: nobody's.
   double look(const World& w, const Vector3& p_held, TimePoint now) {
@@ -198,7 +221,8 @@ class ReachWatch {
     if (w.people == nullptr) return nearest;
     for (const Person& person : w.people->people) {
       const double distance = nearest_hand(person, p_held).distance;
-      if (distance > near_ || distance > nearest || !(reaches(w, person.id) || distance < kAtIt)) continue;
+      if (distance > near_ || distance > nearest || !(reaches(w, person.id) || distance < kAtIt))
+        continue;
       nearest = distance;
       who = person.id;
     }
@@ -208,13 +232,16 @@ class ReachWatch {
     return nearest;
   }
   void forget() { person_.clear(), held_ = false; }
-  std::optional<TaskWish> wish() const { return held_ ? std::optional(TaskWish{TaskChange::give, person_}) : std::nullopt; }
+  std::optional<TaskWish> wish() const {
+    return held_ ? std::optional(TaskWish{TaskChange::give, person_}) : std::nullopt;
+  }
 
  private:
   static constexpr double kAtIt = 0.15;  // it has come [m]
   static bool reaches(const World& w, const std::string& person) {
     return w.facts && std::any_of(w.facts->facts.begin(), w.facts->facts.end(), [&](const Fact& f) {
-             return f.kind == FactKind::reaching && f.subject == person && f.object == w.action->object;
+             return f.kind == FactKind::reaching && f.subject == person &&
+                    f.object == w.action->object;
            });
   }
 
@@ -240,7 +267,8 @@ class Place : public Schema {
     for (const SceneBox& box : w.scene->boxes) {
       if (!box.supports) continue;
       const Vector3 local = box.T_world_box.inverse() * p;
-      if (std::abs(local.x()) > 0.5 * box.size.x() || std::abs(local.y()) > 0.5 * box.size.y()) continue;
+      if (std::abs(local.x()) > 0.5 * box.size.x() || std::abs(local.y()) > 0.5 * box.size.y())
+        continue;
       const double height = local.z() - 0.5 * box.size.z();
       if (height >= 0.0 && height < height_) {
         height_ = height;
@@ -251,14 +279,19 @@ class Place : public Schema {
   }
   bool released(const World& w) const override { return putting_down(w) && std::isfinite(height_); }
   double speed_factor() const override {
-    return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(height_, 0.0, motor_.ease_distance);
+    return motor_.ease_factor +
+           (1.0 - motor_.ease_factor) * ramp(height_, 0.0, motor_.ease_distance);
   }
   const char* reason() const override { return "easing onto the support"; }
-  std::optional<Vector3> gaze() const override { return std::isfinite(height_) ? std::optional(target_) : std::nullopt; }
+  std::optional<Vector3> gaze() const override {
+    return std::isfinite(height_) ? std::optional(target_) : std::nullopt;
+  }
   std::optional<TaskWish> wish() const override { return reach_.wish(); }
 
  private:
-  static bool putting_down(const World& w) { return doing(w, ActionKind::place) && w.action->holding; }
+  static bool putting_down(const World& w) {
+    return doing(w, ActionKind::place) && w.action->holding;
+  }
 
   const Body& body_;
   MotorSettings motor_;
@@ -267,10 +300,12 @@ class Place : public Schema {
   Vector3 target_{Vector3::Zero()};
 };
 
-/// GIVE and RECEIVE watch the same thing, the person's hand at the exchange; they differ in who holds the object.
+/// GIVE and RECEIVE watch the same thing, the person's hand at the exchange; they differ in who
+/// holds the object.
 class Exchange : public Schema {
  public:
-  Exchange(Behaviour kind, const Body& body, const MotorSettings& motor) : kind_(kind), body_(body), motor_(motor) {}
+  Exchange(Behaviour kind, const Body& body, const MotorSettings& motor)
+      : kind_(kind), body_(body), motor_(motor) {}
   Behaviour kind() const override { return kind_; }
   double perceive(const World& w, TimePoint) override {
     present_ = false;
@@ -288,18 +323,23 @@ class Exchange : public Schema {
       shift_ = hand.position - w.action->exchange_point;
       if (shift_.norm() > motor_.shift_limit) shift_ *= motor_.shift_limit / shift_.norm();
     }
-    const double closing = distance_ > 1e-6 ? hand.velocity.dot((p - hand.position) / distance_) : 0.0;
+    const double closing =
+        distance_ > 1e-6 ? hand.velocity.dot((p - hand.position) / distance_) : 0.0;
     return urgency(distance_, closing);
   }
   bool released(const World& w) const override {
     const bool holds = kind_ == Behaviour::give;
-    return present_ && doing(w, holds ? ActionKind::give : ActionKind::receive) && w.action->holding == holds;
+    return present_ && doing(w, holds ? ActionKind::give : ActionKind::receive) &&
+           w.action->holding == holds;
   }
   double speed_factor() const override {
-    return motor_.hand_factor + (1.0 - motor_.hand_factor) * ramp(distance_, 0.5 * motor_.hand_near, motor_.hand_near);
+    return motor_.hand_factor +
+           (1.0 - motor_.hand_factor) * ramp(distance_, 0.5 * motor_.hand_near, motor_.hand_near);
   }
   const char* reason() const override { return "the person's hand is at the exchange"; }
-  std::optional<Vector3> gaze() const override { return present_ ? std::optional(gaze_) : std::nullopt; }
+  std::optional<Vector3> gaze() const override {
+    return present_ ? std::optional(gaze_) : std::nullopt;
+  }
   std::optional<Vector3> target_shift() const override {
     return kind_ == Behaviour::receive && present_ ? std::optional(shift_) : std::nullopt;
   }
@@ -315,8 +355,8 @@ class Exchange : public Schema {
 
 }  // namespace
 
-std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones,
-                                    const WatchSettings& watch) {
+std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor,
+                                    const ZoneSettings& zones, const WatchSettings& watch) {
   switch (kind) {
     case Behaviour::search:
       return std::make_unique<Search>(body, motor);

@@ -35,10 +35,13 @@ class Body {
   Body(const RobotModel& robot, const Vector3& p_tool_grasp);
   /// Returns the nearest approach of robot and people in configuration q (all axes); distance +inf
   /// when nobody is there.
-  Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const SeparationExemption& exception) const;
+  Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people,
+                           const SeparationExemption& exception) const;
   Vector3 grasp_point(const Vector& q, const Pose& T_world_base) const;  ///< world [m]
   /// Returns a point of the base frame [m] in the world [m].
-  Vector3 base_point(const Pose& T_world_base, const Vector3& p_base) const { return T_world_base * p_base; }
+  Vector3 base_point(const Pose& T_world_base, const Vector3& p_base) const {
+    return T_world_base * p_base;
+  }
   /// Number of axes of the robot.
   int dof() const { return robot_.dof(); }
 
@@ -61,8 +64,9 @@ enum class Input {
   forecast_contact,  ///< time until a contact that is foreseen on the running trajectory [s]
   unseen_time,       ///< since the person of interest was last seen [s]
 };
-inline constexpr const char* kInputNames[] = {"human_distance", "hand_distance",    "object_distance",
-                                              "clearance",      "forecast_contact", "unseen_time"};
+inline constexpr const char* kInputNames[] = {"human_distance",   "hand_distance",
+                                              "object_distance",  "clearance",
+                                              "forecast_contact", "unseen_time"};
 
 enum class GazeAt { nothing, head, hand, object };
 
@@ -107,7 +111,7 @@ class Schema {
 };
 
 /// Returns a new behaviour; `body` must live as long. `watch`: used where the kind is watch.
-std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones,
-                                    const WatchSettings& watch = {});
+std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor,
+                                    const ZoneSettings& zones, const WatchSettings& watch = {});
 
 }  // namespace handsel::attention

@@ -14,7 +14,8 @@ double Watch::perceive(const World& world, TimePoint now) {
 
 double Watch::speed_factor() const {
   if (!known_ || !(settings_.slow_from > 0)) return 1.0;
-  return settings_.slow_factor + (1.0 - settings_.slow_factor) * ramp(input_, settings_.slow_at, settings_.slow_from);
+  return settings_.slow_factor +
+         (1.0 - settings_.slow_factor) * ramp(input_, settings_.slow_at, settings_.slow_from);
 }
 
 double Watch::sample(const World& w, TimePoint now) {
@@ -33,13 +34,17 @@ double Watch::sample(const World& w, TimePoint now) {
       if (settings_.gaze == GazeAt::object) gaze_ = object.T_world_object.translation();
     }
   }
-  const bool foreseen = w.forecast && w.forecast->trajectory != 0 && w.forecast->trajectory == active.trajectory;
+  const bool foreseen =
+      w.forecast && w.forecast->trajectory != 0 && w.forecast->trajectory == active.trajectory;
   if (person || !seen_) seen_ = now;
   switch (settings_.input) {
     case Input::human_distance:
       return !w.people || w.people->people.empty()
                  ? kInfinity
-                 : body_.separation_at(active.position, active.T_world_base, *w.people, handover_exemption(w)).distance;
+                 : body_
+                       .separation_at(active.position, active.T_world_base, *w.people,
+                                      handover_exemption(w))
+                       .distance;
     case Input::hand_distance:
       return hand.distance;
     case Input::object_distance:

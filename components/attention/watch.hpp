@@ -8,7 +8,8 @@ namespace handsel::attention {
 
 class Watch : public Schema {
  public:
-  Watch(const Body& body, const MotorSettings& motor, const WatchSettings& settings) : body_(body), motor_(motor), settings_(settings) {}
+  Watch(const Body& body, const MotorSettings& motor, const WatchSettings& settings)
+      : body_(body), motor_(motor), settings_(settings) {}
   Behaviour kind() const override { return Behaviour::watch; }
   double perceive(const World& world, TimePoint now) override;
   bool released(const World&) const override { return known_; }

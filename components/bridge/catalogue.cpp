@@ -18,12 +18,14 @@ namespace {
 using Json = nlohmann::json;
 
 bool queued(Profile profile) {
-  return profile == Profile::command || profile == Profile::goal || profile == Profile::request || profile == Profile::reply;
+  return profile == Profile::command || profile == Profile::goal || profile == Profile::request ||
+         profile == Profile::reply;
 }
 bool kept(Profile profile) { return profile == Profile::state || profile == Profile::latch; }
 
 struct Description {
-  std::string folder;  ///< "robots/jido", empty when the robot's URDF is not, or not as it is, among the resources
+  std::string folder;  ///< "robots/jido", empty when the robot's URDF is not, or not as it is,
+                       ///< among the resources
   config::RobotDescription robot;
 };
 
@@ -39,12 +41,14 @@ Description describe(const RobotModel& robot, const fs::path& resources) {
 }
 
 /// The URDF as a viewer can use it: meshes by their address here.
-std::string robot_description(const RobotModel& robot, const Description& description, const fs::path& resources) {
+std::string robot_description(const RobotModel& robot, const Description& description,
+                              const fs::path& resources) {
   if (description.folder.empty()) return drawn_urdf(robot);
   std::ostringstream text;
   text << std::ifstream(resources / description.folder / description.robot.urdf()).rdbuf();
   static const std::regex relative(R"re(filename="([^":]+)")re");
-  return std::regex_replace(text.str(), relative, "filename=\"package://handsel/" + description.folder + "/$1\"");
+  return std::regex_replace(text.str(), relative,
+                            "filename=\"package://handsel/" + description.folder + "/$1\"");
 }
 
 Json objects(const fs::path& resources) {
@@ -58,21 +62,26 @@ Json objects(const fs::path& resources) {
     Json& one = out[object.name()];
     if (!object.mesh().empty()) one["mesh"] = "/assets/objects/" + folder + "/" + object.mesh();
     one["scale"] = {1.0, 1.0, 1.0};
-    if (object.has_scale()) one["scale"] = {object.scale().x(), object.scale().y(), object.scale().z()};
+    if (object.has_scale())
+      one["scale"] = {object.scale().x(), object.scale().y(), object.scale().z()};
   }
   return out;
 }
 
 }  // namespace
 
-Catalogue make_catalogue(const RobotModel& robot, const fs::path& resources, const SystemFacts& facts) {
+Catalogue make_catalogue(const RobotModel& robot, const fs::path& resources,
+                         const SystemFacts& facts) {
   Catalogue catalogue;
   catalogue.name = "handsel " + robot.name();
   catalogue.session = facts.session;
-  catalogue.metadata = {
-      {"robot", robot.name()}, {"scenario", facts.scenario}, {"domain", std::to_string(facts.domain)}, {"version", facts.version}};
+  catalogue.metadata = {{"robot", robot.name()},
+                        {"scenario", facts.scenario},
+                        {"domain", std::to_string(facts.domain)},
+                        {"version", facts.version}};
   catalogue.parameters = catalogue.metadata;
-  catalogue.parameters["/robot_description"] = robot_description(robot, describe(robot, resources), resources);
+  catalogue.parameters["/robot_description"] =
+      robot_description(robot, describe(robot, resources), resources);
   for (const TopicRow& row : topics()) {
     Channel channel;
     channel.topic = row.topic;
@@ -87,8 +96,12 @@ Catalogue make_catalogue(const RobotModel& robot, const fs::path& resources, con
   return catalogue;
 }
 
-std::string config_json(const RobotModel& robot, const fs::path& resources, const SystemFacts& facts) {
-  Json json{{"robot", robot.name()}, {"scenario", facts.scenario}, {"domain", facts.domain}, {"version", facts.version}};
+std::string config_json(const RobotModel& robot, const fs::path& resources,
+                        const SystemFacts& facts) {
+  Json json{{"robot", robot.name()},
+            {"scenario", facts.scenario},
+            {"domain", facts.domain},
+            {"version", facts.version}};
   const Description description = describe(robot, resources);
   if (!description.folder.empty()) {
     json["urdf"] = "/assets/" + description.folder + "/" + description.robot.urdf();
@@ -97,17 +110,23 @@ std::string config_json(const RobotModel& robot, const fs::path& resources, cons
     json["urdf"] = "";
     json["urdf_text"] = drawn_urdf(robot);
   }
-  const auto link = [&](int index) { return index < 0 ? std::string() : robot.links()[static_cast<std::size_t>(index)].name; };
+  const auto link = [&](int index) {
+    return index < 0 ? std::string() : robot.links()[static_cast<std::size_t>(index)].name;
+  };
   json["tool_link"] = link(robot.tool_link());
   json["gaze_link"] = link(robot.gaze_link());
   for (const Group& group : robot.groups())
-    for (const int axis : group.axes) json["groups"][group.name].push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
+    for (const int axis : group.axes)
+      json["groups"][group.name].push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
   json["axes"] = Json::array();
   for (const Axis& axis : robot.axes()) json["axes"].push_back(axis.name);
   json["objects"] = objects(resources);
   json["topics"] = Json::array();
   for (const TopicRow& row : topics())
-    json["topics"].push_back({{"topic", row.topic}, {"type", idl_name(row)}, {"profile", name(row.profile)}, {"rate", row.rate}});
+    json["topics"].push_back({{"topic", row.topic},
+                              {"type", idl_name(row)},
+                              {"profile", name(row.profile)},
+                              {"rate", row.rate}});
   return json.dump();
 }
 

@@ -19,8 +19,10 @@ struct SystemFacts {
 };
 
 /// A channel for each row of the table, in its order.
-Catalogue make_catalogue(const RobotModel& robot, const std::filesystem::path& resources, const SystemFacts& facts);
+Catalogue make_catalogue(const RobotModel& robot, const std::filesystem::path& resources,
+                         const SystemFacts& facts);
 /// The JSON of /config.json.
-std::string config_json(const RobotModel& robot, const std::filesystem::path& resources, const SystemFacts& facts);
+std::string config_json(const RobotModel& robot, const std::filesystem::path& resources,
+                        const SystemFacts& facts);
 
 }  // namespace handsel::bridge

@@ -13,8 +13,9 @@ namespace {
 struct Shade {
   double r, g, b, a;
 };
-constexpr Shade kRobot{0.92, 0.55, 0.16, 1}, kPerson{0.35, 0.55, 0.85, 0.9}, kLost{0.35, 0.55, 0.85, 0.35}, kObject{0.85, 0.3, 0.3, 1},
-    kUnknown{0.8, 0.5, 0.75, 1}, kMislaid{0.85, 0.3, 0.3, 0.35}, kFurniture{0.6, 0.58, 0.54, 1};
+constexpr Shade kRobot{0.92, 0.55, 0.16, 1}, kPerson{0.35, 0.55, 0.85, 0.9},
+    kLost{0.35, 0.55, 0.85, 0.35}, kObject{0.85, 0.3, 0.3, 1}, kUnknown{0.8, 0.5, 0.75, 1},
+    kMislaid{0.85, 0.3, 0.3, 0.35}, kFurniture{0.6, 0.58, 0.54, 1};
 constexpr int kFades = 1;            // [s]
 constexpr double kSurePlace = 0.02;  // an object more uncertain than this is drawn pale [m]
 
@@ -52,18 +53,21 @@ void put(Primitive& to, const Pose& pose, const Vector3& size, const Shade& shad
   color.set_a(shade.a);
 }
 
-void add_cylinder(foxglove::SceneEntity& entity, const Pose& pose, double radius, double length, const Shade& shade) {
+void add_cylinder(foxglove::SceneEntity& entity, const Pose& pose, double radius, double length,
+                  const Shade& shade) {
   auto& cylinder = *entity.add_cylinders();
   put(cylinder, pose, {2 * radius, 2 * radius, length}, shade);
   cylinder.set_bottom_scale(1);
   cylinder.set_top_scale(1);
 }
 
-void add_sphere(foxglove::SceneEntity& entity, const Pose& pose, double radius, const Shade& shade) {
+void add_sphere(foxglove::SceneEntity& entity, const Pose& pose, double radius,
+                const Shade& shade) {
   put(*entity.add_spheres(), pose, Vector3::Constant(2 * radius), shade);
 }
 
-void add_capsule(foxglove::SceneEntity& entity, const Pose& pose, double radius, double length, const Shade& shade) {
+void add_capsule(foxglove::SceneEntity& entity, const Pose& pose, double radius, double length,
+                 const Shade& shade) {
   add_cylinder(entity, pose, radius, length, shade);
   for (const double end : {-length / 2, length / 2}) {
     Pose T = pose;
@@ -72,7 +76,8 @@ void add_capsule(foxglove::SceneEntity& entity, const Pose& pose, double radius,
   }
 }
 
-void add_shape(foxglove::SceneEntity& entity, const Pose& pose, const Shape& shape, const Shade& shade) {
+void add_shape(foxglove::SceneEntity& entity, const Pose& pose, const Shape& shape,
+               const Shade& shade) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     add_sphere(entity, pose, sphere->radius, shade);
   } else if (const auto* box = std::get_if<Box>(&shape)) {
@@ -94,11 +99,13 @@ void add_shape(foxglove::SceneEntity& entity, const Pose& pose, const Shape& sha
 Pose between(const Vector3& a, const Vector3& b) {
   Pose T = Pose::Identity();
   T.translation() = (a + b) / 2;
-  if ((b - a).norm() > 1e-9) T.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), b - a).toRotationMatrix();
+  if ((b - a).norm() > 1e-9)
+    T.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), b - a).toRotationMatrix();
   return T;
 }
 
-foxglove::SceneEntity& add_entity(foxglove::SceneUpdate& update, Stamp now, const std::string& id, const std::string& frame) {
+foxglove::SceneEntity& add_entity(foxglove::SceneUpdate& update, Stamp now, const std::string& id,
+                                  const std::string& frame) {
   foxglove::SceneEntity& entity = *update.add_entities();
   set(now, *entity.mutable_timestamp());
   entity.set_id(id);
@@ -109,17 +116,21 @@ foxglove::SceneEntity& add_entity(foxglove::SceneUpdate& update, Stamp now, cons
 }
 
 std::string base64(const std::string& bytes) {
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr const char* kLetters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : kLetters[group >> (18 - 6 * k) & 63u];
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k > bytes.size() ? '=' : kLetters[group >> (18 - 6 * k) & 63u];
   }
   return out;
 }
 
-void add_files(const google::protobuf::FileDescriptor* file, google::protobuf::FileDescriptorSet& set) {
+void add_files(const google::protobuf::FileDescriptor* file,
+               google::protobuf::FileDescriptorSet& set) {
   for (const auto& known : set.file())
     if (known.name() == file->name()) return;
   for (int i = 0; i < file->dependency_count(); ++i) add_files(file->dependency(i), set);
@@ -128,7 +139,8 @@ void add_files(const google::protobuf::FileDescriptor* file, google::protobuf::F
 
 }  // namespace
 
-Drawing::Drawing(std::shared_ptr<const RobotModel> robot, Objects objects) : robot_(std::move(robot)), objects_(std::move(objects)) {}
+Drawing::Drawing(std::shared_ptr<const RobotModel> robot, Objects objects)
+    : robot_(std::move(robot)), objects_(std::move(objects)) {}
 
 std::vector<Channel> Drawing::channels() {
   google::protobuf::FileDescriptorSet files;
@@ -147,7 +159,8 @@ std::vector<Channel> Drawing::channels() {
 }
 
 bool Drawing::robot_known() const {
-  return state_.position.size() == static_cast<Eigen::Index>(robot_->axes().size()) && state_.position.allFinite();
+  return state_.position.size() == static_cast<Eigen::Index>(robot_->axes().size()) &&
+         state_.position.allFinite();
 }
 
 std::string Drawing::transforms(Stamp now) const {
@@ -168,7 +181,8 @@ std::string Drawing::transforms(Stamp now) const {
     if (link.parent_joint < 0) {
       add("world", link.name, state_.T_world_base);
     } else {
-      const auto parent = static_cast<std::size_t>(robot_->joints()[static_cast<std::size_t>(link.parent_joint)].parent);
+      const auto parent = static_cast<std::size_t>(
+          robot_->joints()[static_cast<std::size_t>(link.parent_joint)].parent);
       add(robot_->links()[parent].name, link.name, T_root_link[parent].inverse() * T_root_link[i]);
     }
   }
@@ -181,13 +195,15 @@ std::string Drawing::scene(Stamp now) const {
     for (const Link& link : robot_->links()) {
       if (link.collision.empty()) continue;
       foxglove::SceneEntity& entity = add_entity(out, now, "robot/" + link.name, link.name);
-      for (const PlacedShape& part : link.collision) add_shape(entity, part.T_parent_shape, part.shape, kRobot);
+      for (const PlacedShape& part : link.collision)
+        add_shape(entity, part.T_parent_shape, part.shape, kRobot);
     }
   }
   for (const Person& person : people_.people) {
     foxglove::SceneEntity& entity = add_entity(out, now, "person/" + person.id, "world");
     for (const BodyCapsule& part : body_capsules(person))
-      add_capsule(entity, between(part.a, part.b), part.radius, (part.b - part.a).norm(), person.inflation > 0 ? kLost : kPerson);
+      add_capsule(entity, between(part.a, part.b), part.radius, (part.b - part.a).norm(),
+                  person.inflation > 0 ? kLost : kPerson);
   }
   for (const SceneObject& object : scene_.objects) {
     const ObjectModel* model = objects_(object.model);
@@ -197,10 +213,12 @@ std::string Drawing::scene(Stamp now) const {
     const Shade& shade = object.uncertainty > kSurePlace ? kMislaid : model ? kObject : kUnknown;
     if (!model) add_shape(entity, object.T_world_object, *unknown, shade);
     if (model)
-      for (const PlacedShape& part : model->parts) add_shape(entity, object.T_world_object * part.T_parent_shape, part.shape, shade);
+      for (const PlacedShape& part : model->parts)
+        add_shape(entity, object.T_world_object * part.T_parent_shape, part.shape, shade);
   }
   for (const SceneBox& box : scene_.boxes)
-    put(*add_entity(out, now, "furniture/" + box.id, "world").add_cubes(), box.T_world_box, box.size, kFurniture);
+    put(*add_entity(out, now, "furniture/" + box.id, "world").add_cubes(), box.T_world_box,
+        box.size, kFurniture);
   return out.SerializeAsString();
 }
 

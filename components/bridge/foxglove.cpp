@@ -14,17 +14,21 @@ constexpr std::size_t kMaxInstances = 64;
 
 template <class T>
 void little_endian(std::vector<std::uint8_t>& out, T value) {
-  for (std::size_t i = 0; i < sizeof value; ++i) out.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
+  for (std::size_t i = 0; i < sizeof value; ++i)
+    out.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
 }
 
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
-Json endpoints(const std::map<std::string, std::set<std::string>>& now, const std::map<std::string, std::set<std::string>>& before,
-               const char* ids) {
+Json endpoints(const std::map<std::string, std::set<std::string>>& now,
+               const std::map<std::string, std::set<std::string>>& before, const char* ids) {
   Json list = Json::array();
   for (const auto& [topic, components] : now) {
     const auto known = before.find(topic);
-    if (known == before.end() || known->second != components) list.push_back({{"name", topic}, {ids, components}});
+    if (known == before.end() || known->second != components)
+      list.push_back({{"name", topic}, {ids, components}});
   }
   return list;
 }
@@ -37,7 +41,8 @@ std::uint32_t id_of(const Json& value, const char* what) {
 
 const Json& field(const Json& message, const char* name) {
   const auto at = message.find(name);
-  if (at == message.end()) throw std::invalid_argument(std::string("the field ") + name + " is missing");
+  if (at == message.end())
+    throw std::invalid_argument(std::string("the field ") + name + " is missing");
   return *at;
 }
 
@@ -56,19 +61,23 @@ std::string choose_subprotocol(std::string_view header) {
     header = comma == std::string_view::npos ? std::string_view() : header.substr(comma + 1);
     while (!one.empty() && (one.front() == ' ' || one.front() == '\t')) one.remove_prefix(1);
     while (!one.empty() && (one.back() == ' ' || one.back() == '\t')) one.remove_suffix(1);
-    if (std::find(kSubprotocols.begin(), kSubprotocols.end(), one) != kSubprotocols.end()) return std::string(one);
+    if (std::find(kSubprotocols.begin(), kSubprotocols.end(), one) != kSubprotocols.end())
+      return std::string(one);
   }
   return {};
 }
 
 Hub::Hub(Catalogue catalogue, std::function<Asset(const std::string&)> fetch)
-    : catalogue_(std::move(catalogue)), fetch_(std::move(fetch)), kept_(catalogue_.channels.size()) {
-  greeting_ = std::make_shared<std::string>(dump({{"op", "serverInfo"},
-                                                  {"name", catalogue_.name},
-                                                  {"capabilities", {"time", "connectionGraph", "assets", "parameters"}},
-                                                  {"supportedEncodings", Json::array()},
-                                                  {"metadata", catalogue_.metadata},
-                                                  {"sessionId", catalogue_.session}}));
+    : catalogue_(std::move(catalogue)),
+      fetch_(std::move(fetch)),
+      kept_(catalogue_.channels.size()) {
+  greeting_ = std::make_shared<std::string>(
+      dump({{"op", "serverInfo"},
+            {"name", catalogue_.name},
+            {"capabilities", {"time", "connectionGraph", "assets", "parameters"}},
+            {"supportedEncodings", Json::array()},
+            {"metadata", catalogue_.metadata},
+            {"sessionId", catalogue_.session}}));
   Json list = Json::array();
   for (std::size_t i = 0; i < catalogue_.channels.size(); ++i) {
     const Channel& c = catalogue_.channels[i];
@@ -79,7 +88,8 @@ Hub::Hub(Catalogue catalogue, std::function<Asset(const std::string&)> fetch)
                     {"schema", c.schema},
                     {"schemaEncoding", c.schema_encoding}});
   }
-  channels_ = std::make_shared<std::string>(dump({{"op", "advertise"}, {"channels", std::move(list)}}));
+  channels_ =
+      std::make_shared<std::string>(dump({{"op", "advertise"}, {"channels", std::move(list)}}));
 }
 
 void Hub::keep(const Sample& sample) {
@@ -98,10 +108,13 @@ Viewer::Viewer(Hub& hub, const OutboxSettings& settings) : hub_(hub), outbox_(se
 }
 
 void Viewer::put(std::string text) {
-  if (!outbox_.put({std::make_shared<const std::string>(std::move(text)), {}, {}})) cut_ = "it asks and does not read the answers";
+  if (!outbox_.put({std::make_shared<const std::string>(std::move(text)), {}, {}}))
+    cut_ = "it asks and does not read the answers";
 }
 
-void Viewer::status(int level, const std::string& message) { put(dump({{"op", "status"}, {"level", level}, {"message", message}})); }
+void Viewer::status(int level, const std::string& message) {
+  put(dump({{"op", "status"}, {"level", level}, {"message", message}}));
+}
 
 void Viewer::refuse(const std::string& why) {
   ++refused_;
@@ -138,11 +151,14 @@ void Viewer::text(std::string_view message, TimePoint now) {
   try {
     if (name == "subscribe") {
       for (const Json& one : list(json, "subscriptions")) {
-        if (!one.is_object()) throw std::invalid_argument("subscriptions must be a list of objects");
-        const std::uint32_t id = id_of(field(one, "id"), "id"), channel = id_of(field(one, "channelId"), "channelId");
+        if (!one.is_object())
+          throw std::invalid_argument("subscriptions must be a list of objects");
+        const std::uint32_t id = id_of(field(one, "id"), "id"),
+                            channel = id_of(field(one, "channelId"), "channelId");
         if (channel == 0 || channel > hub_.catalogue().channels.size())
           throw std::invalid_argument("there is no channel " + std::to_string(channel));
-        if (subscriptions_.contains(id)) throw std::invalid_argument("subscription " + std::to_string(id) + " is in use");
+        if (subscriptions_.contains(id))
+          throw std::invalid_argument("subscription " + std::to_string(id) + " is in use");
         if (subscriptions_.size() >= kMaxSubscriptions)
           throw std::invalid_argument("more than " + std::to_string(kMaxSubscriptions) +
                                       " subscriptions");
@@ -154,7 +170,8 @@ void Viewer::text(std::string_view message, TimePoint now) {
       for (const Json& one : list(json, "subscriptionIds")) {
         const std::uint32_t id = id_of(one, "a subscription id");
         const auto known = subscriptions_.find(id);
-        if (known == subscriptions_.end()) throw std::invalid_argument("there is no subscription " + std::to_string(id));
+        if (known == subscriptions_.end())
+          throw std::invalid_argument("there is no subscription " + std::to_string(id));
         std::erase_if(by_channel_, [id](const auto& entry) { return entry.second == id; });
         subscriptions_.erase(known);
         outbox_.forget(id);
@@ -165,7 +182,8 @@ void Viewer::text(std::string_view message, TimePoint now) {
       for (const Json& one : list(json, "parameterNames"))
         if (one.is_string()) wanted.insert(one.get<std::string>());
       for (const auto& [parameter, value] : hub_.catalogue().parameters)
-        if (wanted.empty() || wanted.contains(parameter)) values.push_back({{"name", parameter}, {"value", value}});
+        if (wanted.empty() || wanted.contains(parameter))
+          values.push_back({{"name", parameter}, {"value", value}});
       Json answer{{"op", "parameterValues"}, {"parameters", std::move(values)}};
       if (const auto id = json.find("id"); id != json.end() && id->is_string()) answer["id"] = *id;
       put(dump(answer));

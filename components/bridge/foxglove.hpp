@@ -18,7 +18,8 @@
 
 namespace handsel::bridge {
 
-inline constexpr std::array<const char*, 2> kSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1"};
+inline constexpr std::array<const char*, 2> kSubprotocols{"foxglove.sdk.v1",
+                                                          "foxglove.websocket.v1"};
 /// Returns the first of kSubprotocols in a Sec-WebSocket-Protocol header; empty when there is none.
 std::string choose_subprotocol(std::string_view header);
 

@@ -39,7 +39,8 @@ Node::Node(Bus& bus, const NodeContext& context)
       drawing_(context.robot, context.objects) {
   const auto settings = settings::read_bridge_settings(context.settings / "bridge.txtpb");
   settings_.port = port_of(settings);
-  if (const char* address = std::getenv("HANDSEL_WEB_ADDRESS"); address && *address) settings_.address = address;
+  if (const char* address = std::getenv("HANDSEL_WEB_ADDRESS"); address && *address)
+    settings_.address = address;
   settings_.max_clients = settings.max_clients;
   settings_.allowed_origins = settings.allowed_origins;
 
@@ -88,8 +89,13 @@ void Node::publish_samples() {
     }
     if (!readers_[i] && !read(i)) continue;
     for (RawSample raw; readers_[i]->take(raw);) {
-      Sample sample{.channel = i, .instance = raw.instance, .gone = raw.gone, .stamp = raw.stamp, .bytes = {}};
-      if (!raw.gone) sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(raw.cdr));
+      Sample sample{.channel = i,
+                    .instance = raw.instance,
+                    .gone = raw.gone,
+                    .stamp = raw.stamp,
+                    .bytes = {}};
+      if (!raw.gone)
+        sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(raw.cdr));
       samples.push_back(std::move(sample));
     }
   }
@@ -112,18 +118,22 @@ void Node::draw() {
   if (!server_->wanted(transforms) && !server_->wanted(scene)) return;
   if (!drawing_listens_) {
     drawing_listens_ = true;
-    bus_.subscribe<RobotState>([this](const RobotState& m, const Receipt&) { drawing_.take(m); }, {.period = kClock});
-    bus_.subscribe<HumanState>([this](const HumanState& m, const Receipt&) { drawing_.take(m); }, {.period = kClock});
-    bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { drawing_.take(m); }, {.period = kClock});
+    bus_.subscribe<RobotState>([this](const RobotState& m, const Receipt&) { drawing_.take(m); },
+                               {.period = kClock});
+    bus_.subscribe<HumanState>([this](const HumanState& m, const Receipt&) { drawing_.take(m); },
+                               {.period = kClock});
+    bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { drawing_.take(m); },
+                          {.period = kClock});
   }
   std::vector<Sample> samples;
   const auto add = [&](std::size_t channel, const std::string& bytes) {
     if (bytes.empty() || !server_->wanted(channel)) return;
-    samples.push_back({.channel = channel,
-                       .instance = 0,
-                       .gone = false,
-                       .stamp = bus_.stamp_now(),
-                       .bytes = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end())});
+    samples.push_back(
+        {.channel = channel,
+         .instance = 0,
+         .gone = false,
+         .stamp = bus_.stamp_now(),
+         .bytes = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end())});
   };
   add(transforms, drawing_.transforms(bus_.stamp_now()));
   add(scene, drawing_.scene(bus_.stamp_now()));

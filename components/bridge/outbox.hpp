@@ -22,7 +22,9 @@ struct Frame {
   Bytes body;                      ///< may be null
 
   /// Returns the length of the message [bytes].
-  std::size_t size() const { return (text ? text->size() : 0) + head.size() + (body ? body->size() : 0); }
+  std::size_t size() const {
+    return (text ? text->size() : 0) + head.size() + (body ? body->size() : 0);
+  }
 };
 
 struct OutboxSettings {

@@ -37,11 +37,13 @@ const std::map<std::string, const char*> kTypes{
     {".mtl", "model/mtl"},
     {".glb", "model/gltf-binary"},
 };
-constexpr std::array<std::string_view, 9> kAssetKinds{".urdf", ".srdf", ".stl", ".obj", ".mtl", ".dae", ".glb", ".png", ".jpg"};
+constexpr std::array<std::string_view, 9> kAssetKinds{".urdf", ".srdf", ".stl", ".obj", ".mtl",
+                                                      ".dae",  ".glb",  ".png", ".jpg"};
 
 std::string extension_of(const fs::path& file) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 
@@ -50,7 +52,8 @@ bool canonical(std::string_view path) {
   if (path.empty() || path.size() > kLongestPath) return false;
   bool begins = true;
   for (const char c : path) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '_' || c == '-';
     if (!plain && (begins || (c != '.' && c != '/'))) return false;
     begins = c == '/';
   }
@@ -68,10 +71,13 @@ std::optional<fs::path> file_in(const fs::path& folder, std::string_view path) {
 
 std::optional<fs::path> asset(const fs::path& resources, std::string_view path, bool with_objects) {
   const std::string_view kind = path.substr(0, path.find('/'));
-  if (kind != "robots" && kind != "hands" && !(with_objects && kind == "objects")) return std::nullopt;
+  if (kind != "robots" && kind != "hands" && !(with_objects && kind == "objects"))
+    return std::nullopt;
   if (path.size() == kind.size() || resources.empty()) return std::nullopt;
   const auto file = file_in(resources / kind, path.substr(kind.size() + 1));
-  if (!file || std::find(kAssetKinds.begin(), kAssetKinds.end(), extension_of(*file)) == kAssetKinds.end()) return std::nullopt;
+  if (!file ||
+      std::find(kAssetKinds.begin(), kAssetKinds.end(), extension_of(*file)) == kAssetKinds.end())
+    return std::nullopt;
   return file;
 }
 
@@ -84,7 +90,8 @@ fs::path canonical_or_empty(const fs::path& folder) {
 }  // namespace
 
 Site::Site(fs::path page, const fs::path& resources)
-    : page_(page.empty() ? page : canonical_or_empty(page)), resources_(canonical_or_empty(resources)) {}
+    : page_(page.empty() ? page : canonical_or_empty(page)),
+      resources_(canonical_or_empty(resources)) {}
 
 std::optional<fs::path> Site::find(std::string_view target) const {
   if (target.starts_with(kAssets)) return asset(resources_, target.substr(kAssets.size()), true);
@@ -94,12 +101,15 @@ std::optional<fs::path> Site::find(std::string_view target) const {
 
 Asset Site::fetch(const std::string& uri) const {
   const std::string_view text = uri;
-  if (!text.starts_with(kPackage)) return {nullptr, "an asset's address begins with " + std::string(kPackage) + "robots/ or hands/"};
+  if (!text.starts_with(kPackage))
+    return {nullptr,
+            "an asset's address begins with " + std::string(kPackage) + "robots/ or hands/"};
   const auto file = asset(resources_, text.substr(kPackage.size()), false);
   if (!file) return {nullptr, "there is no such asset"};
   std::error_code error;
   const std::uintmax_t size = fs::file_size(*file, error);
-  if (error || size > kLargestAsset) return {nullptr, "the asset is larger than " + std::to_string(kLargestAsset >> 20) + " MiB"};
+  if (error || size > kLargestAsset)
+    return {nullptr, "the asset is larger than " + std::to_string(kLargestAsset >> 20) + " MiB"};
   auto bytes = std::make_shared<std::vector<std::uint8_t>>(size);
   std::ifstream in(*file, std::ios::binary);
   in.read(reinterpret_cast<char*>(bytes->data()), static_cast<std::streamsize>(size));

@@ -8,29 +8,42 @@ namespace handsel::collision_checker {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kOtherAxes = 0.01;    // [rad] the other axes may move this much before the scene is judged anew
+constexpr double kOtherAxes =
+    0.01;  // [rad] the other axes may move this much before the scene is judged anew
 constexpr double kRestMotion = 1e-3;   // [rad] at rest, smaller motions change nothing
 constexpr double kFarClearance = 5.0;  // [m] clearances of a query beyond this are not looked for
 
-std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
+std::string contact(const CollisionVerdict& verdict) {
+  return verdict.first + " touches " + verdict.second;
+}
 
 bool same(const Attachment& a, const Attachment& b) {
-  return a.object == b.object && (a.object.empty() || a.T_tool_object.isApprox(b.T_tool_object, 1e-4));
+  return a.object == b.object &&
+         (a.object.empty() || a.T_tool_object.isApprox(b.T_tool_object, 1e-4));
 }
 
 bool same(const Trajectory& a, const Trajectory& b) {
-  const auto same_segment = [](const Segment& s, const Segment& t) { return s.duration == t.duration && s.jerk == t.jerk; };
+  const auto same_segment = [](const Segment& s, const Segment& t) {
+    return s.duration == t.duration && s.jerk == t.jerk;
+  };
   const auto same_axis = [&](const AxisTrajectory& s, const AxisTrajectory& t) {
-    return s.start.position == t.start.position && s.start.velocity == t.start.velocity && s.start.acceleration == t.start.acceleration &&
-           std::equal(s.segments.begin(), s.segments.end(), t.segments.begin(), t.segments.end(), same_segment);
+    return s.start.position == t.start.position && s.start.velocity == t.start.velocity &&
+           s.start.acceleration == t.start.acceleration &&
+           std::equal(s.segments.begin(), s.segments.end(), t.segments.begin(), t.segments.end(),
+                      same_segment);
   };
   return std::equal(a.axes.begin(), a.axes.end(), b.axes.begin(), b.axes.end(), same_axis);
 }
 
 }  // namespace
 
-Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings)
-    : robot_(robot), settings_(settings), world_(robot, std::move(library)), cost_(robot, cost), capsules_(robot_capsules(robot)) {}
+Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost,
+                       ForecastSettings settings)
+    : robot_(robot),
+      settings_(settings),
+      world_(robot, std::move(library)),
+      cost_(robot, cost),
+      capsules_(robot_capsules(robot)) {}
 
 void Forecaster::set_scene(const Scene& scene) {
   const bool moved = !scene.T_world_base.isApprox(T_world_base_, 1e-6);
@@ -51,7 +64,8 @@ void Forecaster::set_people(const HumanState& people) {
   for (const Person& person : people.people)
     for (const HandPrediction& hand : person.hands) {
       const BodyPart part = hand.joint == "l_hand" ? BodyPart::hand_left : BodyPart::hand_right;
-      const auto joint = std::find_if(person.joints.begin(), person.joints.end(), [&](const BodyJoint& j) { return j.name == hand.joint; });
+      const auto joint = std::find_if(person.joints.begin(), person.joints.end(),
+                                      [&](const BodyJoint& j) { return j.name == hand.joint; });
       if (joint == person.joints.end()) continue;
       Hand& known = hands_.emplace_back();
       for (const BodyCapsule& capsule : body_capsules(person))
@@ -70,24 +84,28 @@ void Forecaster::set_layers(LayersNow layers) {
 bool Forecaster::fits(const ActiveTrajectory& active) const {
   if (active.position.size() != robot_.dof()) return false;
   if (static_cast<int>(active.axes.size()) != active.rest.size()) return false;
-  return std::all_of(active.axes.begin(), active.axes.end(), [this](std::uint32_t axis) { return static_cast<int>(axis) < robot_.dof(); });
+  return std::all_of(active.axes.begin(), active.axes.end(),
+                     [this](std::uint32_t axis) { return static_cast<int>(axis) < robot_.dof(); });
 }
 
 void Forecaster::remember_for(const ActiveTrajectory& active) {
   Vector others = active.position;
   for (std::uint32_t axis : active.axes) others[axis] = 0;
-  const bool known = !memory_.empty() && trajectory_ == active.trajectory && same(attachment_, active.attachment) &&
-                     allowed_ == active.allowed_contacts && same(path_, active.rest) && others_.size() == others.size() &&
+  const bool known = !memory_.empty() && trajectory_ == active.trajectory &&
+                     same(attachment_, active.attachment) && allowed_ == active.allowed_contacts &&
+                     same(path_, active.rest) && others_.size() == others.size() &&
                      (others - others_).cwiseAbs().maxCoeff() < kOtherAxes;
   if (known) return;
-  if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts || trajectory_ != active.trajectory)
+  if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts ||
+      trajectory_ != active.trajectory)
     world_.set_attachment(active.attachment, active.allowed_contacts);
   trajectory_ = active.trajectory;
   attachment_ = active.attachment;
   allowed_ = active.allowed_contacts;
   others_ = others;
   path_ = active.rest;
-  const std::size_t states = 2 + static_cast<std::size_t>(active.rest.duration() / settings_.spacing);
+  const std::size_t states =
+      2 + static_cast<std::size_t>(active.rest.duration() / settings_.spacing);
   memory_.assign(states, Memory::unknown);
   contacts_.assign(states, {});
   sample_.position.resize(active.rest.size());
@@ -108,7 +126,8 @@ double Forecaster::distance_to_ball(const Vector3& centre, double radius) const 
   double least = kInfinity;
   for (const LinkCapsule& capsule : capsules_) {
     const Pose T = T_world_base_ * links_[static_cast<std::size_t>(capsule.link)];
-    least = std::min(least, segment_distance(T * capsule.a, T * capsule.b, centre, centre) - capsule.radius - radius);
+    least = std::min(least, segment_distance(T * capsule.a, T * capsule.b, centre, centre) -
+                                capsule.radius - radius);
   }
   return least;
 }
@@ -117,7 +136,8 @@ void Forecaster::sample_at(const Vector& q, double ahead, TrajectoryForecast& fo
   forecast.clearance = std::min(forecast.clearance, world_.distance_to_people(q));
   if (!hands_.empty()) robot_.forward(q, links_);
   for (const Hand& hand : hands_) {
-    const auto next = std::find_if(hand.motion.begin(), hand.motion.end(), [&](const HandAhead& h) { return h.time > ahead; });
+    const auto next = std::find_if(hand.motion.begin(), hand.motion.end(),
+                                   [&](const HandAhead& h) { return h.time > ahead; });
     if (next == hand.motion.begin() || next == hand.motion.end()) continue;
     const HandAhead& before = *std::prev(next);
     const double share = (ahead - before.time) / (next->time - before.time);
@@ -145,7 +165,8 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     const bool stood = rest_known_ && rest_position_.size() == active.position.size() &&
                        (rest_position_ - active.position).cwiseAbs().maxCoeff() < kRestMotion;
     if (!stood) {
-      if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts) remember_for(active);
+      if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts)
+        remember_for(active);
       rest_ = forecast;
       sample_at(active.position, 0, rest_);
       rest_position_ = active.position;
@@ -158,17 +179,23 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   rest_known_ = false;
   const double speed = std::max(std::abs(active.speed_factor), settings_.min_speed);
   const double reach = speed * settings_.horizon, spacing = settings_.spacing;
-  const auto index_at = [&](double t) { return static_cast<long>(std::clamp(t, 0.0, duration) / spacing); };
+  const auto index_at = [&](double t) {
+    return static_cast<long>(std::clamp(t, 0.0, duration) / spacing);
+  };
   const long last_index = static_cast<long>(std::ceil(duration / spacing));
-  // States lie on a fixed grid of the trajectory's own time; the first is the one about to be reached, then on in the sense of motion.
-  const long first = backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
-  const long end = backward ? index_at(active.time - reach) : std::min(last_index, index_at(active.time + reach) + 1);
+  // States lie on a fixed grid of the trajectory's own time; the first is the one about to be
+  // reached, then on in the sense of motion.
+  const long first =
+      backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
+  const long end = backward ? index_at(active.time - reach)
+                            : std::min(last_index, index_at(active.time + reach) + 1);
   sample_at(active.position, 0, forecast);
   Vector q = active.position;
   for (long k = first;; k += backward ? -1 : 1) {
     const double t = std::min(duration, static_cast<double>(k) * spacing);
     active.rest.sample(t, sample_);
-    for (std::size_t i = 0; i < active.axes.size(); ++i) q[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < active.axes.size(); ++i)
+      q[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
     CollisionVerdict verdict = scene_verdict(static_cast<std::size_t>(k), q);
     if (verdict.free) verdict = world_.check_people(q);
     sample_at(q, std::max(0.0, std::abs(t - active.time) / speed), forecast);
@@ -193,15 +220,17 @@ StateVerdict check_states(const RobotModel& robot, CollisionWorld& world, const 
     CollisionVerdict one;
     std::string why;
     if (q.size() != robot.dof()) {
-      why = "a state has " + std::to_string(q.size()) + " axes, the robot has " + std::to_string(robot.dof());
+      why = "a state has " + std::to_string(q.size()) + " axes, the robot has " +
+            std::to_string(robot.dof());
     } else if (one = world.check(q); !one.free) {
       why = contact(one);
     }
     verdict.free.push_back(why.empty() ? 1 : 0);
     if (verdict.reason.empty()) verdict.reason = why;
     if (why.empty())
-      verdict.clearance = std::min(
-          {verdict.clearance, world.distance_to_people(q), world.distance_to_scene(q, std::min(kFarClearance, verdict.clearance))});
+      verdict.clearance =
+          std::min({verdict.clearance, world.distance_to_people(q),
+                    world.distance_to_scene(q, std::min(kFarClearance, verdict.clearance))});
   }
   return verdict;
 }

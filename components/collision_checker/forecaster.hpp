@@ -26,7 +26,8 @@ struct ForecastSettings {
 /// a trajectory is remembered until one of them changes.
 class Forecaster {
  public:
-  Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings);
+  Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost,
+             ForecastSettings settings);
 
   /// Replaces the scene; verdicts of the old one are dropped when its revision or the base differs.
   void set_scene(const Scene& scene);

@@ -7,7 +7,7 @@
 namespace handsel::collision_checker {
 namespace {
 
-constexpr int kTicks = 4;                // of the shortest period: periods between are rounded to them
+constexpr int kTicks = 4;  // of the shortest period: periods between are rounded to them
 constexpr std::size_t kMaxQueries = 16;  // that wait; each may hold 4096 states
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
@@ -19,16 +19,20 @@ settings::CollisionCheckerSettings load(const NodeContext& context) {
   return s;
 }
 
-ForecastSettings core_settings(const settings::CollisionCheckerSettings& s) { return {s.horizon, s.min_speed, s.spacing}; }
+ForecastSettings core_settings(const settings::CollisionCheckerSettings& s) {
+  return {s.horizon, s.min_speed, s.spacing};
+}
 
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       robot_(context.robot),
-      forecaster_(*context.robot, context.objects, load_cost_settings(context.settings), core_settings(load(context))),
+      forecaster_(*context.robot, context.objects, load_cost_settings(context.settings),
+                  core_settings(load(context))),
       query_world_(*context.robot, context.objects),
-      advised_period_(load(context).period, load(context).max_period, load(context).period / kTicks),
+      advised_period_(load(context).period, load(context).max_period,
+                      load(context).period / kTicks),
       forecast_out_(bus.advertise<TrajectoryForecast>()),
       verdict_out_(bus.advertise<StateVerdict>()) {
   const settings::CollisionCheckerSettings settings = load(context);
@@ -51,8 +55,9 @@ Node::Node(Bus& bus, const NodeContext& context)
     layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
     forecaster_.set_layers(layers_.at(receipt.arrival));
   });
-  bus.subscribe<AttentionAdvice>(
-      [this](const AttentionAdvice& advice, const Receipt& r) { advised_period_.advise(advice.forecast_period, r.arrival); });
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt& r) {
+    advised_period_.advise(advice.forecast_period, r.arrival);
+  });
   bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
   bus.every(from_seconds(settings.period / kTicks), [this](TimePoint now) { forecast(now); });
@@ -60,10 +65,11 @@ Node::Node(Bus& bus, const NodeContext& context)
 
 void Node::forecast(TimePoint now) {
   if (!news_ && !advised_period_.due(now)) return;
-  const std::string missing = bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
-                              : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
-                              : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
-                                                                      : "";
+  const std::string missing =
+      bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
+      : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
+      : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
+                                              : "";
   bus_.set_degraded(missing.empty() ? layers_.complaint(now) : missing);
   if (!missing.empty()) return;
   news_ = false;
@@ -86,7 +92,8 @@ void Node::answer(const StateQuery& query) {
   auto work = std::make_shared<Work>(Work{query, scene_, people_, {}});
   if (!work->scene || !work->people || full) {
     work->verdict.id = query.id;
-    work->verdict.reason = full          ? std::to_string(kMaxQueries) + " queries wait already, which is the limit; ask again later"
+    work->verdict.reason = full ? std::to_string(kMaxQueries) +
+                                      " queries wait already, which is the limit; ask again later"
                            : work->scene ? "no state of people is known"
                                          : "no scene is known";
     work->verdict.free.assign(query.states.size(), 0);

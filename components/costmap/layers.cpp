@@ -14,16 +14,20 @@ namespace {
 enum Layer { kSafety, kVisibility, kComfort, kTotal };
 constexpr std::uint8_t kNever = 255;
 constexpr std::array kWatched = {"l_shoulder", "r_shoulder", "waist", "head"};
-constexpr double kArmTolerance = 0.01;  // [m] an arm that seems longer or shorter by less is the same arm
-constexpr std::size_t kVolumes = 24;    // that are kept: measured lengths go up and down
+constexpr double kArmTolerance =
+    0.01;  // [m] an arm that seems longer or shorter by less is the same arm
+constexpr std::size_t kVolumes = 24;  // that are kept: measured lengths go up and down
 
 Vector3 shoulder_middle(const Person& person) {
-  const BodyJoint *left = find_joint(person, "l_shoulder"), *right = find_joint(person, "r_shoulder");
+  const BodyJoint *left = find_joint(person, "l_shoulder"),
+                  *right = find_joint(person, "r_shoulder");
   if (left && right) return 0.5 * (left->position + right->position);
   return left ? left->position : right ? right->position : Vector3(Vector3::Zero());
 }
 
-double angle(const Vector3& a, const Vector3& b) { return std::acos(std::clamp(a.dot(b), -1.0, 1.0)); }
+double angle(const Vector3& a, const Vector3& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+}
 
 void put(const Vector3& p, float (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(p[i]);
@@ -32,7 +36,8 @@ void put(const Vector3& p, float (&out)[3]) {
 /// First and one past the last point of a row (along x) within reach of the arm.
 std::pair<int, int> within_reach(const PlacedArm& arm, const Vector3& first, double step, int n) {
   const Vector3 d = first - arm.shoulder;
-  const double reach = arm.length() + kArmTolerance, left = reach * reach - d.y() * d.y() - d.z() * d.z();
+  const double reach = arm.length() + kArmTolerance,
+               left = reach * reach - d.y() * d.y() - d.z() * d.z();
   if (left <= 0) return {0, 0};
   const double half = std::sqrt(left);
   return {std::clamp(static_cast<int>(std::ceil((-d.x() - half) / step)), 0, n),
@@ -49,7 +54,8 @@ const Layers& MapMaker::make(const Person& person, const std::vector<SceneBox>& 
     map.layer = kOwnLayers[layer];
     map.person = person.id;
     map.resolution = settings_.resolution;
-    for (int i = 0; i < 3; ++i) map.origin[i] = settings_.resolution * (std::round(middle[i] / settings_.resolution) - half);
+    for (int i = 0; i < 3; ++i)
+      map.origin[i] = settings_.resolution * (std::round(middle[i] / settings_.resolution) - half);
     map.nx = map.ny = map.nz = static_cast<std::uint32_t>(2 * half + 1);
     map.values.assign(std::size_t{map.nx} * map.ny * map.nz, kNever);
   }
@@ -60,7 +66,9 @@ const Layers& MapMaker::make(const Person& person, const std::vector<SceneBox>& 
 
 /// References stay valid while fewer than kVolumes others are asked for.
 const ComfortVolume& MapMaker::volume_of(const ArmSize& arm) {
-  const auto known = std::find_if(volumes_.begin(), volumes_.end(), [&](const ComfortVolume& v) { return v.suits(arm, kArmTolerance); });
+  const auto known = std::find_if(volumes_.begin(), volumes_.end(), [&](const ComfortVolume& v) {
+    return v.suits(arm, kArmTolerance);
+  });
   if (known != volumes_.end()) {
     volumes_.splice(volumes_.begin(), volumes_, known);
   } else {
@@ -70,8 +78,10 @@ const ComfortVolume& MapMaker::volume_of(const ArmSize& arm) {
   return volumes_.front();
 }
 
-void MapMaker::fill_comfort(const Person& person, const std::vector<SceneBox>& boxes, Costmap& map) {
-  const std::optional<PlacedArm> left = placed_arm(person, Side::left), right = placed_arm(person, Side::right);
+void MapMaker::fill_comfort(const Person& person, const std::vector<SceneBox>& boxes,
+                            Costmap& map) {
+  const std::optional<PlacedArm> left = placed_arm(person, Side::left),
+                                 right = placed_arm(person, Side::right);
   if (!left || !right) return;
   const ReachCheck furniture(person, boxes, settings_.clearance);
   const std::array<std::pair<const PlacedArm&, const ComfortVolume&>, 2> arms = {
@@ -83,14 +93,17 @@ void MapMaker::fill_comfort(const Person& person, const std::vector<SceneBox>& b
       const Vector3 first = map.origin + settings_.resolution * Vector3(0, j, k);
       for (const auto& [arm, volume] : arms) {
         const auto [begin, end] = within_reach(arm, first, settings_.resolution, n);
-        Vector3 p_arm = arm.to_arm * (first + settings_.resolution * Vector3(begin, 0, 0) - arm.shoulder);
+        Vector3 p_arm =
+            arm.to_arm * (first + settings_.resolution * Vector3(begin, 0, 0) - arm.shoulder);
         const Vector3 step = settings_.resolution * arm.to_arm.col(0);
         for (int i = begin; i < end; ++i, p_arm += step)
           if (const double cost = volume.cost(p_arm); cost < 1.0)
             row[i] = std::min(row[i], static_cast<std::uint8_t>(std::lround(cost * 254)));
       }
       for (int i = 0; i < n; ++i)
-        if (row[i] != kNever && furniture.blocked_by(first + settings_.resolution * Vector3(i, 0, 0))) row[i] = kNever;
+        if (row[i] != kNever &&
+            furniture.blocked_by(first + settings_.resolution * Vector3(i, 0, 0)))
+          row[i] = kNever;
     }
 }
 
@@ -121,8 +134,9 @@ void MapMaker::fill_others(const Person& person) {
   std::size_t at = 0;
   for (std::uint32_t k = 0; k < grid.nz; ++k)
     for (std::uint32_t j = 0; j < grid.ny; ++j, at += grid.nx)
-      fill(h, static_cast<float>(j) * step, static_cast<float>(k) * step, step, static_cast<int>(grid.nx), &layers_[kComfort].values[at],
-           &layers_[kSafety].values[at], &layers_[kVisibility].values[at], &layers_[kTotal].values[at]);
+      fill(h, static_cast<float>(j) * step, static_cast<float>(k) * step, step,
+           static_cast<int>(grid.nx), &layers_[kComfort].values[at], &layers_[kSafety].values[at],
+           &layers_[kVisibility].values[at], &layers_[kTotal].values[at]);
 }
 
 bool Watch::changed(const Person& person, const std::vector<SceneBox>& boxes) {
@@ -132,12 +146,17 @@ bool Watch::changed(const Person& person, const std::vector<SceneBox>& boxes) {
     joints.push_back(joint ? joint->position : Vector3(Vector3::Zero()));
   }
   const std::optional<Sight> sight = sight_of(person);
-  const std::array<Vector3, 2> directions = {torso_axes(person).col(0), sight ? sight->direction : Vector3(Vector3::UnitX())};
-  bool same = person.id == person_ && joints.size() == joints_.size() && boxes.size() == boxes_.size();
-  for (std::size_t i = 0; same && i < directions.size(); ++i) same = angle(directions[i], directions_[i]) < turned_;
-  for (std::size_t i = 0; same && i < joints.size(); ++i) same = (joints[i] - joints_[i]).norm() < moved_;
+  const std::array<Vector3, 2> directions = {torso_axes(person).col(0),
+                                             sight ? sight->direction : Vector3(Vector3::UnitX())};
+  bool same =
+      person.id == person_ && joints.size() == joints_.size() && boxes.size() == boxes_.size();
+  for (std::size_t i = 0; same && i < directions.size(); ++i)
+    same = angle(directions[i], directions_[i]) < turned_;
+  for (std::size_t i = 0; same && i < joints.size(); ++i)
+    same = (joints[i] - joints_[i]).norm() < moved_;
   for (std::size_t i = 0; same && i < boxes.size(); ++i)
-    same = boxes[i].id == boxes_[i].id && boxes[i].size == boxes_[i].size && boxes[i].T_world_box.isApprox(boxes_[i].T_world_box, 1e-4);
+    same = boxes[i].id == boxes_[i].id && boxes[i].size == boxes_[i].size &&
+           boxes[i].T_world_box.isApprox(boxes_[i].T_world_box, 1e-4);
   if (same) return false;
   person_ = person.id;
   joints_ = std::move(joints);

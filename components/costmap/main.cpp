@@ -1,3 +1,5 @@
 #include "components/costmap/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::costmap::Node>(argc, argv, "costmap"); }
+int main(int argc, char** argv) {
+  return handsel::run_process<handsel::costmap::Node>(argc, argv, "costmap");
+}

@@ -12,8 +12,12 @@ constexpr Duration kStale = std::chrono::seconds(1);
 settings::CostmapSettings load(const NodeContext& context) {
   SettingsText text;
   const auto s = settings::read_costmap_settings(context.settings / "costmap.txtpb", &text);
-  if (s.reach / s.resolution > 49) text.refuse("reach", "reach / resolution must be at most 49, else the map outgrows its message");
-  if (s.max_period < s.period) text.refuse("max_period", "must be from period to 0.4, readers leave out layers older than a second");
+  if (s.reach / s.resolution > 49)
+    text.refuse("reach",
+                "reach / resolution must be at most 49, else the map outgrows its message");
+  if (s.max_period < s.period)
+    text.refuse("max_period",
+                "must be from period to 0.4, readers leave out layers older than a second");
   return s;
 }
 
@@ -23,14 +27,16 @@ Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       repeat_(from_seconds(load(context).repeat)),
       cell_time_(load(context).cell_time),
-      maker_({load(context).resolution, load(context).reach, load(context).clearance, load_cost_settings(context.settings)}),
+      maker_({load(context).resolution, load(context).reach, load(context).clearance,
+              load_cost_settings(context.settings)}),
       watch_(load(context).moved, load(context).turned),
       advised_period_(load(context).period, load(context).max_period, load(context).period),
       map_out_(bus.advertise<Costmap>()) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene; });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
-  bus.subscribe<AttentionAdvice>(
-      [this](const AttentionAdvice& advice, const Receipt& r) { advised_period_.advise(advice.cost_map_period, r.arrival); });
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt& r) {
+    advised_period_.advise(advice.cost_map_period, r.arrival);
+  });
   bus.every(from_seconds(load(context).period), [this](TimePoint now) { step(now); });
 }
 
@@ -76,7 +82,8 @@ void Node::publish(TimePoint now) {
   for (std::size_t i = 0; i < made_->size(); ++i) {
     const Costmap& layer = (*made_)[i];
     Sent& sent = sent_[i];
-    const bool same = layer.person == sent.map.person && layer.origin == sent.map.origin && layer.values == sent.map.values;
+    const bool same = layer.person == sent.map.person && layer.origin == sent.map.origin &&
+                      layer.values == sent.map.values;
     if (same && now - sent.time < repeat_) continue;
     if (!same) {
       sent.map = layer;

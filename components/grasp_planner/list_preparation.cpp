@@ -2,9 +2,13 @@
 
 namespace handsel::grasp_planner {
 
-ListPreparation::ListPreparation(Bus& bus, ObjectLibrary objects, std::vector<std::shared_ptr<GraspCache>> caches,
+ListPreparation::ListPreparation(Bus& bus, ObjectLibrary objects,
+                                 std::vector<std::shared_ptr<GraspCache>> caches,
                                  std::shared_ptr<TransferCache> transfers)
-    : bus_(bus), objects_(std::move(objects)), caches_(std::move(caches)), transfers_(std::move(transfers)) {}
+    : bus_(bus),
+      objects_(std::move(objects)),
+      caches_(std::move(caches)),
+      transfers_(std::move(transfers)) {}
 
 void ListPreparation::run(const Work& work) {
   const auto problem = std::make_shared<std::string>();
@@ -32,11 +36,13 @@ void ListPreparation::prepare(const Scene& scene) {
         return page ? kReadList : Duration{};
       });
     if (!transfers_) continue;
-    run([cache = caches_.front(), transfers = transfers_, model](const std::function<bool()>& cancelled) {
+    run([cache = caches_.front(), transfers = transfers_,
+         model](const std::function<bool()>& cancelled) {
       const auto page = cache->page(*model, cancelled);
       const auto taken = page ? transfers->taker_entry(*model, cancelled) : nullptr;
       const auto table = taken ? transfers->table(*model, *page, cancelled) : nullptr;
-      return table ? kReadList + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs)) : Duration{};
+      return table ? kReadList + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs))
+                   : Duration{};
     });
   }
 }

@@ -27,21 +27,26 @@ config::GraspPlannerSettings load_settings(const std::filesystem::path& folder) 
   return settings;
 }
 
-GraspStore store_of(const config::GraspPlannerSettings& text) { return GraspStore(text.store() ? default_store() : ""); }
+GraspStore store_of(const config::GraspPlannerSettings& text) {
+  return GraspStore(text.store() ? default_store() : "");
+}
 
 std::shared_ptr<const HandGeometry> load_hand_geometry(const RobotModel& robot) {
-  if (robot.hand().empty()) throw ConfigError("robot " + robot.name() + " names no hand; the grasp planner needs one");
+  if (robot.hand().empty())
+    throw ConfigError("robot " + robot.name() + " names no hand; the grasp planner needs one");
   return std::make_shared<const HandGeometry>(HandModel::load(hand_description(robot.hand())));
 }
 
-std::shared_ptr<const RobotModel> mobile(const RobotModel& robot, const std::filesystem::path& description) {
+std::shared_ptr<const RobotModel> mobile(const RobotModel& robot,
+                                         const std::filesystem::path& description) {
   if (description.empty()) return nullptr;
   auto model = on_platform(robot, description);
   return model ? std::make_shared<const RobotModel>(std::move(*model)) : nullptr;
 }
 
 std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem::path& description,
-                                 const std::shared_ptr<const HandGeometry>& hand_geometry, const std::shared_ptr<GraspCache>& cache,
+                                 const std::shared_ptr<const HandGeometry>& hand_geometry,
+                                 const std::shared_ptr<GraspCache>& cache,
                                  const GraspListSettings& settings, const GraspStore& store) {
   std::vector<ArmGrasps> arms;
   if (description.empty()) return arms;
@@ -50,7 +55,8 @@ std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem:
       arms.push_back({m, hand_geometry, cache});
       continue;
     }
-    const auto other = std::make_shared<const HandGeometry>(HandModel::load(hand_description(m.hand)));
+    const auto other =
+        std::make_shared<const HandGeometry>(HandModel::load(hand_description(m.hand)));
     arms.push_back({m, other, std::make_shared<GraspCache>(other, settings, store)});
   }
   return arms;
@@ -70,9 +76,11 @@ double positive(const char* key, double value) {
 }
 
 std::shared_ptr<TransferCache> make_transfer_cache(const config::GraspPlannerSettings& text,
-                                                   const std::shared_ptr<const HandGeometry>& robot, const GraspStore& store) {
+                                                   const std::shared_ptr<const HandGeometry>& robot,
+                                                   const GraspStore& store) {
   if (text.taker().empty()) return nullptr;
-  const auto taker = std::make_shared<const HandGeometry>(HandModel::load(hand_description(text.taker())));
+  const auto taker =
+      std::make_shared<const HandGeometry>(HandModel::load(hand_description(text.taker())));
   return std::make_shared<TransferCache>(robot, taker, taker_settings(text), store);
 }
 
@@ -86,20 +94,24 @@ GraspListSettings list_settings(const config::GraspPlannerSettings& t, std::uint
   s.cone_edges = static_cast<int>(t.cone_edges());
   s.full_epsilon = positive("full_epsilon", t.full_epsilon());
   s.weights = {t.weight_stability(), t.weight_centre(), t.weight_force(), t.weight_curvature()};
-  if (std::min({t.weight_stability(), t.weight_centre(), t.weight_force(), t.weight_curvature()}) < 0 ||
+  if (std::min({t.weight_stability(), t.weight_centre(), t.weight_force(), t.weight_curvature()}) <
+          0 ||
       !(t.weight_stability() + t.weight_centre() + t.weight_force() + t.weight_curvature() > 0)) {
     throw ConfigError(
         "grasp_planner.txtpb: the weights of the quality must not be negative, and one must be > "
         "0");
   }
-  s.contacts_per_finger = static_cast<std::uint32_t>(positive("contacts_per_finger", t.contacts_per_finger()));
-  s.tries_per_finger = static_cast<std::uint32_t>(positive("tries_per_finger", t.tries_per_finger()));
+  s.contacts_per_finger =
+      static_cast<std::uint32_t>(positive("contacts_per_finger", t.contacts_per_finger()));
+  s.tries_per_finger =
+      static_cast<std::uint32_t>(positive("tries_per_finger", t.tries_per_finger()));
   s.opening = positive("opening", t.opening());
   s.open_clearance = positive("open_clearance", t.open_clearance());
   s.free_distance = positive("free_distance", t.free_distance());
   s.grip.max_normal = positive("grip_force", t.grip_force());
   s.grip.friction_fraction = positive("grip_friction", t.grip_friction());
-  if (s.grip.friction_fraction > 1) throw ConfigError("grasp_planner.txtpb: grip_friction must be at most 1");
+  if (s.grip.friction_fraction > 1)
+    throw ConfigError("grasp_planner.txtpb: grip_friction must be at most 1");
   s.grip.acceleration = positive("grip_acceleration", t.grip_acceleration());
   s.seed = seed;
   return s;
@@ -127,10 +139,12 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_stands = t.rank_stands();
   s.off_fingers = positive("off_fingers", t.off_fingers());
   s.off_giver = positive("off_giver", t.off_giver());
-  if (s.off_giver < s.off_fingers) throw ConfigError("grasp_planner.txtpb: off_giver must be at least off_fingers");
+  if (s.off_giver < s.off_fingers)
+    throw ConfigError("grasp_planner.txtpb: off_giver must be at least off_fingers");
   s.rank_drive = t.rank_drive();
   s.platform_room = t.platform_room();
-  s.platform_reaches = static_cast<std::uint32_t>(positive("platform_reaches", t.platform_reaches()));
+  s.platform_reaches =
+      static_cast<std::uint32_t>(positive("platform_reaches", t.platform_reaches()));
   return s;
 }
 

@@ -29,14 +29,17 @@ GraspStore store_of(const config::GraspPlannerSettings& text);
 /// Returns the geometry of the robot's hand. ConfigError when the robot names no hand.
 std::shared_ptr<const HandGeometry> load_hand_geometry(const RobotModel& robot);
 /// Returns the robot of a description on its platform; nullptr: it has none.
-std::shared_ptr<const RobotModel> mobile(const RobotModel& robot, const std::filesystem::path& description);
+std::shared_ptr<const RobotModel> mobile(const RobotModel& robot,
+                                         const std::filesystem::path& description);
 /// Returns the arms of the robot's description; the first has the geometry and the lists that are
 /// there already.
 std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem::path& description,
-                                 const std::shared_ptr<const HandGeometry>& hand_geometry, const std::shared_ptr<GraspCache>& cache,
+                                 const std::shared_ptr<const HandGeometry>& hand_geometry,
+                                 const std::shared_ptr<GraspCache>& cache,
                                  const GraspListSettings& settings, const GraspStore& store);
 /// Returns the transfers from the robot's hand to that of a person; nullptr: no such hand is known.
 std::shared_ptr<TransferCache> make_transfer_cache(const config::GraspPlannerSettings& text,
-                                                   const std::shared_ptr<const HandGeometry>& robot, const GraspStore& store);
+                                                   const std::shared_ptr<const HandGeometry>& robot,
+                                                   const GraspStore& store);
 
 }  // namespace handsel::grasp_planner

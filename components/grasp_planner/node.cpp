@@ -7,7 +7,8 @@ namespace {
 
 constexpr const char* kFull = "16 requests wait already, which is the limit; ask again later";
 
-std::vector<std::shared_ptr<GraspCache>> books_of(const std::shared_ptr<GraspCache>& first, const std::vector<ArmGrasps>& arms) {
+std::vector<std::shared_ptr<GraspCache>> books_of(const std::shared_ptr<GraspCache>& first,
+                                                  const std::vector<ArmGrasps>& arms) {
   std::vector<std::shared_ptr<GraspCache>> caches{first};
   for (std::size_t i = 1; i < arms.size(); ++i) caches.push_back(arms[i].cache);
   return caches;
@@ -20,12 +21,15 @@ Node::Node(Bus& bus, const NodeContext& context)
       settings_(load_settings(context.settings)),
       objects_(context.objects),
       hand_geometry_(load_hand_geometry(*context.robot)),
-      chooser_(std::make_shared<const GraspChooser>(context.robot, hand_geometry_, context.objects, choice_settings(settings_),
+      chooser_(std::make_shared<const GraspChooser>(context.robot, hand_geometry_, context.objects,
+                                                    choice_settings(settings_),
                                                     mobile(*context.robot, context.description))),
       // A list is the same whatever the seed of the node: lists are kept on disk and shared.
-      cache_(std::make_shared<GraspCache>(hand_geometry_, list_settings(settings_, 1), store_of(settings_))),
+      cache_(std::make_shared<GraspCache>(hand_geometry_, list_settings(settings_, 1),
+                                          store_of(settings_))),
       transfers_(make_transfer_cache(settings_, hand_geometry_, store_of(settings_))),
-      arms_(load_arms(*context.robot, context.description, hand_geometry_, cache_, list_settings(settings_, 1), store_of(settings_))),
+      arms_(load_arms(*context.robot, context.description, hand_geometry_, cache_,
+                      list_settings(settings_, 1), store_of(settings_))),
       lists_(bus, context.objects, books_of(cache_, arms_), transfers_),
       regrasp_settings_(regrasp_settings(settings_)),
       reply_out_(bus.advertise<GraspReply>()),
@@ -38,8 +42,10 @@ Node::Node(Bus& bus, const NodeContext& context)
     lists_.prepare(scene);
   });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
-  bus.subscribe<GraspRequest>([this](const GraspRequest& request, const Receipt&) { answer(request); });
-  bus.subscribe<RegraspRequest>([this](const RegraspRequest& request, const Receipt&) { answer(request); });
+  bus.subscribe<GraspRequest>(
+      [this](const GraspRequest& request, const Receipt&) { answer(request); });
+  bus.subscribe<RegraspRequest>(
+      [this](const RegraspRequest& request, const Receipt&) { answer(request); });
   bus.every(from_seconds(settings_.candidates_period()), [this](TimePoint now) { propose(now); });
 }
 
@@ -70,8 +76,8 @@ void Node::choose(const GraspRequest& request, bool reply) {
   const bool work = result->reason.empty();
   if (work) candidates_.on_choice(object->T_world_object);
   bus_.run_job(
-      [cache = cache_, transfers = transfers_, chooser = chooser_, request, scene = scene_, people = people_, model, result,
-       work](const CancelToken& token) {
+      [cache = cache_, transfers = transfers_, chooser = chooser_, request, scene = scene_,
+       people = people_, model, result, work](const CancelToken& token) {
         if (!work) return Duration{};
         const auto cancelled = [&token] { return token.cancelled(); };
         try {
@@ -81,7 +87,8 @@ void Node::choose(const GraspRequest& request, bool reply) {
             return Duration{};
           }
           const auto table = transfers ? transfers->known(model->name) : nullptr;
-          const Choice choice = chooser->choose(request, page->list, *page->object, scene, people, cancelled, table.get());
+          const Choice choice = chooser->choose(request, page->list, *page->object, scene, people,
+                                                cancelled, table.get());
           write(choice, page->list, *result);
           return choice_time(choice);
         } catch (const ConfigError& e) {
@@ -122,8 +129,9 @@ void Node::answer(const RegraspRequest& request) {
       [this, answer, request, model, scene = scene_](const CancelToken& token) {
         if (model == nullptr) return Duration{};
         try {
-          *answer = answer_regrasp(request, {chooser_->robot(), arms_, objects_, scene, regrasp_settings_}, *model,
-                                   [&token] { return token.cancelled(); });
+          *answer = answer_regrasp(request,
+                                   {chooser_->robot(), arms_, objects_, scene, regrasp_settings_},
+                                   *model, [&token] { return token.cancelled(); });
         } catch (const ConfigError& e) {
           answer->reply.reason = e.what();
         }
@@ -138,7 +146,8 @@ void Node::answer(const RegraspRequest& request) {
 void Node::propose(TimePoint now) {
   if (!candidates_.active(now)) return;
   const SceneObject* object = object_in(scene_, candidates_.request().object);
-  if (object == nullptr || object->holder == Holder::robot || object->holder == Holder::human) return;
+  if (object == nullptr || object->holder == Holder::robot || object->holder == Holder::human)
+    return;
   if (candidates_.renew(object->T_world_object)) choose(candidates_.request(), false);
   if (candidates_.message().grasps.empty()) return;
   candidates_out_->publish(candidates_.message());

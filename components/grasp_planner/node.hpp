@@ -36,7 +36,8 @@ class Node {
   std::shared_ptr<GraspCache> cache_;  // used by jobs only, one after the other
   // used by jobs only; nullptr: no hand of a person is known
   std::shared_ptr<TransferCache> transfers_;
-  std::vector<ArmGrasps> arms_;  // used by jobs only; the first has the geometry and the lists above
+  std::vector<ArmGrasps>
+      arms_;  // used by jobs only; the first has the geometry and the lists above
   ListPreparation lists_;
   RegraspSettings regrasp_settings_;
   std::unique_ptr<Publisher<GraspReply>> reply_out_;

@@ -31,7 +31,8 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
     throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
   if (s.live_period() > 0) {
     if (s.live_max_period() < s.live_period())
-      throw ConfigError("manipulation_planner.txtpb: live_max_period must not be below live_period");
+      throw ConfigError(
+          "manipulation_planner.txtpb: live_max_period must not be below live_period");
     positive("live_time", s.live_time());
     positive("replan_time", s.replan_time());
     positive("live_reach", s.live_reach());

@@ -17,8 +17,9 @@ constexpr double kSameConfiguration = 1e-4;  // [rad]
 constexpr double kVerifyStep = 0.001;  // states on what is returned are checked this close [rad]
 constexpr int kAttempts = 3;           // the fine check may refuse what the coarse one let pass
 constexpr int kBends = 24;             // postures tried on another branch
-constexpr double kBendAway = 1.0;      // the last of them is up to this far from the start's, shoulder, elbow and wrist bent over [rad]
-constexpr double kMinBend = 0.2;       // [rad]
+constexpr double kBendAway = 1.0;  // the last of them is up to this far from the start's, shoulder,
+                                   // elbow and wrist bent over [rad]
+constexpr double kMinBend = 0.2;   // [rad]
 constexpr double kJointSample = 0.05;  // of a path of the joints [rad]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -43,7 +44,8 @@ int nearest(const CartesianSpace& space, const Tree& tree, const CartesianNode& 
 
 std::vector<CartesianNode> branch(const Tree& tree, int leaf) {
   std::vector<CartesianNode> out;
-  for (int i = leaf; i >= 0; i = tree[static_cast<std::size_t>(i)].parent) out.push_back(tree[static_cast<std::size_t>(i)].at);
+  for (int i = leaf; i >= 0; i = tree[static_cast<std::size_t>(i)].parent)
+    out.push_back(tree[static_cast<std::size_t>(i)].at);
   return out;
 }
 
@@ -58,20 +60,24 @@ class Search {
         reach_(reach),
         center_(center) {}
 
-  std::vector<CartesianNode> run(const CartesianNode& start, const std::vector<CartesianNode>& goals) {
+  std::vector<CartesianNode> run(const CartesianNode& start,
+                                 const std::vector<CartesianNode>& goals) {
     Tree trees[2];
     trees[0].push_back({start, -1, space_.cost(start.q)});
     for (const CartesianNode& goal : goals) trees[1].push_back({goal, -1, space_.cost(goal.q)});
     for (const CartesianNode& goal : goals)
-      if (CartesianNode end; space_.follow(start, goal, 1.0, end) == 1.0 && same(end, goal) && !space_.concerns_people())
+      if (CartesianNode end; space_.follow(start, goal, 1.0, end) == 1.0 && same(end, goal) &&
+                             !space_.concerns_people())
         return {start, goal};
     for (int round = 0; !space_.exhausted(); ++round) {
       space_.charge(1);
       const int grows = round % 2;
       Tree &tree = trees[grows], &other = trees[1 - grows];
-      const CartesianNode target = random_.unit() < space_.settings().goal_bias
-                                       ? other[static_cast<std::size_t>(random_.unit() * static_cast<double>(other.size()))].at
-                                       : sample();
+      const CartesianNode target =
+          random_.unit() < space_.settings().goal_bias
+              ? other[static_cast<std::size_t>(random_.unit() * static_cast<double>(other.size()))]
+                    .at
+              : sample();
       const int added = extend(tree, nearest(space_, tree, target), target);
       if (added < 0) continue;
       const CartesianNode fresh = tree[static_cast<std::size_t>(added)].at;
@@ -82,7 +88,8 @@ class Search {
         if (next < 0) break;
         at = next;
         if (space_.distance(other[static_cast<std::size_t>(at)].at, fresh) > 1e-6) continue;
-        if (!same(other[static_cast<std::size_t>(at)].at, fresh)) break;  // the same pose on another branch
+        if (!same(other[static_cast<std::size_t>(at)].at, fresh))
+          break;  // the same pose on another branch
         std::vector<CartesianNode> path = branch(trees[0], grows == 0 ? added : at);
         std::reverse(path.begin(), path.end());
         const std::vector<CartesianNode> rest = branch(trees[1], grows == 0 ? at : added);
@@ -104,12 +111,16 @@ class Search {
     do {
       p = Vector3(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1));
     } while (p.norm() > 1);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond(random_.normal(), random_.normal(), random_.normal(), random_.normal()).normalized();
+    const Eigen::Quaterniond turn =
+        Eigen::Quaterniond(random_.normal(), random_.normal(), random_.normal(), random_.normal())
+            .normalized();
     out.T_root_tool = make_pose(center_ + reach_ * p, turn);
     out.elbow = random_.between(-M_PI, M_PI);
     out.q = problem_.start;
     for (std::size_t i = 0; i < problem_.also.size(); ++i)
-      out.q[problem_.also[i]] += random_.unit() * (problem_.also_goal[static_cast<Eigen::Index>(i)] - out.q[problem_.also[i]]);
+      out.q[problem_.also[i]] +=
+          random_.unit() *
+          (problem_.also_goal[static_cast<Eigen::Index>(i)] - out.q[problem_.also[i]]);
     return out;
   }
 
@@ -123,7 +134,8 @@ class Search {
     const double reached = space_.follow(from, target, part, at);
     if (reached * far < 2 * space_.settings().step && reached < 1.0) return -1;
     const double cost = space_.cost(at.q);
-    if (space_.concerns_people() && !accepts_(tree[static_cast<std::size_t>(near)].cost, cost)) return -1;
+    if (space_.concerns_people() && !accepts_(tree[static_cast<std::size_t>(near)].cost, cost))
+      return -1;
     tree.push_back({at, near, cost});
     return static_cast<int>(tree.size()) - 1;
   }
@@ -166,7 +178,8 @@ void shorten(CartesianSpace& space, std::vector<CartesianNode>& nodes, Random& r
     if (samples.empty()) continue;
     if (space.concerns_people() &&
         integral(space, samples) >=
-            integral(space, samples_of(space, {nodes.begin() + static_cast<long>(a), nodes.begin() + static_cast<long>(b) + 1})))
+            integral(space, samples_of(space, {nodes.begin() + static_cast<long>(a),
+                                               nodes.begin() + static_cast<long>(b) + 1})))
       continue;
     nodes.erase(nodes.begin() + static_cast<long>(a) + 1, nodes.begin() + static_cast<long>(b));
   }
@@ -178,8 +191,8 @@ bool verified(CollisionWorld& world, const std::vector<Vector>& samples) {
   return !samples.empty();
 }
 
-/// Samples of a path of the joints from the start to a posture bent as the goal asks: through a stretched shoulder, elbow or wrist no local
-/// path leads. Empty when none was found.
+/// Samples of a path of the joints from the start to a posture bent as the goal asks: through a
+/// stretched shoulder, elbow or wrist no local path leads. Empty when none was found.
 std::vector<Vector> other_branch(const PlanningModels& models, const CartesianProblem& cartesian,
                                  const Vector& like, std::uint64_t budget, Random& random,
                                  const Hooks& hooks) {
@@ -210,9 +223,11 @@ std::vector<Vector> other_branch(const PlanningModels& models, const CartesianPr
   std::vector<Vector> samples;
   for (std::size_t i = 1; i < found.path.size(); ++i) {
     const Vector along = found.path[i] - found.path[i - 1];
-    const int pieces = std::max(1, static_cast<int>(std::ceil(along.lpNorm<Eigen::Infinity>() / kJointSample)));
+    const int pieces =
+        std::max(1, static_cast<int>(std::ceil(along.lpNorm<Eigen::Infinity>() / kJointSample)));
     for (int piece = i == 1 ? 0 : 1; piece <= pieces; ++piece)
-      samples.push_back(RobotModel::with(cartesian.start, arm, found.path[i - 1] + (static_cast<double>(piece) / pieces) * along));
+      samples.push_back(RobotModel::with(
+          cartesian.start, arm, found.path[i - 1] + (static_cast<double>(piece) / pieces) * along));
   }
   return samples;
 }
@@ -229,7 +244,8 @@ std::string contradiction(const RobotModel& robot, const CartesianProblem& probl
   if (group == nullptr) return "the robot has no group \"arm\"";
   for (std::size_t i = 0; i < problem.also.size(); ++i) {
     const int axis = problem.also[i];
-    if (axis < 0 || axis >= robot.dof() || std::count(group->axes.begin(), group->axes.end(), axis) > 0)
+    if (axis < 0 || axis >= robot.dof() ||
+        std::count(group->axes.begin(), group->axes.end(), axis) > 0)
       return "axis " + std::to_string(axis) + " cannot be active besides the arm";
     const double goal = problem.also_goal[static_cast<Eigen::Index>(i)];
     const Axis& limits = robot.axes()[static_cast<std::size_t>(axis)];

@@ -62,8 +62,9 @@ struct CartesianResult {
 /// transition test of T-RRT where a person is. The arm must be one of shoulder, elbow and wrist
 /// (ik::SrsArm). The path from one orientation to another is their displacement: one axis and an
 /// angle up to pi; at pi, where the axis is not defined, there is no local path.
-CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
-                               const CartesianSettings& settings, const Hooks& hooks = {});
+CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost,
+                               const CartesianProblem& problem, const CartesianSettings& settings,
+                               const Hooks& hooks = {});
 
 /// Returns the same as a path of these axes.
 Result in_joints(const CartesianResult& found, const std::vector<int>& axes);

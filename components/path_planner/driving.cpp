@@ -13,7 +13,9 @@ constexpr double kReach = 1.2;  // places are at most this far from the pose, in
 
 }  // namespace
 
-bool drives(const std::string& group) { return group == kPlatformGroup || group == kWholeRobotGroup; }
+bool drives(const std::string& group) {
+  return group == kPlatformGroup || group == kWholeRobotGroup;
+}
 
 void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Problem& problem) {
   const std::vector<int>& platform = mobile.require_group(kPlatformGroup).axes;
@@ -38,7 +40,8 @@ void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Pr
   problem.room = {lower, upper};
 }
 
-PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world, const std::vector<PoseGoal>& poses, const Vector& q_start,
+PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
+                              const std::vector<PoseGoal>& poses, const Vector& q_start,
                               std::uint64_t seed, int each) {
   PoseGoals found;
   Random random(seed);
@@ -53,12 +56,14 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world, c
     std::vector<Place> places = {{here.x(), here.y(), q_start[platform[2]], -1}};
     for (int k = 0; k < kTries; ++k) {
       const double bearing = random.between(-M_PI, M_PI), range = kReach * std::sqrt(random.unit());
-      const Eigen::Vector2d at =
-          poses[i].T_root_tip.translation().head<2>() + range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing));
+      const Eigen::Vector2d at = poses[i].T_root_tip.translation().head<2>() +
+                                 range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing));
       const double heading = nearest_heading(random.between(-M_PI, M_PI), q_start[platform[2]]);
-      places.push_back({at.x(), at.y(), heading, (at - here).norm() + std::abs(heading - q_start[platform[2]])});
+      places.push_back(
+          {at.x(), at.y(), heading, (at - here).norm() + std::abs(heading - q_start[platform[2]])});
     }
-    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.far < b.far; });
+    std::sort(places.begin(), places.end(),
+              [](const Place& a, const Place& b) { return a.far < b.far; });
     int postures = 0;
     for (std::size_t k = 0; k < places.size() && postures < each; ++k) {
       Vector q = q_start;
@@ -75,7 +80,10 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world, c
     }
   }
   if (found.goals.empty())
-    found.reason = poses.empty() ? "no goal was given" : "no place of the platform was found from which the arm reaches the goal freely";
+    found.reason =
+        poses.empty()
+            ? "no goal was given"
+            : "no place of the platform was found from which the arm reaches the goal freely";
   return found;
 }
 

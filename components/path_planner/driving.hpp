@@ -19,7 +19,8 @@ void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Pr
 /// Poses for the whole robot: places of the platform around each, drawn at random and as near to
 /// where it stands as they come, from which the arm reaches it with the other axes as in q_start;
 /// free of collision with what is at rest. Up to `each` a pose.
-PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world, const std::vector<PoseGoal>& poses, const Vector& q_start,
+PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
+                              const std::vector<PoseGoal>& poses, const Vector& q_start,
                               std::uint64_t seed, int each = 4);
 
 }  // namespace handsel::path_planner

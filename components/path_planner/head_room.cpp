@@ -6,8 +6,8 @@
 
 namespace handsel::path_planner {
 
-double keep_clear_of_heads(CollisionWorld& world, const HumanState& people, double room, const Vector& start,
-                           const std::vector<Vector>& goals) {
+double keep_clear_of_heads(CollisionWorld& world, const HumanState& people, double room,
+                           const Vector& start, const std::vector<Vector>& goals) {
   constexpr int kParts = 6;
   for (int part = room > 0 ? kParts : 0; part > 0; --part) {
     const double kept = room * part / kParts;
@@ -22,7 +22,9 @@ double keep_clear_of_heads(CollisionWorld& world, const HumanState& people, doub
     }
     world.set_obstacles(heads);
     if (heads.empty()) return 0;
-    if (world.is_free(start) && std::any_of(goals.begin(), goals.end(), [&](const Vector& q) { return world.is_free(q); })) return kept;
+    if (world.is_free(start) &&
+        std::any_of(goals.begin(), goals.end(), [&](const Vector& q) { return world.is_free(q); }))
+      return kept;
   }
   world.set_obstacles({});
   return 0;

@@ -14,12 +14,14 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSame = 1e-6;        // [rad]
-constexpr double kNearEnds = 0.3;     // motions this near to an end are judged exactly also where the wide check does not clear them [rad]
-constexpr double kDropLoss = 0.01;    // share of the price that dropping nodes may cost
-constexpr double kDropGain = 0.3;     // or of what was gained
-constexpr double kGain = 1e-6;        // smaller ones are none
-constexpr std::uint64_t kExact = 12;  // a state that the spheres do not clear takes as long as so many that they do
+constexpr double kSame = 1e-6;      // [rad]
+constexpr double kNearEnds = 0.3;   // motions this near to an end are judged exactly also where the
+                                    // wide check does not clear them [rad]
+constexpr double kDropLoss = 0.01;  // share of the price that dropping nodes may cost
+constexpr double kDropGain = 0.3;   // or of what was gained
+constexpr double kGain = 1e-6;      // smaller ones are none
+constexpr std::uint64_t kExact =
+    12;  // a state that the spheres do not clear takes as long as so many that they do
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double price(const SearchSpace& space, const std::vector<Vector>& path) {
@@ -33,15 +35,19 @@ std::vector<Vector> cut(const std::vector<Vector>& path, double longest) {
   std::vector<Vector> pieces = {path.front()};
   for (std::size_t i = 1; i < path.size(); ++i) {
     const Vector step = path[i] - path[i - 1];
-    const int count = std::max(1, static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / longest)));
-    for (int k = 1; k <= count; ++k) pieces.push_back(k == count ? path[i] : Vector(path[i - 1] + step * (static_cast<double>(k) / count)));
+    const int count =
+        std::max(1, static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / longest)));
+    for (int k = 1; k <= count; ++k)
+      pieces.push_back(k == count ? path[i]
+                                  : Vector(path[i - 1] + step * (static_cast<double>(k) / count)));
   }
   return pieces;
 }
 
 class Live {
  public:
-  Live(SearchSpace& space, const Problem& problem, const Settings& settings, const ReplanSettings& live)
+  Live(SearchSpace& space, const Problem& problem, const Settings& settings,
+       const ReplanSettings& live)
       : space_(space), problem_(problem), settings_(settings), live_(live), random_(problem.seed) {}
 
   /// nullopt: nothing of the path can be saved.
@@ -104,10 +110,12 @@ class Live {
   bool lead_to_a_goal(std::vector<Vector>& rest, std::size_t& goal) {
     const std::vector<Vector> nodes = cut(rest, 4 * live_.piece);
     std::size_t reachable = 1;
-    while (reachable < nodes.size() && space_.motion_free(nodes[reachable - 1], nodes[reachable])) ++reachable;
+    while (reachable < nodes.size() && space_.motion_free(nodes[reachable - 1], nodes[reachable]))
+      ++reachable;
     double least = kInfinite;
     std::vector<double> so_far(reachable, 0.0);
-    for (std::size_t k = 1; k < reachable; ++k) so_far[k] = so_far[k - 1] + space_.costs().price(nodes[k - 1], nodes[k]);
+    for (std::size_t k = 1; k < reachable; ++k)
+      so_far[k] = so_far[k - 1] + space_.costs().price(nodes[k - 1], nodes[k]);
     std::size_t leave = 0;
     for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
       const Vector& q = problem_.goals[i];
@@ -131,7 +139,8 @@ class Live {
     std::vector<Vector> goals;
     std::vector<std::size_t> index;
     for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
-      if (!space_.outside_limits(problem_.goals[i]).empty() || !space_.free(problem_.goals[i])) continue;
+      if (!space_.outside_limits(problem_.goals[i]).empty() || !space_.free(problem_.goals[i]))
+        continue;
       goals.push_back(problem_.goals[i]);
       index.push_back(i);
     }
@@ -163,8 +172,9 @@ class Live {
     return any;
   }
 
-  /// Chapter section 4.1.1: a configuration of the path is moved toward a random one and the path rejoined on either side; here among those
-  /// that are blocked, farther out and rejoined farther away the longer it takes.
+  /// Chapter section 4.1.1: a configuration of the path is moved toward a random one and the path
+  /// rejoined on either side; here among those that are blocked, farther out and rejoined farther
+  /// away the longer it takes.
   bool repair(std::vector<Vector>& rest) {
     std::vector<Vector> path = cut(rest, live_.piece);
     std::size_t first = 0, last = 0;
@@ -179,20 +189,27 @@ class Live {
       for (int k = 0; k < live_.tries && found < 3 && !space_.exhausted(); ++k) {
         const double share = static_cast<double>(k + 1) / live_.tries;
         const std::size_t wide = 1 + static_cast<std::size_t>(random_.unit() * (2 + 12 * share));
-        const std::size_t from = first > wide ? first - wide : 0, to = std::min(path.size() - 1, last + wide - 1);
-        const std::size_t middle = first - 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(last - first + 2));
+        const std::size_t from = first > wide ? first - wide : 0,
+                          to = std::min(path.size() - 1, last + wide - 1);
+        const std::size_t middle =
+            first - 1 +
+            static_cast<std::size_t>(random_.unit() * static_cast<double>(last - first + 2));
         const Vector center = path[std::min(middle, path.size() - 1)];
         const Vector toward = random_.within(space_.lower(), space_.upper()) - center;
         const double far = random_.between(0.1, 0.3 + 1.5 * share);
         Vector q = center + toward * (far / std::max(far, toward.norm()));
         q = q.cwiseMax(space_.lower()).cwiseMin(space_.upper());
         if (!space_.free(q)) continue;
-        const double cost = found > 0 ? space_.costs().price(path[from], q) + space_.costs().price(q, path[to]) : 0.0;
-        if (cost >= least || !space_.motion_free(path[from], q) || !space_.motion_free(q, path[to])) continue;
+        const double cost =
+            found > 0 ? space_.costs().price(path[from], q) + space_.costs().price(q, path[to])
+                      : 0.0;
+        if (cost >= least || !space_.motion_free(path[from], q) || !space_.motion_free(q, path[to]))
+          continue;
         best.assign(path.begin(), path.begin() + static_cast<long>(from) + 1);
         best.push_back(q);
         best.insert(best.end(), path.begin() + static_cast<long>(to), path.end());
-        least = found > 0 ? cost : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
+        least = found > 0 ? cost
+                          : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
         ++found;
       }
       if (best.empty()) return false;
@@ -203,7 +220,8 @@ class Live {
     return true;
   }
 
-  /// The path bent as a whole: nodes on either side of one go with it, the less the farther they are, either way; cost, bounds, collision.
+  /// The path bent as a whole: nodes on either side of one go with it, the less the farther they
+  /// are, either way; cost, bounds, collision.
   void deform(std::vector<Vector>& path) {
     path = cut(path, 2 * live_.piece);
     const std::size_t n = path.size();
@@ -213,19 +231,26 @@ class Live {
     for (std::size_t i = 1; i < n; ++i) prices[i] = space_.costs().price(path[i - 1], path[i]);
     std::vector<Vector> bent = path;
     for (int round = 0; round < live_.rounds && !space_.exhausted(); ++round) {
-      const auto any = [&] { return 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(n - 2)); };
+      const auto any = [&] {
+        return 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(n - 2));
+      };
       const std::size_t a = any(), b = any(), middle = costs[a] > costs[b] ? a : b;
-      const std::size_t wide = 1 + static_cast<std::size_t>(random_.unit() * 0.3 * static_cast<double>(n));
-      const std::size_t from = middle > wide ? middle - wide : 0, to = std::min(n - 1, middle + wide);
-      Vector shift = random_.within(Vector::Constant(space_.size(), -1), Vector::Constant(space_.size(), 1));
-      shift *= random_.between(0.2, 1.0) * live_.piece * static_cast<double>(wide) / std::max(0.1, shift.norm());
+      const std::size_t wide =
+          1 + static_cast<std::size_t>(random_.unit() * 0.3 * static_cast<double>(n));
+      const std::size_t from = middle > wide ? middle - wide : 0,
+                        to = std::min(n - 1, middle + wide);
+      Vector shift =
+          random_.within(Vector::Constant(space_.size(), -1), Vector::Constant(space_.size(), 1));
+      shift *= random_.between(0.2, 1.0) * live_.piece * static_cast<double>(wide) /
+               std::max(0.1, shift.norm());
       double before = 0;
       for (std::size_t i = from + 1; i <= to; ++i) before += prices[i];
       for (const double sign : {1.0, -1.0}) {
         bool good = true;
         for (std::size_t i = from + 1; i < to && good; ++i) {
-          const double share = i <= middle ? static_cast<double>(i - from) / static_cast<double>(middle - from)
-                                           : static_cast<double>(to - i) / static_cast<double>(to - middle);
+          const double share =
+              i <= middle ? static_cast<double>(i - from) / static_cast<double>(middle - from)
+                          : static_cast<double>(to - i) / static_cast<double>(to - middle);
           bent[i] = path[i] + sign * share * shift;
           good = space_.inside(bent[i]);
         }
@@ -234,7 +259,8 @@ class Live {
         double left = before - kGain;
         for (std::size_t i = from + 1; i <= to && good; ++i)
           good = (left -= bent_prices[i] = space_.costs().price(bent[i - 1], bent[i])) > 0;
-        for (std::size_t i = from + 1; i <= to && good; ++i) good = space_.motion_free(bent[i - 1], bent[i]);
+        for (std::size_t i = from + 1; i <= to && good; ++i)
+          good = space_.motion_free(bent[i - 1], bent[i]);
         if (!good) continue;
         for (std::size_t i = from + 1; i <= to; ++i) {
           path[i] = bent[i];
@@ -251,7 +277,8 @@ class Live {
     const double now = price(space_, path);
     double allowed = std::max(kDropLoss * now, kDropGain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
-      const double loss = space_.costs().price(path[i - 1], path[i + 1]) - space_.costs().price(path[i - 1], path[i]) -
+      const double loss = space_.costs().price(path[i - 1], path[i + 1]) -
+                          space_.costs().price(path[i - 1], path[i]) -
                           space_.costs().price(path[i], path[i + 1]);
       if (loss <= 0.5 * allowed && space_.motion_free(path[i - 1], path[i + 1])) {
         allowed -= std::max(0.0, loss);
@@ -301,18 +328,22 @@ const char* name(ReplanOutcome outcome) {
   }
 }
 
-ReplanResult continue_path(const PlanningModels& models, const Problem& problem, const std::vector<Vector>& running,
-                           const Settings& settings, const ReplanSettings& live, const Hooks& hooks) {
+ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
+                           const std::vector<Vector>& running, const Settings& settings,
+                           const ReplanSettings& live, const Hooks& hooks) {
   ReplanResult out;
   const auto& [robot, world, cost] = models;
   Settings quick = settings;
   quick.smoothing_rounds = live.rounds / 3;
   std::uint64_t spent = 0;
-  const bool sound = problem.start.size() == robot.dof() && problem.start.allFinite() && !problem.axes.empty() && !problem.straight &&
-                     std::all_of(problem.axes.begin(), problem.axes.end(), [&](int a) { return a >= 0 && a < robot.dof(); }) &&
-                     std::all_of(problem.goals.begin(), problem.goals.end(), [&](const Vector& g) {
-                       return g.size() == static_cast<Eigen::Index>(problem.axes.size()) && g.allFinite();
-                     });
+  const bool sound =
+      problem.start.size() == robot.dof() && problem.start.allFinite() && !problem.axes.empty() &&
+      !problem.straight &&
+      std::all_of(problem.axes.begin(), problem.axes.end(),
+                  [&](int a) { return a >= 0 && a < robot.dof(); }) &&
+      std::all_of(problem.goals.begin(), problem.goals.end(), [&](const Vector& g) {
+        return g.size() == static_cast<Eigen::Index>(problem.axes.size()) && g.allFinite();
+      });
   if (sound && problem.budget > 0) {
     world.set_moving_axes(problem.axes);
     cost.set_moving_axes(problem.axes);
@@ -331,7 +362,8 @@ ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
   out.before = kInfinite;
   if (sound && problem.budget > 0 && spent >= problem.budget) {
     out.result.checks = spent;
-    out.result.reason = "no path onward was found within " + std::to_string(problem.budget) + " checks";
+    out.result.reason =
+        "no path onward was found within " + std::to_string(problem.budget) + " checks";
     return out;
   }
   Problem anew = problem;

@@ -24,7 +24,7 @@ struct ReplanSettings {
   double reach{0.5};
   /// l_max: the path is cut into pieces of at most this before it is repaired [rad].
   double piece{0.15};
-  double min_gain{0.02};      ///< a path cheaper by less than this fraction is not worth switching to
+  double min_gain{0.02};  ///< a path cheaper by less than this fraction is not worth switching to
   double verify_step{0.002};  ///< states on what is returned are checked this close [rad]
   int rounds{60};             ///< shortcuts and perturbations tried each time
   int tries{60};              ///< perturbations tried to repair
@@ -42,7 +42,8 @@ struct ReplanResult {
 /// (on it, t_now + t_replan ahead: what comes before stays as it is). `problem.goals`: as they are
 /// wanted now. Deterministic for the problem's seed. When the start is not on the path, or nothing
 /// of it can be saved, the problem is planned anew with what is left of the budget.
-ReplanResult continue_path(const PlanningModels& models, const Problem& problem, const std::vector<Vector>& running,
-                           const Settings& settings, const ReplanSettings& live, const Hooks& hooks = {});
+ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
+                           const std::vector<Vector>& running, const Settings& settings,
+                           const ReplanSettings& live, const Hooks& hooks = {});
 
 }  // namespace handsel::path_planner

@@ -1,3 +1,5 @@
 #include "components/path_planner/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::path_planner::Node>(argc, argv, "path_planner"); }
+int main(int argc, char** argv) {
+  return handsel::run_process<handsel::path_planner::Node>(argc, argv, "path_planner");
+}

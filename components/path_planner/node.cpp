@@ -49,19 +49,26 @@ std::optional<RobotModel> mobile_of(const NodeContext& context) {
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
-    : Node(bus, context, settings::read_path_planner_settings(context.settings / "path_planner.txtpb")) {}
+    : Node(bus, context,
+           settings::read_path_planner_settings(context.settings / "path_planner.txtpb")) {}
 
 Node::Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSettings& file)
     : bus_(bus),
       timing_{file.check_time, file.max_time, from_seconds(file.max_scene_age)},
       reply_out_(bus.advertise<PathReply>()),
-      solver_(context.robot, mobile_of(context), context.objects, load_cost_settings(context.settings), solver_settings(file)) {
-  bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
-  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
-  bus.subscribe<Costmap>(
-      [this](const Costmap& layer, const Receipt& receipt) { layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival); });
+      solver_(context.robot, mobile_of(context), context.objects,
+              load_cost_settings(context.settings), solver_settings(file)) {
+  bus.subscribe<Scene>(
+      [this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) {
+    people_ = std::make_shared<HumanState>(people);
+  });
+  bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
+    layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
+  });
   bus.every(kLayerWatch, [this](TimePoint now) { bus_.set_degraded(layers_.complaint(now)); });
-  bus.subscribe<PathRequest>([this](const PathRequest& request, const Receipt&) { on_request(request); });
+  bus.subscribe<PathRequest>(
+      [this](const PathRequest& request, const Receipt&) { on_request(request); });
 }
 
 void Node::on_request(const PathRequest& request) {
@@ -110,7 +117,8 @@ void Node::cancel(const RequestId& id) {
 
 std::string Node::not_ready() const {
   if (!scene_ || bus_.lag<Scene>() > timing_.max_scene_age) return "no current scene is known";
-  if (!people_ || bus_.lag<HumanState>() > timing_.max_scene_age) return "no current state of people is known";
+  if (!people_ || bus_.lag<HumanState>() > timing_.max_scene_age)
+    return "no current state of people is known";
   if (!scene_->robot_known) return "the robot's place is not known yet";
   return {};
 }
@@ -121,11 +129,13 @@ void Node::start(const PathRequest& request) {
   task->layers = layers_.at(bus_.now());
   const double time = std::clamp(request.time_limit, 0.0, timing_.max_time);
   task->problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
-  const auto compute = [&solver = solver_, check_time = timing_.check_time, task](const CancelToken& token) {
+  const auto compute = [&solver = solver_, check_time = timing_.check_time,
+                        task](const CancelToken& token) {
     solver.solve(*task, {[&token] { return token.cancelled(); }, {}});
     return from_seconds(check_time * static_cast<double>(task->result.checks));
   };
-  running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, [this, task] { answer(*task); }));
+  running_[request.id.client].emplace(request.id.number,
+                                      bus_.run_job(compute, [this, task] { answer(*task); }));
 }
 
 void Node::answer(const PlanningTask& task) {
@@ -135,10 +145,12 @@ void Node::answer(const PlanningTask& task) {
   if (of_client.empty()) running_.erase(id.client);
   if (requests_.answer(id) != nullptr) return;  // cancelled
   PathReply reply = reply_of(id, task.result);
-  if (!reply.solved && task.result.cancelled && requests_.superseded(id)) reply.reason = "superseded by a newer request of the same client";
+  if (!reply.solved && task.result.cancelled && requests_.superseded(id))
+    reply.reason = "superseded by a newer request of the same client";
   if (!task.request.running.empty()) {
     ++replan_outcomes_[static_cast<std::size_t>(task.outcome)];
-    reply.outcome = static_cast<PathOutcome>(static_cast<int>(task.outcome) + static_cast<int>(PathOutcome::kept));
+    reply.outcome = static_cast<PathOutcome>(static_cast<int>(task.outcome) +
+                                             static_cast<int>(PathOutcome::kept));
   } else if (!reply.solved) {
     reply.outcome = PathOutcome::blocked;
   }
@@ -160,6 +172,8 @@ void Node::refuse(const RequestId& id, const std::string& reason) {
 }
 
 /// The answer is not remembered: the same request may be made again.
-void Node::refuse_once(const RequestId& id, const std::string& reason) { reply_out_->publish(refusal(id, reason)); }
+void Node::refuse_once(const RequestId& id, const std::string& reason) {
+  reply_out_->publish(refusal(id, reason));
+}
 
 }  // namespace handsel::path_planner

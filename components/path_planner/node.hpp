@@ -51,8 +51,9 @@ class Node {
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
   RequestQueue<PathReply> requests_{Newer::replaces};
-  std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>> running_;  ///< By client and number.
-  Solver solver_;                                                          ///< Solves in jobs only, which run one after the other.
+  std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>>
+      running_;    ///< By client and number.
+  Solver solver_;  ///< Solves in jobs only, which run one after the other.
 };
 
 }  // namespace handsel::path_planner

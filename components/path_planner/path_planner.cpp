@@ -12,12 +12,16 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr std::uint64_t kFirstShare = 40000;
-constexpr int kAttempts = 4;    // the first by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
+constexpr int kAttempts = 4;    // the first by the wide check alone; the fine check may refuse what
+                                // the coarse one let pass: then finely
 constexpr double kFiner = 0.1;  // of the step, from the third attempt on
 constexpr double kWideShare = 0.3;  // of the budget for the first
-constexpr double kNearEnds = 0.3;   // motions this close to start or goals are judged exactly by the first, too [rad]
+constexpr double kNearEnds =
+    0.3;  // motions this close to start or goals are judged exactly by the first, too [rad]
 
-std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
+std::string contact(const CollisionVerdict& verdict) {
+  return verdict.first + " touches " + verdict.second;
+}
 
 const char* name_of(PlannerKind kind) {
   switch (kind) {
@@ -41,21 +45,25 @@ std::string format(const char* pattern, double a, double b) {
 /// Why the problem makes no sense, or empty.
 std::string contradiction(const RobotModel& robot, const Problem& problem) {
   if (problem.start.size() != robot.dof())
-    return format("the start has %.0f axes, the robot has %.0f", static_cast<double>(problem.start.size()), robot.dof());
+    return format("the start has %.0f axes, the robot has %.0f",
+                  static_cast<double>(problem.start.size()), robot.dof());
   if (!problem.start.allFinite()) return "the start is not finite";
   if (problem.axes.empty()) return "no axes to plan for";
   for (int axis : problem.axes)
-    if (axis < 0 || axis >= robot.dof()) return format("axis %.0f is none of the robot's %.0f", axis, robot.dof());
+    if (axis < 0 || axis >= robot.dof())
+      return format("axis %.0f is none of the robot's %.0f", axis, robot.dof());
   if (problem.goals.empty()) return "no goal was given";
   for (const Vector& goal : problem.goals) {
     if (goal.size() != static_cast<Eigen::Index>(problem.axes.size()))
-      return format("a goal has %.0f axes, the group has %.0f", static_cast<double>(goal.size()), static_cast<double>(problem.axes.size()));
+      return format("a goal has %.0f axes, the group has %.0f", static_cast<double>(goal.size()),
+                    static_cast<double>(problem.axes.size()));
     if (!goal.allFinite()) return "a goal is not finite";
   }
   if (problem.budget == 0) return "the time limit is zero";
   if (problem.upright) {
     if (!(problem.upright->most > 0 && problem.upright->most < M_PI))
-      return format("what is held may lean %.3f rad, but the bound must be above 0 and below %.3f", problem.upright->most, M_PI);
+      return format("what is held may lean %.3f rad, but the bound must be above 0 and below %.3f",
+                    problem.upright->most, M_PI);
     if (!(problem.upright->axis_tool.norm() > 1e-9) || !(problem.upright->up_root.norm() > 1e-9))
       return "the axis that stays upright, and up, must not be zero";
   }
@@ -79,7 +87,8 @@ double price(const SearchSpace& space, const std::vector<Vector>& path) {
 
 class Planning {
  public:
-  Planning(SearchSpace& space, const Problem& problem, const Settings& settings) : space_(space), problem_(problem), settings_(settings) {}
+  Planning(SearchSpace& space, const Problem& problem, const Settings& settings)
+      : space_(space), problem_(problem), settings_(settings) {}
 
   Result run() {
     if (!ends_free()) return result_;
@@ -87,7 +96,8 @@ class Planning {
     for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
       const bool widely = attempt == 0;
       space_.set_step(attempt < 2 ? settings_.step : kFiner * settings_.step);
-      most_ = widely ? static_cast<std::uint64_t>(kWideShare * static_cast<double>(problem_.budget)) : problem_.budget;
+      most_ = widely ? static_cast<std::uint64_t>(kWideShare * static_cast<double>(problem_.budget))
+                     : problem_.budget;
       space_.limit(most_);
       if (widely) space_.check_in_batches(goals_, kNearEnds);
       const bool found = find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919);
@@ -108,9 +118,11 @@ class Planning {
  private:
   bool ends_free() {
     const Vector start = space_.start();
-    if (std::string why = space_.outside_limits(start); !why.empty()) return refuse("the start: " + why);
+    if (std::string why = space_.outside_limits(start); !why.empty())
+      return refuse("the start: " + why);
     if (std::string why = leans(start); !why.empty()) return refuse("the start: " + why);
-    const CollisionVerdict at_start = space_.free(start) ? CollisionVerdict{} : space_.verdict(start);
+    const CollisionVerdict at_start =
+        space_.free(start) ? CollisionVerdict{} : space_.verdict(start);
     if (!at_start.free) {
       result_.start_touches = at_start.id;
       return refuse("the start is in collision: " + contact(at_start));
@@ -120,7 +132,8 @@ class Planning {
       std::string why = space_.outside_limits(problem_.goals[i]);
       if (why.empty()) why = leans(problem_.goals[i]);
       if (why.empty()) {
-        const CollisionVerdict verdict = space_.free(problem_.goals[i]) ? CollisionVerdict{} : space_.verdict(problem_.goals[i]);
+        const CollisionVerdict verdict =
+            space_.free(problem_.goals[i]) ? CollisionVerdict{} : space_.verdict(problem_.goals[i]);
         if (verdict.free) {
           goals_.push_back(problem_.goals[i]);
           goal_index_.push_back(i);
@@ -134,7 +147,8 @@ class Planning {
     if (goals_.empty())
       return refuse((problem_.goals.size() == 1 || problem_.straight
                          ? "the goal is not possible, "
-                         : "none of the " + std::to_string(problem_.goals.size()) + " goals is possible, the first ") +
+                         : "none of the " + std::to_string(problem_.goals.size()) +
+                               " goals is possible, the first ") +
                     first);
     return true;
   }
@@ -153,7 +167,8 @@ class Planning {
     result_.path = {space_.start(), goals_.front()};
     result_.goal = goal_index_.front();
     result_.planner = "straight";
-    const CollisionVerdict verdict = space_.motion_verdict(result_.path[0], result_.path[1], settings_.verify_step);
+    const CollisionVerdict verdict =
+        space_.motion_verdict(result_.path[0], result_.path[1], settings_.verify_step);
     if (!verdict.free) {
       result_.path.clear();
       refuse("the straight line is blocked: " + contact(verdict));
@@ -163,7 +178,8 @@ class Planning {
     return result_;
   }
 
-  /// An unlucky tree is given up for a new one, each time after twice as many checks: search times have long tails.
+  /// An unlucky tree is given up for a new one, each time after twice as many checks: search times
+  /// have long tails.
   Found search_restarting(PlannerKind kind, bool heed_cost, std::uint64_t seed) {
     const std::uint64_t limit = space_.limit();
     Found best;
@@ -176,7 +192,8 @@ class Planning {
       space_.limit(limit);
       if (!found.path.empty()) return found;
       if (found.closest < best.closest) best = found;
-      if (space_.exhausted() || space_.checks() == before) return best;  // a start that is refused at once costs nothing, ever
+      if (space_.exhausted() || space_.checks() == before)
+        return best;  // a start that is refused at once costs nothing, ever
     }
   }
 
@@ -200,7 +217,9 @@ class Planning {
       bool heeds_cost = people;
       if (!asked && people)
         space_.limit(space_.checks() +
-                     static_cast<std::uint64_t>(settings_.search_fraction * static_cast<double>(most_ - std::min(most_, space_.checks()))));
+                     static_cast<std::uint64_t>(
+                         settings_.search_fraction *
+                         static_cast<double>(most_ - std::min(most_, space_.checks()))));
       found = search_restarting(kind, heeds_cost, seed);
       space_.limit(most_);
       if (found.path.empty() && !asked && people && !space_.exhausted() && direct.empty()) {
@@ -214,7 +233,9 @@ class Planning {
       } else {
         result_.path = found.path;
         result_.goal = goal_index_[found.goal];
-        result_.planner = name_of(asked ? kind : heeds_cost ? PlannerKind::bitrrt : PlannerKind::rrt_connect);
+        result_.planner = name_of(asked        ? kind
+                                  : heeds_cost ? PlannerKind::bitrrt
+                                               : PlannerKind::rrt_connect);
       }
     }
     raw_ = result_.path;
@@ -239,7 +260,8 @@ class Planning {
     return true;
   }
 
-  /// What smoothing shifted by less than a step may scrape a corner: smoothed anew, with smaller steps.
+  /// What smoothing shifted by less than a step may scrape a corner: smoothed anew, with smaller
+  /// steps.
   bool smoothed_finely() {
     if (space_.cancelled()) return false;
     space_.enter(Stage::smooth);
@@ -262,7 +284,8 @@ class Planning {
     for (std::size_t i = 1; i < result_.path.size(); ++i) {
       if (!space_.upright().holds_on_line(result_.path[i - 1], result_.path[i]))
         return refuse("what is held leans over too far on every path found");
-      const CollisionVerdict verdict = space_.motion_verdict(result_.path[i - 1], result_.path[i], settings_.verify_step);
+      const CollisionVerdict verdict =
+          space_.motion_verdict(result_.path[i - 1], result_.path[i], settings_.verify_step);
       if (verdict.free) continue;
       result_.reason = "every path found fails the fine check: " + contact(verdict);
       return false;
@@ -280,8 +303,9 @@ class Planning {
     result_.path.clear();
     result_.cancelled = space_.cancelled();
     if (result_.cancelled) return refuse("cancelled");
-    return refuse(format("no path within %.0f checks; the search came within %.3f rad of joining start and goal",
-                         static_cast<double>(problem_.budget), closest));
+    return refuse(format(
+        "no path within %.0f checks; the search came within %.3f rad of joining start and goal",
+        static_cast<double>(problem_.budget), closest));
   }
 
   SearchSpace& space_;
@@ -296,8 +320,8 @@ class Planning {
 
 }  // namespace
 
-Result plan(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem, const Settings& settings,
-            const Hooks& hooks) {
+Result plan(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem,
+            const Settings& settings, const Hooks& hooks) {
   Result result;
   result.reason = contradiction(robot, problem);
   if (!result.reason.empty()) return result;

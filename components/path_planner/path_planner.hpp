@@ -19,7 +19,7 @@ struct PlanningModels {
 /// (chapter section 4.1.3), or what the problem names. The world and the cost hold robot, scene,
 /// people, base and what the hand carries. A failure says why: which end is in collision and with
 /// what, which axis is out of its limits, which dimension is wrong, how near the search came.
-Result plan(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem, const Settings& settings,
-            const Hooks& hooks = {});
+Result plan(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem,
+            const Settings& settings, const Hooks& hooks = {});
 
 }  // namespace handsel::path_planner

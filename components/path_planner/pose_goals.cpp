@@ -12,8 +12,8 @@ constexpr double kSame = 0.05;  // postures nearer to each other are one [rad]
 
 }  // namespace
 
-PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses, const Vector& q_start, std::uint64_t seed,
-                int each) {
+PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses,
+                const Vector& q_start, std::uint64_t seed, int each) {
   PoseGoals found;
   Random random(seed);
   IkOptions options;
@@ -24,17 +24,22 @@ PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<P
       Vector q = q_start;
       if (k > 0) {
         Vector3 shift;
-        for (int axis = 0; axis < 3; ++axis) shift[axis] = random.between(-1, 1) * poses[i].slack[axis];
-        T.translate(shift).rotate(Eigen::AngleAxisd(random.between(-1, 1) * poses[i].turn, Vector3::UnitZ()));
+        for (int axis = 0; axis < 3; ++axis)
+          shift[axis] = random.between(-1, 1) * poses[i].slack[axis];
+        T.translate(shift).rotate(
+            Eigen::AngleAxisd(random.between(-1, 1) * poses[i].turn, Vector3::UnitZ()));
         for (int axis : group.axes) {
           const Axis& of = robot.axes()[static_cast<std::size_t>(axis)];
-          q[axis] = random.between(std::max(of.lower, q_start[axis] - M_PI), std::min(of.upper, q_start[axis] + M_PI));
+          q[axis] = random.between(std::max(of.lower, q_start[axis] - M_PI),
+                                   std::min(of.upper, q_start[axis] + M_PI));
         }
       }
       options.random_seed = random.bits();
       const std::optional<Vector> posture = robot.inverse(group, T, q, options);
       if (!posture) continue;
-      const auto same = [&](const Vector& other) { return (other - *posture).cwiseAbs().maxCoeff() < kSame; };
+      const auto same = [&](const Vector& other) {
+        return (other - *posture).cwiseAbs().maxCoeff() < kSame;
+      };
       if (std::none_of(of_pose.begin(), of_pose.end(), same)) of_pose.push_back(*posture);
     }
     for (Vector& posture : of_pose) {
@@ -44,9 +49,11 @@ PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<P
   }
   if (poses.empty()) found.reason = "no goal was given";
   if (found.goals.empty() && !poses.empty())
-    found.reason = (poses.size() == 1 ? std::string("no configuration of the group \"")
-                                      : "of the " + std::to_string(poses.size()) + " goals none is reached by a configuration of the group \"") +
-                   group.name + (poses.size() == 1 ? "\" reaches the goal" : "\"");
+    found.reason =
+        (poses.size() == 1 ? std::string("no configuration of the group \"")
+                           : "of the " + std::to_string(poses.size()) +
+                                 " goals none is reached by a configuration of the group \"") +
+        group.name + (poses.size() == 1 ? "\" reaches the goal" : "\"");
   return found;
 }
 

@@ -26,7 +26,7 @@ struct PoseGoals {
 
 /// Up to `each` configurations a pose: the one nearest `q_start` first, then from random seeds and
 /// places of the region.
-PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses, const Vector& q_start, std::uint64_t seed,
-                int each = 8);
+PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses,
+                const Vector& q_start, std::uint64_t seed, int each = 8);
 
 }  // namespace handsel::path_planner

@@ -58,10 +58,10 @@ struct Problem {
   PlannerKind planner{PlannerKind::automatic};
   /// OMPL's planner of that name instead of the own one, for comparison; automatic: as without.
   bool stock{};
-  std::uint64_t seed{1};                            ///< of all random numbers; the same gives the same result
-  std::uint64_t budget{100000};                     ///< states that may be checked
-  std::optional<Upright> upright{};                 ///< holds everywhere on the path
-  bool straight{};                                  ///< only the line from start to goals[0], checked
+  std::uint64_t seed{1};             ///< of all random numbers; the same gives the same result
+  std::uint64_t budget{100000};      ///< states that may be checked
+  std::optional<Upright> upright{};  ///< holds everywhere on the path
+  bool straight{};                   ///< only the line from start to goals[0], checked
   std::optional<PlatformMotion> platform_motion{};  ///< when axes of the platform are planned for
   std::optional<std::pair<Vector, Vector>> room{};  ///< `axes` stay within these, too
 };

@@ -14,12 +14,14 @@ namespace {
 /// still, else the first one.
 std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far) {
   Vector goal = problem.start;
-  goal(problem.axes) = std::count(problem.goals.begin(), problem.goals.end(), goal_so_far) > 0 ? goal_so_far : problem.goals.front();
+  goal(problem.axes) = std::count(problem.goals.begin(), problem.goals.end(), goal_so_far) > 0
+                           ? goal_so_far
+                           : problem.goals.front();
   return {problem.start, goal};
 }
 
-Result plan_in_cartesian_space(const PlanningModels& models, const PathRequest& request, const Problem& problem, const PoseGoal& pose,
-                               const Hooks& hooks) {
+Result plan_in_cartesian_space(const PlanningModels& models, const PathRequest& request,
+                               const Problem& problem, const PoseGoal& pose, const Hooks& hooks) {
   CartesianProblem cartesian;
   cartesian.start = problem.start;
   cartesian.T_root_goal = pose.T_root_tip;
@@ -29,13 +31,15 @@ Result plan_in_cartesian_space(const PlanningModels& models, const PathRequest& 
   cartesian.budget = problem.budget;
   std::vector<int> columns = problem.axes;
   columns.insert(columns.end(), cartesian.also.begin(), cartesian.also.end());
-  return in_joints(plan_cartesian(models.robot, models.world, models.cost, cartesian, {}, hooks), columns);
+  return in_joints(plan_cartesian(models.robot, models.world, models.cost, cartesian, {}, hooks),
+                   columns);
 }
 
 }  // namespace
 
-Solver::Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile, const ObjectLibrary& objects,
-               const CostSettings& weights, const SolverSettings& settings)
+Solver::Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile,
+               const ObjectLibrary& objects, const CostSettings& weights,
+               const SolverSettings& settings)
     : robot_(std::move(robot)),
       on_platform_(std::move(mobile)),
       objects_(objects),
@@ -44,17 +48,22 @@ Solver::Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel
       world_(*robot_, objects),
       cost_(*robot_, weights) {}
 
-bool Solver::drives_platform(const PathRequest& request) const { return on_platform_ && drives(request.group); }
+bool Solver::drives_platform(const PathRequest& request) const {
+  return on_platform_ && drives(request.group);
+}
 
 std::string Solver::complete(PathRequest& request, const Pose& T_world_base) const {
   if (!drives_platform(request)) return contradiction(*robot_, request);
   constexpr double kLevel = 0.02;  // [rad]
-  if (!(T_world_base.linear()(2, 2) > std::cos(kLevel))) return "the platform does not stand level: it cannot be planned for";
-  if (request.start.size() == robot_->dof()) request.start = with_platform(request.start, T_world_base);
+  if (!(T_world_base.linear()(2, 2) > std::cos(kLevel)))
+    return "the platform does not stand level: it cannot be planned for";
+  if (request.start.size() == robot_->dof())
+    request.start = with_platform(request.start, T_world_base);
   return contradiction(*on_platform_, request);
 }
 
-PlanningTask Solver::make_task(const PathRequest& request, std::shared_ptr<const Scene> scene) const {
+PlanningTask Solver::make_task(const PathRequest& request,
+                               std::shared_ptr<const Scene> scene) const {
   PlanningTask task;
   task.request = request;
   task.T_world_root = scene->T_world_base;
@@ -81,7 +90,8 @@ void Solver::set_world(const Selected& selected, PlanningTask& task) {
   world.set_attachment(task.request.attachment, task.request.allowed_contacts);
   if (!task.request.running.empty()) {
     world.set_moving_axes(task.problem.axes);
-    set_scene_with_margins(world, scene, settings_.replan_margins, ends_of(task.problem, task.request.running.back()));
+    set_scene_with_margins(world, scene, settings_.replan_margins,
+                           ends_of(task.problem, task.request.running.back()));
   }
   selected.models.cost.set_people(*task.people);
   selected.models.cost.set_layers(task.layers);
@@ -115,7 +125,8 @@ void Solver::solve_once(const Selected& selected, PlanningTask& task, const Hook
     task.result = plan_new(selected, task, hooks);
     return;
   }
-  ReplanResult live = continue_path(selected.models, task.problem, task.request.running, settings_.search, settings_.live, hooks);
+  ReplanResult live = continue_path(selected.models, task.problem, task.request.running,
+                                    settings_.search, settings_.live, hooks);
   task.outcome = live.outcome;
   task.result = std::move(live.result);
 }
@@ -126,12 +137,14 @@ double Solver::keep_head_clearance(const Selected& selected, const PlanningTask&
   CollisionWorld& world = selected.models.world;
   const Problem& problem = task.problem;
   world.set_obstacles({});
-  if (task.request.straight || problem.goals.empty() || selected.navigation != nullptr || task.request.space == PlanSpace::cartesian)
+  if (task.request.straight || problem.goals.empty() || selected.navigation != nullptr ||
+      task.request.space == PlanSpace::cartesian)
     return 0;
   world.set_moving_axes(problem.axes);
   const Group& group = *selected.models.robot.group(task.request.group);
   std::vector<Vector> goals;
-  for (const Vector& goal : problem.goals) goals.push_back(RobotModel::with(problem.start, group, goal));
+  for (const Vector& goal : problem.goals)
+    goals.push_back(RobotModel::with(problem.start, group, goal));
   return keep_clear_of_heads(world, *task.people, settings_.head_room, problem.start, goals);
 }
 
@@ -139,16 +152,20 @@ Result Solver::plan_new(const Selected& selected, PlanningTask& task, const Hook
   const auto& [robot, world, cost] = selected.models;
   const std::vector<PoseGoal> poses = pose_goals(task.request, task.T_world_root);
   if (task.request.space == PlanSpace::cartesian)
-    return plan_in_cartesian_space(selected.models, task.request, task.problem, poses.front(), hooks);
+    return plan_in_cartesian_space(selected.models, task.request, task.problem, poses.front(),
+                                   hooks);
   if (poses.empty()) return plan(robot, world, cost, task.problem, settings_.search, hooks);
   return plan_to_poses(selected, poses, task, hooks);
 }
 
-Result Solver::plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses, PlanningTask& task, const Hooks& hooks) {
+Result Solver::plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses,
+                             PlanningTask& task, const Hooks& hooks) {
   const auto& [robot, world, cost] = selected.models;
   Problem& problem = task.problem;
-  PoseGoals found = selected.navigation != nullptr ? reach_with_platform(robot, world, poses, problem.start, problem.seed)
-                                                   : reach(robot, *robot.group(task.request.group), poses, problem.start, problem.seed);
+  PoseGoals found =
+      selected.navigation != nullptr
+          ? reach_with_platform(robot, world, poses, problem.start, problem.seed)
+          : reach(robot, *robot.group(task.request.group), poses, problem.start, problem.seed);
   problem.goals = std::move(found.goals);
   Result result;
   result.reason = found.reason;

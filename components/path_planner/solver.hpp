@@ -40,8 +40,8 @@ struct PlanningTask {
 class Solver {
  public:
   /// `mobile`: the robot on its platform, or nothing.
-  Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile, const ObjectLibrary& objects,
-         const CostSettings& weights, const SolverSettings& settings);
+  Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile,
+         const ObjectLibrary& objects, const CostSettings& weights, const SolverSettings& settings);
 
   /// Returns whether the request is for the robot on its platform.
   bool drives_platform(const PathRequest& request) const;
@@ -72,7 +72,8 @@ class Solver {
   void solve_once(const Selected& selected, PlanningTask& task, const Hooks& hooks);
   double keep_head_clearance(const Selected& selected, const PlanningTask& task) const;
   Result plan_new(const Selected& selected, PlanningTask& task, const Hooks& hooks);
-  Result plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses, PlanningTask& task, const Hooks& hooks);
+  Result plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses,
+                       PlanningTask& task, const Hooks& hooks);
 
   std::shared_ptr<const RobotModel> robot_;
   std::optional<RobotModel> on_platform_;

@@ -12,10 +12,12 @@ constexpr Duration kStep = std::chrono::milliseconds(10);
 settings::Ros2LaneSettings load(const NodeContext& context) {
   SettingsText text;
   const auto s = settings::read_ros2_lane_settings(context.settings / "ros2_lane.txtpb", &text);
-  if (s.world_frame.empty()) text.refuse("world_frame", "is empty, must name the frame of TF that is our world");
+  if (s.world_frame.empty())
+    text.refuse("world_frame", "is empty, must name the frame of TF that is our world");
   if (s.tf.empty() && (s.people || !s.objects.empty() || s.tf_out))
     text.refuse("tf", "is empty, but people, objects and tf_out need the name of TF's topic");
-  if (s.people && s.people_source.empty()) text.refuse("people_source", "is empty, a source needs a name");
+  if (s.people && s.people_source.empty())
+    text.refuse("people_source", "is empty, a source needs a name");
   if (!s.objects.empty() && s.objects_source.empty())
     text.refuse("objects_source", "is empty, a source needs a name");
   if (!s.robot_in.empty() && s.robot_in == s.joint_states_out)
@@ -69,7 +71,8 @@ void Node::open_people_and_objects() {
 void Node::on(const ros2::Transforms& message, TimePoint arrival, bool is_static) {
   for (const ros2::Transform& transform : message.transforms) {
     if (conflicts_.contradicts(transform, arrival)) continue;
-    if (!tree_.set(transform, arrival, is_static)) bus_.set_degraded("TF has more than 4096 frames; others are left out");
+    if (!tree_.set(transform, arrival, is_static))
+      bus_.set_degraded("TF has more than 4096 frames; others are left out");
     people_.on(transform);
   }
 }

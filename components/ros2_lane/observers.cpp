@@ -8,8 +8,9 @@ namespace handsel::ros2_lane {
 namespace {
 
 constexpr std::size_t kMostBodies = 256;  // as an observation holds; SPARK tracks the nearest
-constexpr std::size_t kFewestJoints = 3;  // frames of robots may be called alike: "head_tilt" alone is no body
-constexpr double kListAge = 2.0;          // [s] a list of tracked bodies counts
+constexpr std::size_t kFewestJoints =
+    3;  // frames of robots may be called alike: "head_tilt" alone is no body
+constexpr double kListAge = 2.0;  // [s] a list of tracked bodies counts
 
 Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 
@@ -18,7 +19,8 @@ Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 std::optional<BodyFrame> body_frame(const std::string& frame) {
   for (const char* joint : kBodyJoints) {
     const std::string begin = std::string(joint) + "_";
-    if (frame.starts_with(begin) && frame.size() > begin.size()) return BodyFrame{joint, frame.substr(begin.size())};
+    if (frame.starts_with(begin) && frame.size() > begin.size())
+      return BodyFrame{joint, frame.substr(begin.size())};
   }
   return std::nullopt;
 }
@@ -59,7 +61,8 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
       body = bodies_.erase(body);
       continue;
     }
-    if (joints.size() >= kFewestJoints && (!listed || tracked_->contains(id))) out.people.push_back(std::move(person));
+    if (joints.size() >= kFewestJoints && (!listed || tracked_->contains(id)))
+      out.people.push_back(std::move(person));
     ++body;
   }
   if (out.people.empty() && !(listed && tracked_->empty())) return std::nullopt;

@@ -17,14 +17,16 @@ ros2::JointState joint_state_of(const RobotModel& robot, const RobotState& state
   return out;
 }
 
-void add_links(const RobotModel& robot, const RobotState& state, const std::string& world, std::vector<ros2::Transform>& out) {
+void add_links(const RobotModel& robot, const RobotState& state, const std::string& world,
+               std::vector<ros2::Transform>& out) {
   std::vector<Pose> T_root_link;
   robot.forward(state.position, T_root_link);
   out.push_back({state.stamp, world, robot.links().front().name, state.T_world_base});
   for (std::size_t i = 1; i < robot.links().size(); ++i) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.links()[i].parent_joint)];
     const auto parent = static_cast<std::size_t>(joint.parent);
-    out.push_back({state.stamp, robot.links()[parent].name, robot.links()[i].name, T_root_link[parent].inverse() * T_root_link[i]});
+    out.push_back({state.stamp, robot.links()[parent].name, robot.links()[i].name,
+                   T_root_link[parent].inverse() * T_root_link[i]});
   }
 }
 
@@ -34,7 +36,8 @@ JointGatherer::JointGatherer(const RobotModel& robot, double max_age)
 void JointGatherer::on(const ros2::JointState& message, TimePoint arrival) {
   if (message.position.size() == 0) return;
   for (std::size_t i = 0; i < message.names.size(); ++i) {
-    const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(), [&](const Axis& a) { return a.name == message.names[i]; });
+    const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(),
+                                   [&](const Axis& a) { return a.name == message.names[i]; });
     if (axis == robot_.axes().end()) continue;
     Reported& told = axes_[static_cast<std::size_t>(axis - robot_.axes().begin())];
     const double position = message.position[static_cast<Eigen::Index>(i)];
@@ -55,7 +58,8 @@ void JointGatherer::on(const ros2::JointState& message, TimePoint arrival) {
 std::string JointGatherer::missing(TimePoint now) const {
   std::string out;
   for (std::size_t i = 0; i < axes_.size(); ++i)
-    if (!axes_[i].arrival || now - *axes_[i].arrival > max_age_) out += (out.empty() ? "" : ", ") + robot_.axes()[i].name;
+    if (!axes_[i].arrival || now - *axes_[i].arrival > max_age_)
+      out += (out.empty() ? "" : ", ") + robot_.axes()[i].name;
   return out;
 }
 

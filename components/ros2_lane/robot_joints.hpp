@@ -15,7 +15,8 @@ namespace handsel::ros2_lane {
 ros2::JointState joint_state_of(const RobotModel& robot, const RobotState& state);
 
 /// The robot's links below its root, which is below `world`, at this configuration.
-void add_links(const RobotModel& robot, const RobotState& state, const std::string& world, std::vector<ros2::Transform>& out);
+void add_links(const RobotModel& robot, const RobotState& state, const std::string& world,
+               std::vector<ros2::Transform>& out);
 
 /// Gathers a robot's state from JointState messages, each of some of the joints. A velocity that is
 /// not reported is taken from the last two positions. Forces are not known to it.

@@ -10,7 +10,8 @@ constexpr int kLongestWay = 64;
 }  // namespace
 
 bool TfTree::set(const ros2::Transform& transform, TimePoint arrival, bool is_static) {
-  if (frames_.size() >= kMostFrames && !frames_.contains(transform.child) && !evict_oldest(arrival)) return false;
+  if (frames_.size() >= kMostFrames && !frames_.contains(transform.child) && !evict_oldest(arrival))
+    return false;
   frames_[transform.child] = {transform, arrival, is_static};
   return true;
 }
@@ -19,7 +20,9 @@ bool TfTree::set(const ros2::Transform& transform, TimePoint arrival, bool is_st
 bool TfTree::evict_oldest(TimePoint now) {
   if (swept_ && to_seconds(now - *swept_) < 1) return false;
   swept_ = now;
-  std::erase_if(frames_, [&](const auto& entry) { return !entry.second.is_static && to_seconds(now - entry.second.arrival) > kForgotten; });
+  std::erase_if(frames_, [&](const auto& entry) {
+    return !entry.second.is_static && to_seconds(now - entry.second.arrival) > kForgotten;
+  });
   return frames_.size() < kMostFrames;
 }
 

@@ -15,16 +15,21 @@ SourceClock clock_of(const config::SparkSettings& settings, const std::string& s
   return clock;
 }
 
-CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency, const SourceClock& clock) {
+CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency,
+                       const SourceClock& clock) {
   const double at_least = std::max(0.0, relative) + min_latency;
   if (stamp == 0) {
-    if (!clock.assumed_latency) return {at_least, "gives no capture stamps, and no assumed_latency is set for it in spark.txtpb"};
+    if (!clock.assumed_latency)
+      return {at_least,
+              "gives no capture stamps, and no assumed_latency is set for it in spark.txtpb"};
     return {std::max(at_least, *clock.assumed_latency), ""};
   }
   const double since = to_seconds(Duration(arrival - stamp));
   if (since < -clock.error) {
     char text[96];
-    std::snprintf(text, sizeof text, "stamps its pictures %.3f s in the future; its clock may be off by %.3f s", -since, clock.error);
+    std::snprintf(text, sizeof text,
+                  "stamps its pictures %.3f s in the future; its clock may be off by %.3f s",
+                  -since, clock.error);
     return {at_least, text};
   }
   return {std::max(at_least, since + clock.error), ""};

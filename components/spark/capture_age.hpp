@@ -28,6 +28,7 @@ struct CaptureAge {
 /// [s]: of a delay that is always there this shows nothing, of a system clock that was set nothing
 /// either. The fourth argument: the smallest latency of any tracker [s], added to `relative` as a
 /// lower bound of the age.
-CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency, const SourceClock& clock);
+CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency,
+                       const SourceClock& clock);
 
 }  // namespace handsel::spark

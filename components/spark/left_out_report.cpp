@@ -12,15 +12,13 @@ void LeftOutReport::count_new(const std::string& what, std::uint64_t so_far,
 
 void LeftOutReport::add_bodies(std::uint32_t count, TimePoint arrival) {
   bodies_.add(count, arrival);
-  count_(
-      "bodies of an observation: farther than the nearest " + std::to_string(quotas_.bodies),
-      count);
+  count_("bodies of an observation: farther than the nearest " + std::to_string(quotas_.bodies),
+         count);
 }
 
 void LeftOutReport::add_tracks(const LeftOut& tracks, const PeopleTracker& tracker) {
-  count_(
-      "people remembered: farther than the nearest " + std::to_string(quotas_.tracks),
-      tracks.count);
+  count_("people remembered: farther than the nearest " + std::to_string(quotas_.tracks),
+         tracks.count);
   count_new("observations of people: more than " + std::to_string(quotas_.sources) + " sources",
             tracker.refused_observations(), observations_counted_);
 }
@@ -28,23 +26,21 @@ void LeftOutReport::add_tracks(const LeftOut& tracks, const PeopleTracker& track
 void LeftOutReport::add_people(const LeftOut& people, TimePoint now, HumanState& state) {
   people_ = people;
   state.left_out += bodies_.get(now);
-  count_("people: farther than the nearest " + std::to_string(quotas_.people),
-                      state.left_out);
+  count_("people: farther than the nearest " + std::to_string(quotas_.people), state.left_out);
 }
 
 void LeftOutReport::add_scene(const SceneModel& scene) {
   count_("objects: less relevant than " + std::to_string(quotas_.objects) + " others",
-                      scene.objects_left_out());
+         scene.objects_left_out());
   count_("boxes: farther than the nearest " + std::to_string(quotas_.boxes),
-                      scene.boxes_left_out());
+         scene.boxes_left_out());
   count_new(
       "objects remembered: less relevant than " + std::to_string(quotas_.known_objects) + " others",
       scene.forgotten(), objects_counted_);
 }
 
 void LeftOutReport::add_facts(const Facts& facts) {
-  count_("facts: less relevant than " + std::to_string(quotas_.facts) + " others",
-                      facts.left_out);
+  count_("facts: less relevant than " + std::to_string(quotas_.facts) + " others", facts.left_out);
 }
 
 std::string LeftOutReport::people_in_reach(const Coverage& reach) const {

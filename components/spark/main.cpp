@@ -1,3 +1,5 @@
 #include "components/spark/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::spark::Node>(argc, argv, "spark"); }
+int main(int argc, char** argv) {
+  return handsel::run_process<handsel::spark::Node>(argc, argv, "spark");
+}

@@ -8,7 +8,8 @@
 
 namespace handsel::spark {
 
-Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, load_scenario(context.scenario)) {}
+Node::Node(Bus& bus, const NodeContext& context)
+    : Node(bus, context, load_scenario(context.scenario)) {}
 
 Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     : bus_(bus),
@@ -19,35 +20,44 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot, context.objects),
       facts_period_(settings_.human_period(), settings_.max_period(), settings_.human_period()),
-      scene_period_(settings_.publish_period(), settings_.max_period(),
-                    settings_.human_period()),
+      scene_period_(settings_.publish_period(), settings_.max_period(), settings_.human_period()),
       news_period_(settings_.news_period(), settings_.max_period(), settings_.news_period()),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()),
-      left_out_([&bus](const std::string& what, std::uint64_t count) { bus.count_left_out(what, count); },
-                quotas_of(settings_)),
+      left_out_(
+          [&bus](const std::string& what, std::uint64_t count) { bus.count_left_out(what, count); },
+          quotas_of(settings_)),
       started_(bus.now()) {
-  bus.subscribe<HumanObservation>([this](const HumanObservation& observation, const Receipt& receipt) { observe(observation, receipt); });
-  bus.subscribe<ObjectObservation>([this](const ObjectObservation& observation, const Receipt& receipt) {
-    ObjectObservation there = observation;
-    calibration_.to_world(there);
-    scene_.observe(there, receipt.arrival - receipt.age);
-    publish_news(bus_.now());
-  });
-  bus.subscribe<RobotState>([this, robot = context.robot->name()](const RobotState& state, const Receipt&) {
-    if (state.robot == robot)
-      scene_.update(state);
-    else
-      bus_.count_left_out("robot_state: of another robot", 1);
-  });
+  bus.subscribe<HumanObservation>(
+      [this](const HumanObservation& observation, const Receipt& receipt) {
+        observe(observation, receipt);
+      });
+  bus.subscribe<ObjectObservation>(
+      [this](const ObjectObservation& observation, const Receipt& receipt) {
+        ObjectObservation there = observation;
+        calibration_.to_world(there);
+        scene_.observe(there, receipt.arrival - receipt.age);
+        publish_news(bus_.now());
+      });
+  bus.subscribe<RobotState>(
+      [this, robot = context.robot->name()](const RobotState& state, const Receipt&) {
+        if (state.robot == robot)
+          scene_.update(state);
+        else
+          bus_.count_left_out("robot_state: of another robot", 1);
+      });
   bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
     scene_.want(goal.object);
-    if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0) publish_people(bus_.now());
+    if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0)
+      publish_people(bus_.now());
   });
   bus.subscribe<SafetyState>([this](const SafetyState& safety, const Receipt& receipt) {
-    // A transient local sample may be older than its receipt says; a clock that differs only makes people older.
-    const Duration since = safety.stamp > 0 ? std::max(receipt.age, Duration(bus_.stamp_now() - safety.stamp)) : receipt.age;
+    // A transient local sample may be older than its receipt says; a clock that differs only makes
+    // people older.
+    const Duration since = safety.stamp > 0
+                               ? std::max(receipt.age, Duration(bus_.stamp_now() - safety.stamp))
+                               : receipt.age;
     tracker_.adopt(safety.lost, receipt.arrival - since, started_);
     knows_lost_ = true;
   });
@@ -56,10 +66,12 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     scene_period_.advise(advice.objects_period, r.arrival);
     news_period_.advise(advice.objects_period, r.arrival);
   });
-  bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())), [this](TimePoint now) {
-    if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period()) publish_people(now);
-    interpret(now);
-  });
+  bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())),
+            [this](TimePoint now) {
+              if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period())
+                publish_people(now);
+              interpret(now);
+            });
 }
 
 void Node::observe(const HumanObservation& observation, const Receipt& receipt) {
@@ -67,7 +79,8 @@ void Node::observe(const HumanObservation& observation, const Receipt& receipt) 
   calibration_.to_world(there);
   const Stamp arrival = bus_.stamp_now() - (bus_.now() - receipt.arrival).count();
   const CaptureAge captured =
-      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.min_latency(), clock_of(settings_, observation.source));
+      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.min_latency(),
+                  clock_of(settings_, observation.source));
   const TimePoint seen = receipt.arrival - from_seconds(captured.age);
   if (!captured.unknown.empty()) {
     tracker_.refuse(there, captured.unknown, receipt.arrival);
@@ -75,7 +88,8 @@ void Node::observe(const HumanObservation& observation, const Receipt& receipt) 
     return;
   }
   const Coverage reach = scene_.reach();
-  const std::uint32_t bodies = tracker_.observe(there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles(), &reach, captured.age);
+  const std::uint32_t bodies = tracker_.observe(
+      there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles(), &reach, captured.age);
   left_out_.add_bodies(bodies, receipt.arrival);
   left_out_.add_tracks(tracker_.keep_nearest(bus_.now(), reach), tracker_);
   publish_people(bus_.now());

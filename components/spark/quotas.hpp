@@ -20,7 +20,8 @@ struct Quotas {
   /// Largest numbers: bodies of an observation that become new people, tracks of people, people of
   /// a HumanState, sources of people, objects remembered, objects, boxes of a Scene, facts of
   /// Facts.
-  std::size_t bodies{32}, tracks{64}, people{16}, sources{16}, known_objects{128}, objects{64}, boxes{64}, facts{256};
+  std::size_t bodies{32}, tracks{64}, people{16}, sources{16}, known_objects{128}, objects{64},
+      boxes{64}, facts{256};
 };
 /// Returns the quotas of the settings; their ranges are not checked.
 Quotas quotas_of(const config::SparkSettings& settings);
@@ -70,9 +71,11 @@ LeftOut keep_lowest(std::vector<T>& items, std::size_t max, RankOf&& rank) {
   std::vector<std::size_t> order(items.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(max);
-  std::nth_element(order.begin(), middle, order.end(),
-                   [&](std::size_t a, std::size_t b) { return ranks[a] != ranks[b] ? ranks[a] < ranks[b] : a < b; });
-  for (auto left = middle; left != order.end(); ++left) out.nearest = std::min(out.nearest, ranks[*left].distance);
+  std::nth_element(order.begin(), middle, order.end(), [&](std::size_t a, std::size_t b) {
+    return ranks[a] != ranks[b] ? ranks[a] < ranks[b] : a < b;
+  });
+  for (auto left = middle; left != order.end(); ++left)
+    out.nearest = std::min(out.nearest, ranks[*left].distance);
   out.count = static_cast<std::uint32_t>(order.end() - middle);
   order.erase(middle, order.end());
   std::sort(order.begin(), order.end());
@@ -85,15 +88,19 @@ LeftOut keep_lowest(std::vector<T>& items, std::size_t max, RankOf&& rank) {
 /// Keeps the people nearest to the arm. Nobody left out is nearer than anybody kept.
 template <class SomePerson>
 LeftOut keep_nearest(std::vector<SomePerson>& people, std::size_t max, const Coverage& reach) {
-  return keep_lowest(people, max, [&](const SomePerson& p) { return Rank{0, distance_to_arm(p, reach)}; });
+  return keep_lowest(people, max, [&](const SomePerson& p) {
+    return Rank{0, distance_to_arm(p, reach)};
+  });
 }
 
 /// Which of the bodies are the `max` nearest to the arm; all of them when `reach` is null.
-std::vector<bool> nearest_of(const std::vector<ObservedPerson>& bodies, std::size_t max, const Coverage* reach);
+std::vector<bool> nearest_of(const std::vector<ObservedPerson>& bodies, std::size_t max,
+                             const Coverage* reach);
 
 /// Keeps the facts about safety and exchanges first, then those about what is held, then the
 /// others; of each kind those about the nearest.
-LeftOut keep_most_relevant(std::vector<Fact>& facts, std::size_t max, const Scene& scene, const HumanState& people, const Coverage& reach);
+LeftOut keep_most_relevant(std::vector<Fact>& facts, std::size_t max, const Scene& scene,
+                           const HumanState& people, const Coverage& reach);
 
 /// A count that sources report one after the other: the largest of the last second.
 class RecentCount {

@@ -9,21 +9,26 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kRevisionMove = 0.005;   // [m] an object that moved this far makes a new revision
-constexpr double kRevisionDoubt = 0.02;   // [m] so does one whose place is more or less sure by this
-constexpr double kRefusalTime = 5;        // [s] a refusal is reported for so long
+constexpr double kRevisionMove = 0.005;  // [m] an object that moved this far makes a new revision
+constexpr double kRevisionDoubt = 0.02;  // [m] so does one whose place is more or less sure by this
+constexpr double kRefusalTime = 5;       // [s] a refusal is reported for so long
 
 bool differs(const Scene& a, const Scene& b) {
-  if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() || a.robot_known != b.robot_known) return true;
+  if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() ||
+      a.robot_known != b.robot_known)
+    return true;
   for (std::size_t i = 0; i < a.boxes.size(); ++i)
     if (a.boxes[i].id != b.boxes[i].id) return true;
   for (std::size_t i = 0; i < a.objects.size(); ++i) {
     const auto &x = a.objects[i], &y = b.objects[i];
-    if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id) return true;
+    if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id)
+      return true;
     if (x.primitive.kind != y.primitive.kind || x.primitive.size != y.primitive.size) return true;
     if (std::abs(x.uncertainty - y.uncertainty) > kRevisionDoubt) return true;
     const bool carried = x.holder == Holder::robot;  // it moves with the hand that everybody knows
-    if (!carried && (x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove) return true;
+    if (!carried &&
+        (x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove)
+      return true;
   }
   return false;
 }
@@ -50,7 +55,8 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
     refused_at_ = seen;
     refusal_ = "object " + observed.id + " of source " + observation.source +
                (observed.model.empty() ? " has neither a model nor a primitive"
-                                       : " is of model " + observed.model + ", which is not described, and has no primitive") +
+                                       : " is of model " + observed.model +
+                                             ", which is not described, and has no primitive") +
                " with a size above 0";
   }
   shorten(samples);
@@ -76,18 +82,21 @@ void SceneModel::want(const std::string& object) {
 }
 
 Rank SceneModel::rank(const SceneObject& object) const {
-  return rank_of(object, std::find(wanted_.begin(), wanted_.end(), object.id) != wanted_.end(), reach());
+  return rank_of(object, std::find(wanted_.begin(), wanted_.end(), object.id) != wanted_.end(),
+                 reach());
 }
 
 /// Of an observation as many as are remembered.
 void SceneModel::shorten(std::vector<ObservedObject>& seen) {
-  const LeftOut left_out = keep_lowest(seen, quotas_of(settings_).known_objects, [&](const ObservedObject& observed) {
-    SceneObject object;
-    if (const auto known = objects_.find(observed.id); known != objects_.end()) object.holder = known->second.object.holder;
-    object.id = observed.id;
-    object.T_world_object = observed.T_world_object;
-    return rank(object);
-  });
+  const LeftOut left_out =
+      keep_lowest(seen, quotas_of(settings_).known_objects, [&](const ObservedObject& observed) {
+        SceneObject object;
+        if (const auto known = objects_.find(observed.id); known != objects_.end())
+          object.holder = known->second.object.holder;
+        object.id = observed.id;
+        object.T_world_object = observed.T_world_object;
+        return rank(object);
+      });
   forgotten_ += left_out.count;
 }
 
@@ -103,11 +112,14 @@ void SceneModel::forget_least_relevant() {
 
 std::string SceneModel::left_out_in_reach() const {
   std::string out;
-  for (const auto& [left_out, what] : {std::pair{&objects_left_out_, "objects"}, std::pair{&boxes_left_out_, "boxes"}}) {
+  for (const auto& [left_out, what] :
+       {std::pair{&objects_left_out_, "objects"}, std::pair{&boxes_left_out_, "boxes"}}) {
     if (left_out->count == 0 || left_out->nearest > arm_radius(reach())) continue;
     char text[160];
-    std::snprintf(text, sizeof text, "%u %s are left out of the scene, the nearest %.2f m from the robot and within its reach",
-                  left_out->count, what, left_out->nearest);
+    std::snprintf(
+        text, sizeof text,
+        "%u %s are left out of the scene, the nearest %.2f m from the robot and within its reach",
+        left_out->count, what, left_out->nearest);
     out += (out.empty() ? "" : "; ") + std::string(text);
   }
   return out;
@@ -116,7 +128,8 @@ std::string SceneModel::left_out_in_reach() const {
 std::string SceneModel::trouble(TimePoint now) const {
   const std::string crowded = left_out_in_reach();
   if (refused_ == 0 || to_seconds(now - refused_at_) > kRefusalTime) return crowded;
-  return refusal_ + ": refused, " + std::to_string(refused_) + " so far" + (crowded.empty() ? "" : "; ") + crowded;
+  return refusal_ + ": refused, " + std::to_string(refused_) + " so far" +
+         (crowded.empty() ? "" : "; ") + crowded;
 }
 
 Scene SceneModel::scene(TimePoint now, const HumanState& people) {
@@ -146,8 +159,11 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
     out.objects.push_back(std::move(object));
   }
   const Quotas quotas = quotas_of(settings_);
-  objects_left_out_ = keep_lowest(out.objects, quotas.objects, [&](const SceneObject& object) { return rank(object); });
-  boxes_left_out_ = keep_lowest(out.boxes, quotas.boxes, [&](const SceneBox& box) { return Rank{0, distance_to_arm(box, reach())}; });
+  objects_left_out_ = keep_lowest(out.objects, quotas.objects,
+                                  [&](const SceneObject& object) { return rank(object); });
+  boxes_left_out_ = keep_lowest(out.boxes, quotas.boxes, [&](const SceneBox& box) {
+    return Rank{0, distance_to_arm(box, reach())};
+  });
   out.left_out = objects_left_out_.count + boxes_left_out_.count;
   if (revision_ == 0 || differs(out, last_)) {
     ++revision_;

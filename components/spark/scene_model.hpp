@@ -30,8 +30,8 @@ namespace handsel::spark {
 /// has described enters as its primitive. Own method: an object out of sight may have been moved.
 class SceneModel {
  public:
-  SceneModel(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
-             std::vector<SceneBox> boxes);
+  SceneModel(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
+             ObjectLibrary objects, std::vector<SceneBox> boxes);
 
   /// What is neither described nor a primitive of a size is refused and counted.
   void observe(const ObjectObservation& observation, TimePoint seen);

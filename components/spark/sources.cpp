@@ -19,22 +19,26 @@ std::string why_not_active(const Source& source, TimePoint now, double max_age) 
   if (!source.repeats && source.latency > max_age)
     std::snprintf(text, sizeof text, "is late: its pictures are %.2f s old", source.latency);
   else
-    std::snprintf(text, sizeof text, "%s for %.1f s", source.repeats ? "repeats itself" : "is silent", age);
+    std::snprintf(text, sizeof text, "%s for %.1f s",
+                  source.repeats ? "repeats itself" : "is silent", age);
   return text;
 }
 
-std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now, double max_age) {
+std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
+                                 double max_age) {
   constexpr double kMaxAge = 1e9;  // HumanState has room for [s]
   std::vector<SourceView> out;
   for (const auto& [name, source] : sources) {
     const std::string why = why_not_active(source, now, max_age);
-    out.push_back({name, source.coverage.low, source.coverage.high, std::clamp(source.age(now), 0.0, kMaxAge), why.empty(), why});
+    out.push_back({name, source.coverage.low, source.coverage.high,
+                   std::clamp(source.age(now), 0.0, kMaxAge), why.empty(), why});
   }
   return out;
 }
 
 bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {
-  std::array<std::vector<double>, 3> cuts;  // the box falls into cells that lie wholly inside or outside of each of the others
+  std::array<std::vector<double>, 3>
+      cuts;  // the box falls into cells that lie wholly inside or outside of each of the others
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     cuts[i] = {box.low[k], box.high[k]};
@@ -46,8 +50,11 @@ bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {
   for (std::size_t x = 0; x + 1 < cuts[0].size(); ++x)
     for (std::size_t y = 0; y + 1 < cuts[1].size(); ++y)
       for (std::size_t z = 0; z + 1 < cuts[2].size(); ++z) {
-        const Vector3 middle((cuts[0][x] + cuts[0][x + 1]) / 2, (cuts[1][y] + cuts[1][y + 1]) / 2, (cuts[2][z] + cuts[2][z + 1]) / 2);
-        if (std::none_of(boxes.begin(), boxes.end(), [&](const Coverage& c) { return contains(c, middle, 0); })) return false;
+        const Vector3 middle((cuts[0][x] + cuts[0][x + 1]) / 2, (cuts[1][y] + cuts[1][y + 1]) / 2,
+                             (cuts[2][z] + cuts[2][z + 1]) / 2);
+        if (std::none_of(boxes.begin(), boxes.end(),
+                         [&](const Coverage& c) { return contains(c, middle, 0); }))
+          return false;
       }
   return true;
 }

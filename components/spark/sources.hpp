@@ -44,7 +44,8 @@ struct Source {
 std::string why_not_active(const Source& source, TimePoint now, double max_age);
 
 /// Returns what every source observes now; `max_age` as for why_not_active().
-std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now, double max_age);
+std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
+                                 double max_age);
 
 /// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the
 /// floor: the margin is horizontal.

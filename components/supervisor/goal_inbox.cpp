@@ -8,12 +8,15 @@ namespace {
 constexpr std::size_t kRememberedGoals = 256;
 }  // namespace
 
-bool GoalInbox::knows(std::uint64_t id) const { return std::find(known_.begin(), known_.end(), id) != known_.end(); }
+bool GoalInbox::knows(std::uint64_t id) const {
+  return std::find(known_.begin(), known_.end(), id) != known_.end();
+}
 
 GoalInbox::Admission GoalInbox::put(const TaskGoal& goal) {
   if (knows(goal.id)) return Admission::known;
-  const auto same = std::count_if(waiting_.begin(), waiting_.end(),
-                                  [&](const TaskGoal& other) { return is_control(other.kind) == is_control(goal.kind); });
+  const auto same = std::count_if(waiting_.begin(), waiting_.end(), [&](const TaskGoal& other) {
+    return is_control(other.kind) == is_control(goal.kind);
+  });
   if (static_cast<std::size_t>(same) >= max_) {
     ++turned_away_;
     if (to_refuse_.size() < max_) to_refuse_.push_back(goal);

@@ -1,3 +1,5 @@
 #include "components/supervisor/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::supervisor::Node>(argc, argv, "supervisor"); }
+int main(int argc, char** argv) {
+  return handsel::run_process<handsel::supervisor::Node>(argc, argv, "supervisor");
+}

@@ -9,7 +9,8 @@
 namespace handsel::supervisor {
 namespace {
 
-/// Modes of the robot side are sampled this often: no stop that must be seen is shorter than ten set-points (10 ms).
+/// Modes of the robot side are sampled this often: no stop that must be seen is shorter than ten
+/// set-points (10 ms).
 constexpr Duration kDrivePeriod = std::chrono::milliseconds(5);
 
 config::SupervisorSettings load_settings(const NodeContext& context) {
@@ -17,25 +18,34 @@ config::SupervisorSettings load_settings(const NodeContext& context) {
   load_text_proto(context.settings / "supervisor.txtpb", s);
   if (s.period() <= 0 || s.go_period() <= 0 || s.health_timeout() <= 0)
     throw ConfigError("supervisor.txtpb: period, go_period and health_timeout must be > 0");
-  if (s.speed_override() <= 0 || s.speed_override() > 1) throw ConfigError("supervisor.txtpb: speed_override must be in (0, 1]");
-  if (s.domain().empty()) throw ConfigError("supervisor.txtpb: domain must name the file of the task domain, e.g. \"tasks.txtpb\"");
+  if (s.speed_override() <= 0 || s.speed_override() > 1)
+    throw ConfigError("supervisor.txtpb: speed_override must be in (0, 1]");
+  if (s.domain().empty())
+    throw ConfigError(
+        "supervisor.txtpb: domain must name the file of the task domain, e.g. \"tasks.txtpb\"");
   if (s.has_max_goals() && (s.max_goals() < 1 || s.max_goals() > 1024))
-    throw ConfigError(locate(context.settings / "supervisor.txtpb", "max_goals") + ": max_goals is " + std::to_string(s.max_goals()) +
+    throw ConfigError(locate(context.settings / "supervisor.txtpb", "max_goals") +
+                      ": max_goals is " + std::to_string(s.max_goals()) +
                       "; it must be from 1 to 1024");
   if (s.plan_nodes() == 0 || s.plan_depth() == 0 || s.spot() <= 0)
     throw ConfigError("supervisor.txtpb: plan_nodes, plan_depth and spot must be > 0");
   const std::filesystem::path file = context.settings / "supervisor.txtpb";
   const auto require = [&](bool good, const char* key, const char* range) {
-    if (!good) throw ConfigError(locate(file, std::string(key) + ":") + ": " + key + " must be " + range);
+    if (!good)
+      throw ConfigError(locate(file, std::string(key) + ":") + ": " + key + " must be " + range);
   };
-  const auto within = [](double value, double low, double high) { return std::isfinite(value) && value >= low && value <= high; };
-  require(within(s.lost_after(), 0, 60) && s.lost_after() > 0, "lost_after", "above 0 and at most 60 s");
+  const auto within = [](double value, double low, double high) {
+    return std::isfinite(value) && value >= low && value <= high;
+  };
+  require(within(s.lost_after(), 0, 60) && s.lost_after() > 0, "lost_after",
+          "above 0 and at most 60 s");
   require(s.max_lost_people() >= 1 && s.max_lost_people() <= 16, "max_lost_people", "from 1 to 16");
   require(within(s.lost_period(), 0.1, 60), "lost_period", "from 0.1 to 60 s");
   require(within(s.store_retry(), 0.1, 60), "store_retry", "from 0.1 to 60 s");
   require(within(s.safety_period(), 0.1, 2), "safety_period", "from 0.1 to 2 s");
   if (!(s.missing_timeout() >= 1.0 && s.missing_timeout() <= 600.0))
-    throw ConfigError(locate(context.settings / "supervisor.txtpb", "missing_timeout:") + ": missing_timeout must be in [1, 600] s");
+    throw ConfigError(locate(context.settings / "supervisor.txtpb", "missing_timeout:") +
+                      ": missing_timeout must be in [1, 600] s");
   return s;
 }
 
@@ -43,7 +53,8 @@ std::shared_ptr<const StateStore> open_store(const NodeContext& context) {
   return context.state.empty() ? nullptr : std::make_shared<const StateStore>(context.state);
 }
 
-/// Returns what the store has kept; without a store, or without a file, the state of a system that a person has just started.
+/// Returns what the store has kept; without a store, or without a file, the state of a system that
+/// a person has just started.
 DurableState restore(const StateStore* store, double override_factor, Stamp now) {
   const DurableState fresh = fresh_state(static_cast<std::uint64_t>(now), override_factor);
   return store != nullptr ? store->restore(fresh, now) : fresh;
@@ -54,7 +65,9 @@ Ability ability_of(const config::SupervisorSettings& settings, const NodeContext
   ability.spot = settings.spot();
   ability.objects = context.objects;
   if (context.robot == nullptr) return ability;
-  if (const auto it = settings.payload().find(context.robot->name()); it != settings.payload().end()) ability.payload = it->second;
+  if (const auto it = settings.payload().find(context.robot->name());
+      it != settings.payload().end())
+    ability.payload = it->second;
   ability.reach = arm_reach(*context.robot).length;
   if (context.description.empty()) return ability;
   config::RobotDescription description;
@@ -72,41 +85,50 @@ Node::Node(Bus& bus, const NodeContext& context, const config::SupervisorSetting
       settings_(settings),
       robot_(context.robot),
       store_(open_store(context)),
-      core_(settings_, load_domain(context.settings / settings_.domain()), ability_of(settings_, context),
-            static_cast<std::uint64_t>(bus.stamp_now()), restore(store_.get(), settings_.speed_override(), bus.stamp_now()), bus.now()),
+      core_(settings_, load_domain(context.settings / settings_.domain()),
+            ability_of(settings_, context), static_cast<std::uint64_t>(bus.stamp_now()),
+            restore(store_.get(), settings_.speed_override(), bus.stamp_now()), bus.now()),
       action_out_(bus.advertise<ActionGoal>()),
       status_out_(bus.advertise<TaskStatus>()),
       go_out_(bus.advertise<Go>()),
       safety_out_(bus.advertise<SafetyState>()) {
   feed<TaskGoal>();
   feed<Facts>();
-  bus.subscribe<Scene>([this](const Scene& scene, const Receipt& receipt) { on_scene(scene, receipt.arrival); });
+  bus.subscribe<Scene>(
+      [this](const Scene& scene, const Receipt& receipt) { on_scene(scene, receipt.arrival); });
   feed<ActionStatus>();
   feed<AttentionAdvice>();
   feed<ComponentHealth>();
   feed<ExecutionStatus>();
-  bus.subscribe<RobotState>([this](const RobotState& state, const Receipt& receipt) { core_.on(state, receipt.arrival); },
-                            {.period = kDrivePeriod});
-  bus.subscribe<HumanState>(
-      [this](const HumanState& people, const Receipt& receipt) { core_.on(people, receipt.arrival - receipt.age, receipt.writer); });
+  bus.subscribe<RobotState>(
+      [this](const RobotState& state, const Receipt& receipt) { core_.on(state, receipt.arrival); },
+      {.period = kDrivePeriod});
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt& receipt) {
+    core_.on(people, receipt.arrival - receipt.age, receipt.writer);
+  });
   bus.set_degraded("the state of the world is not known yet");
   bus.every(from_seconds(settings_.period()), [this](TimePoint now) { step(now); });
 }
 
 template <class M>
 void Node::feed() {
-  bus_.subscribe<M>([this](const M& message, const Receipt& receipt) { core_.on(message, receipt.arrival); });
+  bus_.subscribe<M>(
+      [this](const M& message, const Receipt& receipt) { core_.on(message, receipt.arrival); });
 }
 
 void Node::on_scene(const Scene& scene, TimePoint arrival) {
   const int shoulder = robot_ != nullptr ? arm_reach(*robot_).shoulder : -1;
   if (shoulder >= 0 && scene.robot_known) {
-    core_.set_shoulder((scene.T_world_base * robot_->link_pose(scene.robot_position, shoulder)).translation());
+    core_.set_shoulder(
+        (scene.T_world_base * robot_->link_pose(scene.robot_position, shoulder)).translation());
     std::vector<Ability::Arm> others;
     const std::vector<Manipulator> hands = hands_of(*robot_);
     for (std::size_t i = 1; i < hands.size(); ++i) {
       const ArmReach other = arm_reach(*robot_, hands[i].arm, hands[i].palm);
-      others.push_back({(scene.T_world_base * robot_->link_pose(scene.robot_position, other.shoulder)).translation(), other.length});
+      others.push_back(
+          {(scene.T_world_base * robot_->link_pose(scene.robot_position, other.shoulder))
+               .translation(),
+           other.length});
     }
     core_.set_other_arms(others);
   }
@@ -123,13 +145,16 @@ void Node::store(const DurableState& state) {
         *failure = store->save(state, now);
         return Duration{};
       },
-      [this, failure, revision] { failure->empty() ? core_.on_stored(revision) : core_.on_store_failure(*failure, bus_.now()); });
+      [this, failure, revision] {
+        failure->empty() ? core_.on_stored(revision) : core_.on_store_failure(*failure, bus_.now());
+      });
 }
 
 void Node::step(TimePoint now) {
   Outbox out;
   core_.step(now, bus_.stamp_now(), out);
-  bus_.count_left_out("task goals: too many wait", core_.goals_turned_away() - turned_away_counted_);
+  bus_.count_left_out("task goals: too many wait",
+                      core_.goals_turned_away() - turned_away_counted_);
   turned_away_counted_ = core_.goals_turned_away();
   bus_.set_degraded(!core_.store_failure().empty() ? core_.store_failure()
                     : core_.knows_world()          ? ""

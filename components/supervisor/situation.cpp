@@ -9,7 +9,8 @@ void Situation::on(const Facts& facts, TimePoint now) {
   if (!known() && scene_) known_since_ = now;
   facts_ = facts;
   for (const Fact& fact : facts.facts)
-    if (known_predicates()[static_cast<std::size_t>(fact.kind)].types[0] == Type::human) met_.insert(fact.subject);
+    if (known_predicates()[static_cast<std::size_t>(fact.kind)].types[0] == Type::human)
+      met_.insert(fact.subject);
   while (met_.size() > kMaxMet) met_.erase(met_.begin());
   world_.reset();
 }
@@ -21,7 +22,8 @@ void Situation::on(const Scene& scene, TimePoint now) {
 }
 
 void Situation::on(const ActionStatus& status) {
-  const bool other = !action_ || action_->holding != status.holding || action_->object != status.object;
+  const bool other =
+      !action_ || action_->holding != status.holding || action_->object != status.object;
   action_ = status;
   if (other) world_.reset();
 }
@@ -36,7 +38,8 @@ World& Situation::world() {
   world_ = make_world(*facts_, *scene_, ability_);
   // The hand knows of its load before SPARK does.
   const Atom empty{predicate_of(Derived::hand_empty)};
-  if (action_ && action_->holding && world_->is(Type::object, action_->object) && world_->state.holds(empty)) {
+  if (action_ && action_->holding && world_->is(Type::object, action_->object) &&
+      world_->state.holds(empty)) {
     const Symbol o = world_->symbol(action_->object);
     if (!world_->state.holds({predicate_of(FactKind::held_by_human), {o, kAny}})) {
       world_->state.remove(empty);
@@ -57,7 +60,8 @@ std::string Situation::surface_of(const std::string& object) {
   const Atom pattern{predicate_of(FactKind::on_surface), {world().symbol(object), kAny}};
   const auto [first, last] = world().state.range(pattern.predicate);
   for (std::size_t i = first; i < last; ++i)
-    if (State::fits(world().state.entries()[i].atom, pattern)) return world().text(world().state.entries()[i].atom.args[1]);
+    if (State::fits(world().state.entries()[i].atom, pattern))
+      return world().text(world().state.entries()[i].atom.args[1]);
   return "";
 }
 

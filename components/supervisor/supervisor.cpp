@@ -22,8 +22,10 @@ Supervisor::Supervisor(const config::SupervisorSettings& settings, Domain domain
       next_action_(first_action),
       inbox_(settings.has_max_goals() ? settings.max_goals() : kMaxGoals) {}
 
-Supervisor::Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action)
-    : Supervisor(settings, std::move(domain), std::move(ability), first_action, fresh_state(first_action, settings.speed_override()), {}) {}
+Supervisor::Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+                       std::uint64_t first_action)
+    : Supervisor(settings, std::move(domain), std::move(ability), first_action,
+                 fresh_state(first_action, settings.speed_override()), {}) {}
 
 void Supervisor::on(const ComponentHealth& health, TimePoint arrival) {
   permission_.on(health, arrival);
@@ -38,7 +40,8 @@ void Supervisor::on(const ExecutionStatus& status, TimePoint arrival) {
 
 void Supervisor::on(const TaskGoal& goal, TimePoint) {
   const bool turned_away = inbox_.put(goal) == GoalInbox::Admission::turned_away;
-  if (turned_away && goal.kind == TaskKind::pause) latches_.pause();  // a person's wish to stop is never lost
+  if (turned_away && goal.kind == TaskKind::pause)
+    latches_.pause();  // a person's wish to stop is never lost
 }
 
 /// Returns false when the goal cannot be evaluated yet.
@@ -97,7 +100,8 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
       if (slot_.task() == nullptr)
         return slot_.refuse(goal, "there is no task to cancel", out.task_statuses);
       slot_.task()->cancel(wishes);
-      out.action_goals.insert(out.action_goals.end(), wishes.action_goals.begin(), wishes.action_goals.end());
+      out.action_goals.insert(out.action_goals.end(), wishes.action_goals.begin(),
+                              wishes.action_goals.end());
       slot_.report(out.task_statuses);
       break;
     case TaskKind::acknowledge:

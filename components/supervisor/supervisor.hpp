@@ -37,10 +37,11 @@ class Supervisor {
  public:
   /// `first_action`: ids of action goals grow from here; unique over restarts. `restored`: what the
   /// store has kept, ages as of `now`.
-  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action,
-             const DurableState& restored, TimePoint now);
+  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+             std::uint64_t first_action, const DurableState& restored, TimePoint now);
   /// The same, started by a person: no latch stands.
-  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action);
+  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+             std::uint64_t first_action);
 
   /// Queues the goal for the next step(). A pause that finds no room takes effect at once.
   void on(const TaskGoal& goal, TimePoint arrival);
@@ -57,7 +58,9 @@ class Supervisor {
   /// Latches a protective, user or emergency stop when the robot side enters one.
   void on(const RobotState& robot, TimePoint) { latches_.on(robot); }
   /// Updates the people lost from sight. `writer`: identifies the SPARK process.
-  void on(const HumanState& people, TimePoint arrival, std::uint64_t writer) { lost_.on(people, arrival, writer); }
+  void on(const HumanState& people, TimePoint arrival, std::uint64_t writer) {
+    lost_.on(people, arrival, writer);
+  }
   /// Takes the advice of attention; the next step() acts on its change of the task.
   void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }
   /// Sets the shoulder of the arm in the world [m]; from then on the reach of the arms counts.

@@ -54,7 +54,9 @@ std::vector<Type> types_of(FactKind kind) {
 bool reaches(const Ability& ability, const Vector3& p, bool any_arm) {
   if (!ability.reach_known || (p - ability.shoulder).norm() <= ability.reach) return true;
   return any_arm && std::any_of(ability.other_arms.begin(), ability.other_arms.end(),
-                                [&](const Ability::Arm& arm) { return (p - arm.shoulder).norm() <= arm.reach; });
+                                [&](const Ability::Arm& arm) {
+                                  return (p - arm.shoulder).norm() <= arm.reach;
+                                });
 }
 
 double places_on(const SceneBox& box, const Scene& scene, const Ability& ability, bool any_arm) {
@@ -64,12 +66,15 @@ double places_on(const SceneBox& box, const Scene& scene, const Ability& ability
     if (object.holder == Holder::surface && object.holder_id == box.id)
       taken.push_back(box.T_world_box.inverse() * object.T_world_object.translation());
   double found = 0;
-  const double x_end = std::max(0.0, box.size.x() / 2 - kEdge), y_end = std::max(0.0, box.size.y() / 2 - kEdge);
+  const double x_end = std::max(0.0, box.size.x() / 2 - kEdge),
+               y_end = std::max(0.0, box.size.y() / 2 - kEdge);
   for (double x = -x_end; x <= x_end + 1e-9 && found < kMostPlaces; x += kStep)
     for (double y = -y_end; y <= y_end + 1e-9 && found < kMostPlaces; y += kStep) {
       const Vector3 p(x, y, top);
       if (!reaches(ability, box.T_world_box * p, any_arm)) continue;
-      const bool free = std::all_of(taken.begin(), taken.end(), [&](const Vector3& t) { return (t - p).head<2>().norm() >= ability.spot; });
+      const bool free = std::all_of(taken.begin(), taken.end(), [&](const Vector3& t) {
+        return (t - p).head<2>().norm() >= ability.spot;
+      });
       if (!free) continue;
       taken.push_back(p);
       ++found;
@@ -78,7 +83,8 @@ double places_on(const SceneBox& box, const Scene& scene, const Ability& ability
 }
 
 bool in_someones_hands(const Facts& facts, const std::string& object, FactKind kind) {
-  return std::any_of(facts.facts.begin(), facts.facts.end(), [&](const Fact& f) { return f.kind == kind && f.subject == object; });
+  return std::any_of(facts.facts.begin(), facts.facts.end(),
+                     [&](const Fact& f) { return f.kind == kind && f.subject == object; });
 }
 
 }  // namespace
@@ -91,7 +97,8 @@ const char* name(Type type) {
 const std::vector<PredicateSign>& known_predicates() {
   static const std::vector<PredicateSign> all = [] {
     std::vector<PredicateSign> out;
-    for (std::size_t i = 0; i < std::size(kFactNames); ++i) out.push_back({kFactNames[i], types_of(static_cast<FactKind>(i))});
+    for (std::size_t i = 0; i < std::size(kFactNames); ++i)
+      out.push_back({kFactNames[i], types_of(static_cast<FactKind>(i))});
     using T = Type;
     out.insert(out.end(), {{"hand_empty", {}},
                            {"room", {T::surface}},
@@ -110,10 +117,13 @@ const std::vector<PredicateSign>& known_predicates() {
 }
 
 int predicate_of(FactKind kind) { return static_cast<int>(kind); }
-int predicate_of(Derived kind) { return static_cast<int>(std::size(kFactNames)) + static_cast<int>(kind); }
+int predicate_of(Derived kind) {
+  return static_cast<int>(std::size(kFactNames)) + static_cast<int>(kind);
+}
 
 void State::set(const Atom& atom, double value) {
-  const auto at = std::lower_bound(entries_.begin(), entries_.end(), atom, [](const Entry& e, const Atom& a) { return e.atom < a; });
+  const auto at = std::lower_bound(entries_.begin(), entries_.end(), atom,
+                                   [](const Entry& e, const Atom& a) { return e.atom < a; });
   if (at != entries_.end() && at->atom == atom)
     at->value = value;
   else
@@ -121,7 +131,8 @@ void State::set(const Atom& atom, double value) {
 }
 
 bool State::fits(const Atom& atom, const Atom& pattern) {
-  return atom.predicate == pattern.predicate && (pattern.args[0] == kAny || pattern.args[0] == atom.args[0]) &&
+  return atom.predicate == pattern.predicate &&
+         (pattern.args[0] == kAny || pattern.args[0] == atom.args[0]) &&
          (pattern.args[1] == kAny || pattern.args[1] == atom.args[1]);
 }
 
@@ -130,7 +141,8 @@ void State::remove(const Atom& pattern) {
 }
 
 const double* State::find(const Atom& atom) const {
-  const auto at = std::lower_bound(entries_.begin(), entries_.end(), atom, [](const Entry& e, const Atom& a) { return e.atom < a; });
+  const auto at = std::lower_bound(entries_.begin(), entries_.end(), atom,
+                                   [](const Entry& e, const Atom& a) { return e.atom < a; });
   return at != entries_.end() && at->atom == atom ? &at->value : nullptr;
 }
 
@@ -138,7 +150,8 @@ std::pair<std::size_t, std::size_t> State::range(int predicate) const {
   const auto before = [](const Entry& e, int p) { return e.atom.predicate < p; };
   const auto first = std::lower_bound(entries_.begin(), entries_.end(), predicate, before);
   const auto last = std::lower_bound(first, entries_.end(), predicate + 1, before);
-  return {static_cast<std::size_t>(first - entries_.begin()), static_cast<std::size_t>(last - entries_.begin())};
+  return {static_cast<std::size_t>(first - entries_.begin()),
+          static_cast<std::size_t>(last - entries_.begin())};
 }
 
 bool State::holds(const Atom& pattern) const {
@@ -154,7 +167,8 @@ std::uint64_t State::hash() const {
   const auto mix = [&h](std::uint64_t v) { h = (h ^ v) * 1099511628211ULL, h ^= h >> 29; };
   for (const Entry& e : entries_) {
     mix(static_cast<std::uint64_t>(e.atom.predicate));
-    mix(static_cast<std::uint64_t>(e.atom.args[0]) << 32 ^ static_cast<std::uint64_t>(e.atom.args[1]));
+    mix(static_cast<std::uint64_t>(e.atom.args[0]) << 32 ^
+        static_cast<std::uint64_t>(e.atom.args[1]));
     mix(std::bit_cast<std::uint64_t>(e.value));
   }
   return h;
@@ -198,10 +212,13 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   for (const Fact& fact : facts.facts) {
     const auto& types = known_predicates()[static_cast<std::size_t>(fact.kind)].types;
     if (types[0] == Type::object && !objects.contains(fact.subject)) continue;
-    if (fact.kind == FactKind::on_surface && in_someones_hands(facts, fact.subject, FactKind::held_by_robot)) continue;
+    if (fact.kind == FactKind::on_surface &&
+        in_someones_hands(facts, fact.subject, FactKind::held_by_robot))
+      continue;
     holds = holds || fact.kind == FactKind::held_by_robot;
     state.set({static_cast<int>(fact.kind),
-               {world.symbol(fact.subject), types.size() > 1 && !fact.object.empty() ? world.symbol(fact.object) : kNothing}},
+               {world.symbol(fact.subject),
+                types.size() > 1 && !fact.object.empty() ? world.symbol(fact.object) : kNothing}},
               fact.value);
   }
   if (!holds) state.set({predicate_of(Derived::hand_empty)});
@@ -209,16 +226,21 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   for (const auto& object : scene.objects) {
     const Symbol o = world.symbol(object.id);
     state.set({predicate_of(Derived::thing), {o, kNothing}});
-    if (reaches(ability, object.T_world_object.translation(), true)) state.set({predicate_of(Derived::near_a_hand), {o, kNothing}});
-    if (!object.model.empty()) state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
+    if (reaches(ability, object.T_world_object.translation(), true))
+      state.set({predicate_of(Derived::near_a_hand), {o, kNothing}});
+    if (!object.model.empty())
+      state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
     const ObjectModel* model = ability.objects ? ability.objects(object.model) : nullptr;
     if (model == nullptr || ability.payload <= 0) continue;
-    if (model->mass > ability.payload) state.set({predicate_of(Derived::heavy), {o, kNothing}}, model->mass);
-    if (model->mass > ability.payload * ability.hands) state.set({predicate_of(Derived::too_heavy), {o, kNothing}}, model->mass);
+    if (model->mass > ability.payload)
+      state.set({predicate_of(Derived::heavy), {o, kNothing}}, model->mass);
+    if (model->mass > ability.payload * ability.hands)
+      state.set({predicate_of(Derived::too_heavy), {o, kNothing}}, model->mass);
   }
   for (const auto& box : scene.boxes) {
     if (!box.supports) continue;
-    for (const auto& [kind, any_arm] : {std::pair{Derived::room, false}, std::pair{Derived::has_offer_clearance, true}}) {
+    for (const auto& [kind, any_arm] :
+         {std::pair{Derived::room, false}, std::pair{Derived::has_offer_clearance, true}}) {
       const double places = places_on(box, scene, ability, any_arm);
       if (places > 0) state.set({predicate_of(kind), {world.symbol(box.id), kNothing}}, places);
     }

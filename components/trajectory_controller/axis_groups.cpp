@@ -7,7 +7,8 @@
 
 namespace handsel::trajectory_controller {
 
-AxisGroups::AxisGroups(const RobotModel& robot) : robot_(robot), parts_(static_cast<std::size_t>(robot.dof()), Part::arm) {
+AxisGroups::AxisGroups(const RobotModel& robot)
+    : robot_(robot), parts_(static_cast<std::size_t>(robot.dof()), Part::arm) {
   const auto mark = [&](const Group* group, Part part) {
     if (group == nullptr) return;
     for (int axis : group->axes) parts_[static_cast<std::size_t>(axis)] = part;

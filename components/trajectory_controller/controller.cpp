@@ -23,17 +23,23 @@ ComplianceSettings compliance_settings(const ControllerSettings& s) {
   return {s.yield_speed, s.yield_reach, s.retreat_reach, s.contact.yield_torque};
 }
 
-LookaheadSettings lookahead_settings(const ControllerSettings& s) { return {s.guard, s.walls, s.look_ahead, s.look_far_ahead}; }
+LookaheadSettings lookahead_settings(const ControllerSettings& s) {
+  return {s.guard, s.walls, s.look_ahead, s.look_far_ahead};
+}
 
-OutputCheckSettings output_settings(const ControllerSettings& s) { return {s.period, s.dry_run, s.proof.max_rejoins, s.proof.shown_time}; }
+OutputCheckSettings output_settings(const ControllerSettings& s) {
+  return {s.period, s.dry_run, s.proof.max_rejoins, s.proof.shown_time};
+}
 
 SpeedSettings speed_settings(const ControllerSettings& s) {
-  return {s.attention_lost_factor, s.timeouts.attention, s.recoil_limit, s.forecast_hold, s.forecast_slow, s.cost_from, s.cost_factor};
+  return {s.attention_lost_factor, s.timeouts.attention, s.recoil_limit, s.forecast_hold,
+          s.forecast_slow,         s.cost_from,          s.cost_factor};
 }
 
 SupervisorSettings supervisor_settings(const ControllerSettings& s) {
-  return {s.period,     s.dry_run, s.tracking_tolerance, s.tracking_time, s.forecast_hold, s.forecast_slow, s.guard.stop_persistence,
-          s.late_limit, s.timeouts};
+  return {s.period,        s.dry_run,       s.tracking_tolerance,     s.tracking_time,
+          s.forecast_hold, s.forecast_slow, s.guard.stop_persistence, s.late_limit,
+          s.timeouts};
 }
 
 }  // namespace
@@ -48,7 +54,8 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       stop_space_(settings.view, proof_, *robot_),
       finger_limit_(proof_, *robot_),
-      arm_({settings.period, settings.start_tolerance, settings.switch_reach}, *robot_, groups_.arm()),
+      arm_({settings.period, settings.start_tolerance, settings.switch_reach}, *robot_,
+           groups_.arm()),
       compliance_(compliance_settings(settings), *robot_, arm_),
       follower_({settings.dry_run, settings.hand_rejoin, settings.timeouts.robot_state}, groups_),
       hands_(settings.hand, *robot_, settings.period),
@@ -57,12 +64,15 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       deadline_(*robot_, groups_.arm(), settings.period),
       supervisor_(supervisor_settings(settings)),
       output_check_(output_settings(settings), *robot_, groups_, proof_, stop_space_) {
-  require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
+  require(settings.period > 0 && settings.period <= 0.02,
+          "period must be above 0 and at most 0.02 s");
   require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
-  require(settings.forecast_slow > settings.forecast_hold, "forecast_slow must be above forecast_hold");
+  require(settings.forecast_slow > settings.forecast_hold,
+          "forecast_slow must be above forecast_hold");
   require(settings.cost_from >= 0 && settings.cost_from < 1, "cost_from must be in [0, 1)");
   require(settings.late_limit > 0, "late_limit must be above 0");
-  for (const Wall& wall : settings.walls) require(std::abs(wall.normal.norm() - 1.0) < 1e-6, "the normal of a wall must have length 1");
+  for (const Wall& wall : settings.walls)
+    require(std::abs(wall.normal.norm() - 1.0) < 1e-6, "the normal of a wall must have length 1");
 }
 
 void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bool new_writer) {
@@ -77,7 +87,8 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bo
   // The configuration of a robot side that has just come up is the first set-point.
   const bool at_reference = !settings_.dry_run && follower_.reference().reported(state);
   Vector position = at_reference ? state.reference.position : state.position;
-  for (int axis = 0; axis < groups_.size(); ++axis) position[axis] = groups_.inside(axis, position[axis]);
+  for (int axis = 0; axis < groups_.size(); ++axis)
+    position[axis] = groups_.inside(axis, position[axis]);
   set_points_.restart(position);
   if (arm_.active()) arm_.interrupt_path(false);
   arm_.rest_at(position);
@@ -97,7 +108,9 @@ void Controller::on(const Go& go, TimePoint sampled) { inputs_.permission.set(go
 
 void Controller::on(const SafetyState& safety) { inputs_.permission.set(safety); }
 
-void Controller::on(const TrajectoryForecast& forecast, TimePoint sampled) { inputs_.forecast.set(forecast, sampled); }
+void Controller::on(const TrajectoryForecast& forecast, TimePoint sampled) {
+  inputs_.forecast.set(forecast, sampled);
+}
 
 void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   inputs_.advice.set(advice, sampled);
@@ -106,13 +119,19 @@ void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   Vector path_end = here;
   if (arm_.running()) {
     const MotionState3& end = arm_.path_at(arm_.path().duration());
-    for (std::size_t i = 0; i < arm_.path_axes().size(); ++i) path_end[arm_.path_axes()[i]] = end.position[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < arm_.path_axes().size(); ++i)
+      path_end[arm_.path_axes()[i]] = end.position[static_cast<Eigen::Index>(i)];
   }
   head_.aim_at(advice, inputs_.robot.state().T_world_base, here, path_end);
 }
 
 CommandConditions Controller::conditions() const {
-  return {*robot_, inputs_.permission, inputs_.robot.ready(), settings_.max_command_age, supervisor_.mode(), supervisor_.latched_cause()};
+  return {*robot_,
+          inputs_.permission,
+          inputs_.robot.ready(),
+          settings_.max_command_age,
+          supervisor_.mode(),
+          supervisor_.latched_cause()};
 }
 
 std::string Controller::accept(const TrajectoryCommand& command, Duration age, TimePoint now) {
@@ -170,7 +189,8 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   if (supervisor_.mode() >= Mode::hold || arm_.goal() == PathGoal::stop) return 0.0;
   const std::uint64_t trajectory = arm_.queue().current().id;
   const GuardVerdict& guard = lookahead_.verdict();
-  return trajectory_controller::wanted_factor(speed_settings(settings_), inputs_, trajectory, guard, now);
+  return trajectory_controller::wanted_factor(speed_settings(settings_), inputs_, trajectory, guard,
+                                              now);
 }
 
 void Controller::supervise(TimePoint now, bool late) noexcept {
@@ -178,10 +198,12 @@ void Controller::supervise(TimePoint now, bool late) noexcept {
   const GuardVerdict& guard = lookahead_.verdict();
   const std::uint64_t trajectory = arm_.queue().current().id;
   if (here && lookahead_.nearest().handover_clear) inputs_.people.end_exemption();
-  supervisor_.update({inputs_, set_points_, groups_.arm(), guard, arm_.active(), trajectory,
-                      cost_factor(speed_settings(settings_), inputs_, trajectory), contact_.contact(), compliance_.moving(),
-                      output_check_.take_limit_violation(), output_check_.shows_unproven(), output_check_.blind(), late},
-                     now);
+  supervisor_.update(
+      {inputs_, set_points_, groups_.arm(), guard, arm_.active(), trajectory,
+       cost_factor(speed_settings(settings_), inputs_, trajectory), contact_.contact(),
+       compliance_.moving(), output_check_.take_limit_violation(), output_check_.shows_unproven(),
+       output_check_.blind(), late},
+      now);
   const bool free = supervisor_.mode() < Mode::hold && !lookahead_.is_too_fast(arm_.speed_factor());
   if (free) deadline_.set_free(set_points_.sent(), now);
   commands_.step();
@@ -194,11 +216,13 @@ void Controller::step_arm(TimePoint now) noexcept {
   const MotionState3& sent = set_points_.sent();
   const bool rejoins = arm_.goal() == PathGoal::rejoin;
   if (rejoins && mode >= Mode::stop) arm_.interrupt_path(false);
-  if (rejoins && mode < Mode::hold && arm_.state() == ArmState::at_rest && arm_.rejoin(sent)) lookahead_.forbid_all();
+  if (rejoins && mode < Mode::hold && arm_.state() == ArmState::at_rest && arm_.rejoin(sent))
+    lookahead_.forbid_all();
   ArmOrder order = mode >= Mode::stop ? ArmOrder::stop : ArmOrder::run;
   const bool too_fast = mode == Mode::hold || lookahead_.is_too_fast(arm_.speed_factor());
   const double slack = mode == Mode::hold ? kStopSlack : kGuardSlack;
-  if (order == ArmOrder::run && arm_.running() && !arm_.path().standing() && too_fast && deadline_.is_due(sent, slack, now))
+  if (order == ArmOrder::run && arm_.running() && !arm_.path().standing() && too_fast &&
+      deadline_.is_due(sent, slack, now))
     order = ArmOrder::leave;
   arm_.step(order, wanted_factor(now), set_points_);
 }
@@ -217,18 +241,22 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   const double age = people.data_age(now);
   const bool follows = inputs_.robot.follows(), clamped = contact_.contact() == Contact::clamped;
 
-  follower_.step({inputs_.robot, set_points_, inputs_.robot.age(now), mode == Mode::fault, cycles_}, arm_, head_.movers(), hands_);
+  follower_.step({inputs_.robot, set_points_, inputs_.robot.age(now), mode == Mode::fault, cycles_},
+                 arm_, head_.movers(), hands_);
   const bool undisturbed = people.partner().empty() && !hands_.any_moving();
-  const bool may_comply = arm_.state() == ArmState::at_rest && arm_.goal() != PathGoal::rejoin && !settings_.dry_run &&
-                          mode < Mode::fault && follows && settings_.yield_speed > 0.0 && (undisturbed || clamped);
-  const bool recoils = !inputs_.attention_silent(now, settings_.timeouts.attention) && inputs_.advice.value.speed_factor < 0.0;
-  compliance_.step({inputs_, contact_, set_points_, supervisor_.verdict(), lookahead_.nearest(), lookahead_.retreat_factor(), may_comply,
-                    recoils, cycles_});
+  const bool may_comply = arm_.state() == ArmState::at_rest && arm_.goal() != PathGoal::rejoin &&
+                          !settings_.dry_run && mode < Mode::fault && follows &&
+                          settings_.yield_speed > 0.0 && (undisturbed || clamped);
+  const bool recoils = !inputs_.attention_silent(now, settings_.timeouts.attention) &&
+                       inputs_.advice.value.speed_factor < 0.0;
+  compliance_.step({inputs_, contact_, set_points_, supervisor_.verdict(), lookahead_.nearest(),
+                    lookahead_.retreat_factor(), may_comply, recoils, cycles_});
   step_arm(now);
 
   const Vector& sent = set_points_.sent().position;
   if (cycles_ % kFingerInterval == 0)
-    hands_.limit_speed(finger_limit_.factor(sent, robot.T_world_base, age, hands_.held_payload(), people.capsules()));
+    hands_.limit_speed(finger_limit_.factor(sent, robot.T_world_base, age, hands_.held_payload(),
+                                            people.capsules()));
   const bool new_state = inputs_.robot.has_new_state();
   if (new_state && !arm_.running()) lookahead_.place_links(sent);
   const HandsInputs of_hands{robot, people, lookahead_.links(), new_state, mode, clamped};
@@ -237,16 +265,17 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   inputs_.robot.mark_used();
   head_.step(mode < Mode::hold, set_points_.next());
 
-  output_check_.step({people.capsules(), robot.T_world_base, age, hands_.held_payload(), follows, follower_.moves_nothing(),
-                      compliance_.complying(), cycles_},
+  output_check_.step({people.capsules(), robot.T_world_base, age, hands_.held_payload(), follows,
+                      follower_.moves_nothing(), compliance_.complying(), cycles_},
                      {arm_, hands_, head_.movers()}, set_points_);
   set_points_.end_cycle(robot_->guard_limits(), settings_.period);
   return true;
 }
 
 StatusSources Controller::sources() const {
-  return {*robot_,  inputs_,     supervisor_,          arm_,    hands_,           commands_, set_points_,
-          contact_, stop_space_, lookahead_.nearest(), cycles_, settings_.dry_run};
+  return {*robot_,   inputs_,          supervisor_, arm_,        hands_,
+          commands_, set_points_,      contact_,    stop_space_, lookahead_.nearest(),
+          cycles_,   settings_.dry_run};
 }
 
 }  // namespace handsel::trajectory_controller

@@ -1,9 +1,9 @@
 // Executes jerk-limited trajectories, hand commands and gaze; slows, holds and stops by the guard.
 // The order of a step: inputs (robot side, people, permission, forecast, advice) -> supervise
-// (lookahead, mode, deadline of a stop) -> arm (reference, compliance, path) | hand | head -> output
-// (limits, checked stop, observed space). Every set-point obeys the guard limits. Chapter section 2
-// (react at the right level), architecture section 6. Pure: no clock, no I/O; step() uses no heap
-// and never throws.
+// (lookahead, mode, deadline of a stop) -> arm (reference, compliance, path) | hand | head ->
+// output (limits, checked stop, observed space). Every set-point obeys the guard limits. Chapter
+// section 2 (react at the right level), architecture section 6. Pure: no clock, no I/O; step() uses
+// no heap and never throws.
 #pragma once
 
 #include <memory>

@@ -2,5 +2,6 @@
 #include "components/trajectory_controller/node.hpp"
 
 int main(int argc, char** argv) {
-  return handsel::run_process<handsel::trajectory_controller::Node>(argc, argv, "trajectory_controller", handsel::Urgency::control);
+  return handsel::run_process<handsel::trajectory_controller::Node>(
+      argc, argv, "trajectory_controller", handsel::Urgency::control);
 }

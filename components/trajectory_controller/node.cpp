@@ -8,7 +8,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 constexpr Duration kReportPeriod = std::chrono::milliseconds(20);
-constexpr Duration kReasonPeriod = std::chrono::seconds(1);  // of the reason in this process' health: how long a source is silent changes
+constexpr Duration kReasonPeriod = std::chrono::seconds(
+    1);  // of the reason in this process' health: how long a source is silent changes
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
@@ -30,16 +31,23 @@ Node::Node(Bus& bus, const NodeContext& context)
   });
   read<Go>(bus, [this](const Go& m, const Receipt& r) { core_.on(m, r.arrival); });
   read<SafetyState>(bus, [this](const SafetyState& m, const Receipt&) { core_.on(m); });
-  bus.subscribe<TrajectoryForecast>([this](const TrajectoryForecast& m, const Receipt& r) { core_.on(m, r.arrival); });
-  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& m, const Receipt& r) { core_.on(m, r.arrival); });
-  read<ActionStatus>(bus, [this](const ActionStatus& m, const Receipt& r) { core_.on(m, r.arrival); });
-  read<TrajectoryCommand>(bus, [this](const TrajectoryCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
-  read<HandCommand>(bus, [this](const HandCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
+  bus.subscribe<TrajectoryForecast>(
+      [this](const TrajectoryForecast& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<AttentionAdvice>(
+      [this](const AttentionAdvice& m, const Receipt& r) { core_.on(m, r.arrival); });
+  read<ActionStatus>(bus,
+                     [this](const ActionStatus& m, const Receipt& r) { core_.on(m, r.arrival); });
+  read<TrajectoryCommand>(bus, [this](const TrajectoryCommand& m, const Receipt& r) {
+    core_.accept(m, r.age, r.arrival);
+  });
+  read<HandCommand>(
+      bus, [this](const HandCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
   timer_ = &bus.every(from_seconds(settings_.period), [this](TimePoint now) { tick(now); });
 }
 
 bool Node::has_second_writer() const {
-  return std::any_of(inputs_.begin(), inputs_.end(), [](const SubscriptionStatus* input) { return !input->second_writer.empty(); });
+  return std::any_of(inputs_.begin(), inputs_.end(),
+                     [](const SubscriptionStatus* input) { return !input->second_writer.empty(); });
 }
 
 void Node::tick(TimePoint now) {
@@ -59,7 +67,8 @@ void Node::tick(TimePoint now) {
     ExecutionStatus status = core_.status();
     if (has_second_writer()) status.causes |= bit(Cause::second_writer);
     status_out_->publish(status);
-    if (const bool blind = watched_ && (status.causes & bit(Cause::blind)) != 0; blind != blind_ || (blind && now >= next_reason_)) {
+    if (const bool blind = watched_ && (status.causes & bit(Cause::blind)) != 0;
+        blind != blind_ || (blind && now >= next_reason_)) {
       bus_.set_degraded(blind ? status.reason : "");
       blind_ = blind;
       next_reason_ = now + kReasonPeriod;

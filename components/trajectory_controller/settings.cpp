@@ -11,7 +11,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-StopProofSettings read_stop_proof(const settings::ControllerStopProof& in, const SettingsText& text) {
+StopProofSettings read_stop_proof(const settings::ControllerStopProof& in,
+                                  const SettingsText& text) {
   StopProofSettings s;
   s.latency = in.latency;
   s.robot_side_delay = in.robot_side_delay;
@@ -27,27 +28,36 @@ StopProofSettings read_stop_proof(const settings::ControllerStopProof& in, const
   s.min_finger_mass = in.min_finger_mass;
   std::array<bool, kBodyRegions> given{};
   for (const auto& region : in.regions) {
-    const auto found = std::find(std::begin(kBodyRegionNames), std::end(kBodyRegionNames), region.region);
+    const auto found =
+        std::find(std::begin(kBodyRegionNames), std::end(kBodyRegionNames), region.region);
     if (found == std::end(kBodyRegionNames))
-      text.refuse("stop_proof", "stop_proof.regions names \"" + region.region +
-                                    "\"; known are head, torso, upper_arm, forearm, hand, thigh and lower_leg");
+      text.refuse("stop_proof",
+                  "stop_proof.regions names \"" + region.region +
+                      "\"; known are head, torso, upper_arm, forearm, hand, thigh and lower_leg");
     const auto k = static_cast<std::size_t>(found - std::begin(kBodyRegionNames));
-    if (std::exchange(given[k], true)) text.refuse("stop_proof", "stop_proof.regions gives " + region.region + " twice; once is right");
+    if (std::exchange(given[k], true))
+      text.refuse("stop_proof",
+                  "stop_proof.regions gives " + region.region + " twice; once is right");
     s.contact[k] = {region.force, region.stiffness, region.mass};
     s.people[k] = {region.speed, region.acceleration};
   }
   for (std::size_t k = 0; k < kBodyRegions; ++k)
-    if (!given[k]) text.refuse("stop_proof", std::string("stop_proof.regions lacks ") + kBodyRegionNames[k]);
+    if (!given[k])
+      text.refuse("stop_proof", std::string("stop_proof.regions lacks ") + kBodyRegionNames[k]);
   return s;
 }
 
 /// Whether limits that belong together are in order.
 void check_together(const settings::TrajectoryControllerSettings& in, const SettingsText& text) {
   constexpr double kMinStep = 1e-6;  // [s]
-  if (!(in.forecast_slow >= in.forecast_hold + kMinStep)) text.refuse("forecast_slow", "must be above forecast_hold");
-  if (!(in.look_far_ahead >= in.look_ahead)) text.refuse("look_far_ahead", "must be at least look_ahead");
-  if (!(in.guard.speed_floor <= in.guard.speed_max)) text.refuse("guard", "speed_floor must be at most speed_max");
-  if (!(in.guard.speed_unknown <= in.guard.speed_max)) text.refuse("guard", "speed_unknown must be at most speed_max");
+  if (!(in.forecast_slow >= in.forecast_hold + kMinStep))
+    text.refuse("forecast_slow", "must be above forecast_hold");
+  if (!(in.look_far_ahead >= in.look_ahead))
+    text.refuse("look_far_ahead", "must be at least look_ahead");
+  if (!(in.guard.speed_floor <= in.guard.speed_max))
+    text.refuse("guard", "speed_floor must be at most speed_max");
+  if (!(in.guard.speed_unknown <= in.guard.speed_max))
+    text.refuse("guard", "speed_unknown must be at most speed_max");
 }
 
 }  // namespace
@@ -156,7 +166,8 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
 
   for (const auto& w : in.walls) {
     const Vector3 normal(w.nx, w.ny, w.nz);
-    if (!(normal.norm() > 1e-9)) text.refuse("walls", "a wall has no normal; nx, ny, nz must not all be 0");
+    if (!(normal.norm() > 1e-9))
+      text.refuse("walls", "a wall has no normal; nx, ny, nz must not all be 0");
     s.walls.push_back({normal.normalized(), w.offset});
   }
   if (in.workspace) {

@@ -14,19 +14,22 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kNearPi = 0.02;      // displacements this near to a turn by pi have no axis [rad]
-constexpr double kSame = 1e-9;        // nodes nearer are the same
-constexpr double kProbe = 0.05;       // the way between elbow angles is tried this often [rad or 3 x m]
-constexpr double kMetre = 3.0;        // [rad/m]
-constexpr double kElbowMotion = 0.3;  // cost of turning the elbow by a radian, where keeping off the limits is worth 1
+constexpr double kNearPi = 0.02;  // displacements this near to a turn by pi have no axis [rad]
+constexpr double kSame = 1e-9;    // nodes nearer are the same
+constexpr double kProbe = 0.05;   // the way between elbow angles is tried this often [rad or 3 x m]
+constexpr double kMetre = 3.0;    // [rad/m]
+constexpr double kElbowMotion =
+    0.3;  // cost of turning the elbow by a radian, where keeping off the limits is worth 1
 constexpr int kTool = 6, kElbow = 7;  // active axes up to the tool's, up to the elbow's
-constexpr int kTries = 3;             // of an approximation that leaves the limits its samples keep; each ten times as close
+constexpr int kTries =
+    3;  // of an approximation that leaves the limits its samples keep; each ten times as close
 constexpr double kRounding = 1e-7;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Eigen::Matrix3d turned_by(const Vector3& r) {
   const double angle = r.norm();
-  return angle < 1e-12 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : Eigen::AngleAxisd(angle, r / angle).toRotationMatrix();
+  return angle < 1e-12 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                       : Eigen::AngleAxisd(angle, r / angle).toRotationMatrix();
 }
 
 Vector3 displacement(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
@@ -54,15 +57,18 @@ Pose CartesianTrajectory::pose_at(const Vector& active, std::size_t node) const 
 }
 
 std::size_t CartesianTrajectory::node_at(double t) const {
-  return static_cast<std::size_t>(std::upper_bound(middles_.begin(), middles_.end(), t) - middles_.begin());
+  return static_cast<std::size_t>(std::upper_bound(middles_.begin(), middles_.end(), t) -
+                                  middles_.begin());
 }
 
-Pose CartesianTrajectory::pose(double t) const { return pose_at(active_.at(t).position, node_at(t)); }
+Pose CartesianTrajectory::pose(double t) const {
+  return pose_at(active_.at(t).position, node_at(t));
+}
 
 class CartesianPlanning {
  public:
-  CartesianPlanning(const RobotModel& robot, const Group& arm, CollisionWorld& world, const CartesianRequest& request,
-                    const CartesianSettings& settings)
+  CartesianPlanning(const RobotModel& robot, const Group& arm, CollisionWorld& world,
+                    const CartesianRequest& request, const CartesianSettings& settings)
       : robot_(robot), group_(arm), world_(world), request_(request), settings_(settings) {}
 
   CartesianMotion run() {
@@ -99,20 +105,25 @@ class CartesianPlanning {
 
   bool possible() {
     if (request_.start.size() != robot_.dof() || !request_.start.allFinite())
-      return refuse(text("the start has %d axes, the robot %d", static_cast<int>(request_.start.size()), robot_.dof()));
+      return refuse(text("the start has %d axes, the robot %d",
+                         static_cast<int>(request_.start.size()), robot_.dof()));
     if (request_.nodes.empty()) return refuse("there are no nodes");
-    if (!(request_.speed_scale > 0 && request_.speed_scale <= 1)) return refuse("the speed scale must be in (0, 1]");
+    if (!(request_.speed_scale > 0 && request_.speed_scale <= 1))
+      return refuse("the speed scale must be in (0, 1]");
     for (const int axis : request_.also)
-      if (axis < 0 || axis >= robot_.dof() || std::count(group_.axes.begin(), group_.axes.end(), axis) > 0)
-        return refuse("axis " + std::to_string(axis) + " cannot be active besides the arm" +
-                      (axis >= robot_.dof() ? ": the robot has " + std::to_string(robot_.dof()) : ""));
+      if (axis < 0 || axis >= robot_.dof() ||
+          std::count(group_.axes.begin(), group_.axes.end(), axis) > 0)
+        return refuse(
+            "axis " + std::to_string(axis) + " cannot be active besides the arm" +
+            (axis >= robot_.dof() ? ": the robot has " + std::to_string(robot_.dof()) : ""));
     for (std::size_t k = 0; k < request_.nodes.size(); ++k) {
       const CartesianWaypoint& node = request_.nodes[k];
-      if (!node.T_root_tool.matrix().allFinite() || (node.elbow && !std::isfinite(*node.elbow)) || !node.also.allFinite())
+      if (!node.T_root_tool.matrix().allFinite() || (node.elbow && !std::isfinite(*node.elbow)) ||
+          !node.also.allFinite())
         return refuse(of_node(k + 1) + " has a number that is not finite");
       if (node.also.size() != static_cast<Eigen::Index>(request_.also.size()))
-        return refuse(of_node(k + 1) + " gives " + std::to_string(node.also.size()) + " further axes, the request names " +
-                      std::to_string(request_.also.size()));
+        return refuse(of_node(k + 1) + " gives " + std::to_string(node.also.size()) +
+                      " further axes, the request names " + std::to_string(request_.also.size()));
     }
     if (const Group* platform = robot_.group(kPlatformGroup))
       for (std::size_t i = 0; i < platform_.size(); ++i) platform_[i] = further(platform->axes[i]);
@@ -133,9 +144,12 @@ class CartesianPlanning {
     if (!request_.joined) return true;
     for (const int axis : request_.joined->arm->axes)
       if (std::count(motion_.axes.begin(), motion_.axes.end(), axis) > 0)
-        return refuse("the arm " + request_.joined->arm->name + " cannot follow itself, nor axes that are active");
+        return refuse("the arm " + request_.joined->arm->name +
+                      " cannot follow itself, nor axes that are active");
     joined_.emplace(robot_, *request_.joined, request_.start);
-    if (std::string why = joined_->objection(chain_->forward(RobotModel::part(request_.start, group_), nullptr)); !why.empty())
+    if (std::string why =
+            joined_->objection(chain_->forward(RobotModel::part(request_.start, group_), nullptr));
+        !why.empty())
       return refuse(why);
     motion_.axes.insert(motion_.axes.end(), joined_->axes().begin(), joined_->axes().end());
     return true;
@@ -145,9 +159,10 @@ class CartesianPlanning {
   std::vector<int> axes_that_move() const {
     std::vector<int> axes = group_.axes;
     for (std::size_t i = 0; i < request_.also.size(); ++i)
-      if (std::any_of(request_.nodes.begin(), request_.nodes.end(), [&](const CartesianWaypoint& node) {
-            return node.also[static_cast<Eigen::Index>(i)] != request_.start[request_.also[i]];
-          }))
+      if (std::any_of(
+              request_.nodes.begin(), request_.nodes.end(), [&](const CartesianWaypoint& node) {
+                return node.also[static_cast<Eigen::Index>(i)] != request_.start[request_.also[i]];
+              }))
         axes.push_back(request_.also[i]);
     if (joined_) axes.insert(axes.end(), joined_->axes().begin(), joined_->axes().end());
     return axes;
@@ -164,16 +179,21 @@ class CartesianPlanning {
   Pose base_at(const Vector& also) const {
     if (!drives()) return Pose::Identity();
     const std::vector<int>& axes = robot_.require_group(kPlatformGroup).axes;
-    const auto at = [&](std::size_t i) { return platform_[i] < 0 ? request_.start[axes[i]] : also[platform_[i]]; };
-    return make_pose({at(0), at(1), 0}, Eigen::Quaterniond(Eigen::AngleAxisd(at(2), Vector3::UnitZ())));
+    const auto at = [&](std::size_t i) {
+      return platform_[i] < 0 ? request_.start[axes[i]] : also[platform_[i]];
+    };
+    return make_pose({at(0), at(1), 0},
+                     Eigen::Quaterniond(Eigen::AngleAxisd(at(2), Vector3::UnitZ())));
   }
 
-  /// The pose of the tool as the arm sees it, whose chain was made where the platform stood at the start.
+  /// The pose of the tool as the arm sees it, whose chain was made where the platform stood at the
+  /// start.
   Pose for_arm(const Pose& T_root_tool, const Vector& also) const {
     return drives() ? T_root_base_ * base_at(also).inverse() * T_root_tool : T_root_tool;
   }
 
-  /// The active values of the nodes, as far as legs between them exist; elbows left open are those of the start.
+  /// The active values of the nodes, as far as legs between them exist; elbows left open are those
+  /// of the start.
   void find_nodes() {
     const ik::Axes q = RobotModel::part(request_.start, group_);
     Node at;
@@ -185,32 +205,39 @@ class CartesianPlanning {
       at.active[kElbow + static_cast<Eigen::Index>(i)] = request_.start[request_.also[i]];
     motion_.path.nodes_ = {at};
     given_ = {0};
-    if (!upright(at.T_root_tool)) return end_before(1, "at the start what is held leans over too far");
+    if (!upright(at.T_root_tool))
+      return end_before(1, "at the start what is held leans over too far");
     for (std::size_t k = 1; k <= request_.nodes.size(); ++k) {
       const CartesianWaypoint& wanted = request_.nodes[k - 1];
       const Node& last = motion_.path.nodes_.back();
       const Vector3 turn = displacement(last.T_root_tool.linear(), wanted.T_root_tool.linear());
       if (turn.norm() > M_PI - kNearPi)
-        return end_before(k, "the tool turns by half a turn from " + of_node(k - 1) + " to " + of_node(k) +
+        return end_before(k, "the tool turns by half a turn from " + of_node(k - 1) + " to " +
+                                 of_node(k) +
                                  ", about no axis in particular: a node between is needed");
-      if (!upright(wanted.T_root_tool)) return end_before(k, "at " + of_node(k) + " what is held leans over too far");
+      if (!upright(wanted.T_root_tool))
+        return end_before(k, "at " + of_node(k) + " what is held leans over too far");
       Node next;
       next.T_root_tool = wanted.T_root_tool;
       next.active = last.active;
       next.active.head<3>() = wanted.T_root_tool.translation();
       next.active.segment<3>(3) += turn;
-      if (wanted.elbow) next.active[kTool] += std::remainder(*wanted.elbow - last.active[kTool], 2 * M_PI);
+      if (wanted.elbow)
+        next.active[kTool] += std::remainder(*wanted.elbow - last.active[kTool], 2 * M_PI);
       next.active.tail(wanted.also.size()) = wanted.also;
       for (std::size_t i = 0; i < request_.also.size(); ++i) {
         const Axis& axis = robot_.axes()[static_cast<std::size_t>(request_.also[i])];
         const double value = wanted.also[static_cast<Eigen::Index>(i)];
         if (!(value >= axis.lower && value <= axis.upper))
-          return end_before(k, text("at node %zu axis %s at %.4f is outside its limits %.4f ... %.4f", k, axis.name.c_str(), value,
-                                    axis.lower, axis.upper));
+          return end_before(
+              k, text("at node %zu axis %s at %.4f is outside its limits %.4f ... %.4f", k,
+                      axis.name.c_str(), value, axis.lower, axis.upper));
       }
       motion_.reached = k;
-      const bool settles_elbow = wanted.elbow && given_.back() > 0 && !request_.nodes[given_.back() - 1].elbow;
-      if (!settles_elbow && (next.active - last.active).lpNorm<Eigen::Infinity>() <= kSame) continue;
+      const bool settles_elbow =
+          wanted.elbow && given_.back() > 0 && !request_.nodes[given_.back() - 1].elbow;
+      if (!settles_elbow && (next.active - last.active).lpNorm<Eigen::Infinity>() <= kSame)
+        continue;
       motion_.path.nodes_.push_back(next);
       given_.push_back(k);
     }
@@ -227,47 +254,56 @@ class CartesianPlanning {
   double near_limits(const ik::Axes& q) const {
     double sum = 0;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      const double middle = 0.5 * (chain_->lower()[i] + chain_->upper()[i]), half = 0.5 * (chain_->upper()[i] - chain_->lower()[i]);
+      const double middle = 0.5 * (chain_->lower()[i] + chain_->upper()[i]),
+                   half = 0.5 * (chain_->upper()[i] - chain_->lower()[i]);
       sum += std::pow((q[i] - middle) / half, 6);
     }
     return sum;
   }
 
-  /// The posture at the end of a leg, on the branch of its beginning; nullopt where joints meet a limit or jump.
-  std::optional<ik::Axes> along_leg(std::size_t leg, double elbow_from, double elbow_to, const ik::Axes& from,
+  /// The posture at the end of a leg, on the branch of its beginning; nullopt where joints meet a
+  /// limit or jump.
+  std::optional<ik::Axes> along_leg(std::size_t leg, double elbow_from, double elbow_to,
+                                    const ik::Axes& from,
                                     std::vector<SpeedAlong::SpeedSample>* samples = nullptr) const {
     const Node &a = motion_.path.nodes_[leg], &b = motion_.path.nodes_[leg + 1];
     const Vector step = b.active - a.active;
-    const double far = std::max({kMetre * step.head<3>().norm(), step.segment<3>(3).norm(), std::abs(elbow_to - elbow_from)});
+    const double far = std::max({kMetre * step.head<3>().norm(), step.segment<3>(3).norm(),
+                                 std::abs(elbow_to - elbow_from)});
     const int parts = std::max(1, static_cast<int>(std::ceil(far / kProbe)));
     ik::Axes q = from;
     const auto look = [&](double factor) {
       if (samples == nullptr) return;
-      samples->push_back(request_.people->at(whole(q, a.active.tail(a.active.size() - kElbow) + factor * step.tail(step.size() - kElbow))));
+      samples->push_back(request_.people->at(whole(
+          q, a.active.tail(a.active.size() - kElbow) + factor * step.tail(step.size() - kElbow))));
       samples->back().at = factor;
     };
     look(0);
     for (int k = 1; k <= parts; ++k) {
       const double factor = static_cast<double>(k) / parts;
       const Vector active = a.active + factor * step;
-      const Pose T = for_arm(motion_.path.pose_at(active, leg), active.tail(active.size() - kElbow));
+      const Pose T =
+          for_arm(motion_.path.pose_at(active, leg), active.tail(active.size() - kElbow));
       const auto next = arm_->nearest(T, elbow_from + factor * (elbow_to - elbow_from), q);
-      if (!next || (*next - q).lpNorm<Eigen::Infinity>() > 4 * settings_.largest_step) return std::nullopt;
+      if (!next || (*next - q).lpNorm<Eigen::Infinity>() > 4 * settings_.largest_step)
+        return std::nullopt;
       q = *next;
       look(factor);
     }
     return q;
   }
 
-  /// Elbow angles of the nodes that leave it open: those that keep the joints off their limits with little motion of the elbow, and that a
-  /// way leads to. Cheapest first; ways are only tried where they would be taken.
+  /// Elbow angles of the nodes that leave it open: those that keep the joints off their limits with
+  /// little motion of the elbow, and that a way leads to. Cheapest first; ways are only tried where
+  /// they would be taken.
   void choose_elbows() {
     std::vector<Node>& nodes = motion_.path.nodes_;
     struct Option {
       double elbow{}, cost{kInfinite};
       ik::Axes q;
     };
-    std::vector<Option> from{{nodes[0].active[kTool], 0.0, RobotModel::part(request_.start, group_)}};
+    std::vector<Option> from{
+        {nodes[0].active[kTool], 0.0, RobotModel::part(request_.start, group_)}};
     std::vector<std::vector<std::pair<double, int>>> chosen{{{from[0].elbow, -1}}};
     for (std::size_t k = 1; k < nodes.size(); ++k) {
       const std::optional<double>& fixed = request_.nodes[given_[k] - 1].elbow;
@@ -278,7 +314,9 @@ class CartesianPlanning {
         const double angle = fixed ? *fixed : nodes[0].active[kTool] + 2 * M_PI * i / tries;
         std::vector<std::pair<double, int>> order;
         for (std::size_t j = 0; j < from.size(); ++j)
-          order.emplace_back(from[j].cost + kElbowMotion * std::abs(std::remainder(angle - from[j].elbow, 2 * M_PI)), static_cast<int>(j));
+          order.emplace_back(from[j].cost + kElbowMotion * std::abs(std::remainder(
+                                                               angle - from[j].elbow, 2 * M_PI)),
+                             static_cast<int>(j));
         std::sort(order.begin(), order.end());
         for (std::size_t j = 0; j < std::min<std::size_t>(3, order.size()); ++j) {
           const Option& before = from[static_cast<std::size_t>(order[j].second)];
@@ -312,14 +350,19 @@ class CartesianPlanning {
     bool reach = false, inside = false;
     for (int i = 0; i < settings_.elbows; ++i) {
       const double elbow = node.active[kTool] + 2 * M_PI * i / settings_.elbows;
-      const std::vector<ik::Axes> found = arm_->branches(for_arm(node.T_root_tool, node.active.tail(node.active.size() - kElbow)), elbow);
+      const std::vector<ik::Axes> found = arm_->branches(
+          for_arm(node.T_root_tool, node.active.tail(node.active.size() - kElbow)), elbow);
       reach |= !found.empty();
-      inside |= std::any_of(found.begin(), found.end(), [&](const ik::Axes& q) { return arm_->turned_inside(q, middle).has_value(); });
+      inside |= std::any_of(found.begin(), found.end(), [&](const ik::Axes& q) {
+        return arm_->turned_inside(q, middle).has_value();
+      });
     }
     const std::string name = of_node(given_[k]);
     if (!reach) return name + " is out of reach of the arm";
     if (!inside) return "no configuration inside the joint limits has the tool at " + name;
-    return "no path leads to " + name + " without a joint limit or a change of branch (a stretched shoulder, elbow or wrist) between";
+    return "no path leads to " + name +
+           " without a joint limit or a change of branch (a stretched shoulder, elbow or wrist) "
+           "between";
   }
 
   KinematicLimits active_limits() const {
@@ -336,7 +379,8 @@ class CartesianPlanning {
     const KinematicLimits& joints = robot_.comfort_limits();
     for (std::size_t i = 0; i < request_.also.size(); ++i) {
       const int axis = request_.also[i];
-      set(kElbow + static_cast<Eigen::Index>(i), {joints.velocity[axis], joints.acceleration[axis], joints.jerk[axis]});
+      set(kElbow + static_cast<Eigen::Index>(i),
+          {joints.velocity[axis], joints.acceleration[axis], joints.jerk[axis]});
     }
     return out;
   }
@@ -351,8 +395,9 @@ class CartesianPlanning {
     postures_.push_back(q);
     for (std::size_t k = 1; k < path.nodes_.size(); ++k) {
       std::vector<SpeedAlong::SpeedSample> samples;
-      const auto next = along_leg(k - 1, path.nodes_[k - 1].active[kTool], path.nodes_[k].active[kTool], q,
-                                  request_.people != nullptr ? &samples : nullptr);
+      const auto next =
+          along_leg(k - 1, path.nodes_[k - 1].active[kTool], path.nodes_[k].active[kTool], q,
+                    request_.people != nullptr ? &samples : nullptr);
       if (!next) {
         end_before(given_[k], why_no_way(k));
         return false;
@@ -360,7 +405,8 @@ class CartesianPlanning {
       postures_.push_back(q = *next);
       if (samples.empty()) continue;
       motion_.speeds.push_back(SpeedAlong::zones(samples));
-      for (const SpeedAlong::SpeedSample& look : samples) motion_.cost = std::max(motion_.cost, std::clamp(look.cost, 0.0, 1.0));
+      for (const SpeedAlong::SpeedSample& look : samples)
+        motion_.cost = std::max(motion_.cost, std::clamp(look.cost, 0.0, 1.0));
     }
     std::vector<Vector> line;
     for (const Node& node : path.nodes_) line.push_back(node.active);
@@ -368,7 +414,8 @@ class CartesianPlanning {
     SmoothSettings smoothing;
     smoothing.allowed_excess = settings_.allowed_excess;
     SmoothResult smoothed = smooth(
-        line, limits, smoothing, [this](const Trajectory& corner) { return corner_free(corner); }, motion_.speeds);
+        line, limits, smoothing, [this](const Trajectory& corner) { return corner_free(corner); },
+        motion_.speeds);
     if (!smoothed.ok()) {
       end_before(1, smoothed.reason);
       return true;
@@ -396,8 +443,9 @@ class CartesianPlanning {
     return true;
   }
 
-  /// The first of these postures, one near the next, that touches something; their number where none does. Boxes of configurations around
-  /// some of them, and what lies between, are looked at side by side; those that are not clear posture by posture.
+  /// The first of these postures, one near the next, that touches something; their number where
+  /// none does. Boxes of configurations around some of them, and what lies between, are looked at
+  /// side by side; those that are not clear posture by posture.
   std::size_t first_touching(const std::vector<Vector>& postures) const {
     struct Run {
       std::size_t begin, end;
@@ -406,7 +454,8 @@ class CartesianPlanning {
     std::vector<Vector> low, high;
     const auto check = [&]() -> std::optional<std::size_t> {
       const int count = static_cast<int>(runs.size());
-      const std::uint32_t unclear = count > 0 ? world_.unclear_boxes(low.data(), high.data(), count) : 0;
+      const std::uint32_t unclear =
+          count > 0 ? world_.unclear_boxes(low.data(), high.data(), count) : 0;
       for (int i = 0; i < count; ++i) {
         const Run& run = runs[static_cast<std::size_t>(i)];
         if ((unclear >> i & 1) == 0) continue;
@@ -422,7 +471,8 @@ class CartesianPlanning {
       Vector least = postures[begin], bound = least;
       std::size_t end = begin;
       while (end + 1 < postures.size()) {
-        const Vector lower = least.cwiseMin(postures[end + 1]), upper = bound.cwiseMax(postures[end + 1]);
+        const Vector lower = least.cwiseMin(postures[end + 1]),
+                     upper = bound.cwiseMax(postures[end + 1]);
         if (end > begin && (upper - lower).maxCoeff() > settings_.collision_step) break;
         least = lower;
         bound = upper;
@@ -440,7 +490,8 @@ class CartesianPlanning {
 
   Vector whole(const ik::Axes& q, const Vector& also) const {
     Vector all = RobotModel::with(request_.start, group_, q);
-    for (std::size_t i = 0; i < request_.also.size(); ++i) all[request_.also[i]] = also[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < request_.also.size(); ++i)
+      all[request_.also[i]] = also[static_cast<Eigen::Index>(i)];
     if (joined_) all(joined_->axes()) = joined_->joints();
     return all;
   }
@@ -466,7 +517,8 @@ class CartesianPlanning {
     for (const double end : {0.0, lasts}) {
       ik::Axes q = postures_[node];
       std::vector<Vector> way;
-      const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(end - middle) / (4 * settings_.period))));
+      const int steps =
+          std::max(1, static_cast<int>(std::ceil(std::abs(end - middle) / (4 * settings_.period))));
       for (int k = 0; k <= steps; ++k) {
         const Vector active = corner.at(middle + (end - middle) * k / steps).position;
         const Pose T = motion_.path.pose_at(active, node);
@@ -485,7 +537,8 @@ class CartesianPlanning {
     const Vector begin = corner.at(0).position, end = corner.at(corner.duration()).position;
     const auto off = [&](const Vector& x, std::size_t leg) {
       const Vector along = nodes[leg + 1].active - nodes[leg].active;
-      const double factor = std::clamp((x - nodes[leg].active).dot(along) / std::max(along.squaredNorm(), 1e-18), 0.0, 1.0);
+      const double factor = std::clamp(
+          (x - nodes[leg].active).dot(along) / std::max(along.squaredNorm(), 1e-18), 0.0, 1.0);
       return (x - nodes[leg].active - factor * along).norm();
     };
     std::size_t best = 0;
@@ -518,7 +571,8 @@ class CartesianPlanning {
     std::vector<Vector> postures;
     const auto ahead = [&](double t) {
       const std::size_t node = path.node_at(t);
-      return given_[std::min(path.nodes_.size() - 1, path.middles_.empty() || node == 0 ? 1 : ahead_of(t, node))];
+      return given_[std::min(path.nodes_.size() - 1,
+                             path.middles_.empty() || node == 0 ? 1 : ahead_of(t, node))];
     };
     std::string why;
     for (int k = 0; k <= steps && why.empty(); ++k) {
@@ -547,7 +601,8 @@ class CartesianPlanning {
     if (const std::size_t touching = first_touching(postures); touching < postures.size()) {
       last = touching;
       const CollisionVerdict verdict = world_.check(postures[touching]);
-      why = "on the path to " + of_node(ahead(times_[last])) + " " + verdict.first + " touches " + verdict.second;
+      why = "on the path to " + of_node(ahead(times_[last])) + " " + verdict.first + " touches " +
+            verdict.second;
     }
     if (why.empty()) return true;
     end_before(ahead(times_[last]), why);
@@ -555,23 +610,30 @@ class CartesianPlanning {
   }
 
   std::size_t ahead_of(double t, std::size_t node) const {
-    const Vector &at = motion_.path.nodes_[node].active, &before = motion_.path.nodes_[node - 1].active;
+    const Vector &at = motion_.path.nodes_[node].active,
+                 &before = motion_.path.nodes_[node - 1].active;
     return (motion_.path.active_.at(t).position - at).dot(at - before) < 0 ? node : node + 1;
   }
 
-  std::string why_stopped(std::size_t given, const Pose& T, double elbow, const Vector& also, const ik::Axes& q) const {
+  std::string why_stopped(std::size_t given, const Pose& T, double elbow, const Vector& also,
+                          const ik::Axes& q) const {
     const std::string way = "on the path to " + of_node(given);
     const auto next = arm_->nearest(for_arm(T, also), elbow, q);
-    if (!next) return way + (arm_->branches(for_arm(T, also), elbow).empty() ? " the arm does not reach" : " a joint meets its limit");
+    if (!next)
+      return way + (arm_->branches(for_arm(T, also), elbow).empty() ? " the arm does not reach"
+                                                                    : " a joint meets its limit");
     Eigen::Index joint = 0;
     (*next - q).cwiseAbs().maxCoeff(&joint);
-    return way + " joint " + robot_.axes()[static_cast<std::size_t>(group_.axes[static_cast<std::size_t>(joint)])].name +
+    return way + " joint " +
+           robot_.axes()[static_cast<std::size_t>(group_.axes[static_cast<std::size_t>(joint)])]
+               .name +
            " would jump: shoulder, elbow or wrist is stretched there";
   }
 
   void approximated() {
     const KinematicLimits& all = robot_.comfort_limits();
-    const KinematicLimits limits{request_.speed_scale * all.velocity(motion_.axes), all.acceleration(motion_.axes), all.jerk(motion_.axes)};
+    const KinematicLimits limits{request_.speed_scale * all.velocity(motion_.axes),
+                                 all.acceleration(motion_.axes), all.jerk(motion_.axes)};
     if (motion_.samples.size() < 2) return;
     Derived derived = differentiate(times_, motion_.samples);
     for (MotionState3* end : {&derived.samples.front(), &derived.samples.back()}) {
@@ -583,7 +645,9 @@ class CartesianPlanning {
     ApproximationTolerance tolerance = settings_.tolerance;
     for (int tries = 0; tries < kTries; ++tries, tolerance.position *= 0.1) {
       motion_.executable = approximate_within(times_, derived.samples, tolerance, limits);
-      if (!motion_.executable.approximation.ok() || inside_limits(motion_.executable.approximation.trajectory)) break;
+      if (!motion_.executable.approximation.ok() ||
+          inside_limits(motion_.executable.approximation.trajectory))
+        break;
     }
     if (!motion_.executable.approximation.ok()) refuse(motion_.executable.approximation.reason);
     if (joined_ && motion_.executable.approximation.ok()) measure_join();
@@ -591,16 +655,20 @@ class CartesianPlanning {
 
   void measure_join() {
     const Trajectory& run = motion_.executable.approximation.trajectory;
-    const int samples = std::max(1, static_cast<int>(std::ceil(run.duration() / (4 * settings_.period))));
+    const int samples =
+        std::max(1, static_cast<int>(std::ceil(run.duration() / (4 * settings_.period))));
     for (int k = 0; k <= samples; ++k) {
       const Vector q = run.at(run.duration() * k / samples).position;
-      const JoinError e = joined_->error(chain_->forward(q.head(static_cast<Eigen::Index>(group_.axes.size())), nullptr),
-                                         q.tail(static_cast<Eigen::Index>(joined_->axes().size())));
-      motion_.joined = {std::max(motion_.joined.apart, e.apart), std::max(motion_.joined.turned, e.turned)};
+      const JoinError e = joined_->error(
+          chain_->forward(q.head(static_cast<Eigen::Index>(group_.axes.size())), nullptr),
+          q.tail(static_cast<Eigen::Index>(joined_->axes().size())));
+      motion_.joined = {std::max(motion_.joined.apart, e.apart),
+                        std::max(motion_.joined.turned, e.turned)};
     }
-    if (motion_.joined.apart > settings_.max_apart.apart || motion_.joined.turned > settings_.max_apart.turned)
-      refuse(text("the hands would come %.2f mm and %.2f degrees apart on the path", 1e3 * motion_.joined.apart,
-                  motion_.joined.turned * 180 / M_PI));
+    if (motion_.joined.apart > settings_.max_apart.apart ||
+        motion_.joined.turned > settings_.max_apart.turned)
+      refuse(text("the hands would come %.2f mm and %.2f degrees apart on the path",
+                  1e3 * motion_.joined.apart, motion_.joined.turned * 180 / M_PI));
   }
 
   bool inside_limits(const Trajectory& trajectory) const {
@@ -628,8 +696,8 @@ class CartesianPlanning {
   CartesianMotion motion_;
 };
 
-CartesianMotion plan_cartesian(const RobotModel& robot, const Group& arm, CollisionWorld& world, const CartesianRequest& request,
-                               const CartesianSettings& settings) {
+CartesianMotion plan_cartesian(const RobotModel& robot, const Group& arm, CollisionWorld& world,
+                               const CartesianRequest& request, const CartesianSettings& settings) {
   return CartesianPlanning(robot, arm, world, request, settings).run();
 }
 

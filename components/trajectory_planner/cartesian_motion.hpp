@@ -62,10 +62,10 @@ struct CartesianSettings {
   double period{0.002};             ///< the joints are computed this often [s]
   /// A joint that moves farther in a period has changed branch: refused [rad].
   double largest_step{0.1};
-  double collision_step{0.01};                   ///< configurations are checked this often [rad, max norm]
-  int elbows{24};                                ///< angles tried at a node that leaves its elbow open
+  double collision_step{0.01};  ///< configurations are checked this often [rad, max norm]
+  int elbows{24};               ///< angles tried at a node that leaves its elbow open
   ApproximationTolerance tolerance{2e-4, 1e-2};  ///< of TR_app to the sampled joints [rad], [rad/s]
-  JoinError max_apart{1e-3, 3.5e-3};             ///< of joined tips: beyond it the motion is refused
+  JoinError max_apart{1e-3, 3.5e-3};  ///< of joined tips: beyond it the motion is refused
 };
 
 /// TR: the smoothed trajectory of the active axes and how to read poses from it. Own method: the
@@ -75,7 +75,7 @@ class CartesianTrajectory {
  public:
   struct Node {
     Pose T_root_tool{Pose::Identity()};  ///< pose of the tool at the node, frame of the root link
-    Vector active;                       ///< position [m], rotation vector, elbow, further axes [rad]
+    Vector active;  ///< position [m], rotation vector, elbow, further axes [rad]
   };
 
   /// Returns the time from the first node to the last [s].
@@ -126,7 +126,8 @@ struct CartesianMotion {
 /// reach, a turn by pi, a joint limit or another branch between, a collision, what is held leans
 /// over), the motion ends at the node before it, and the reason says what is wrong. The arm must be
 /// one of shoulder, elbow and wrist (ik::SrsArm).
-CartesianMotion plan_cartesian(const RobotModel& robot, const Group& arm, CollisionWorld& world, const CartesianRequest& request,
+CartesianMotion plan_cartesian(const RobotModel& robot, const Group& arm, CollisionWorld& world,
+                               const CartesianRequest& request,
                                const CartesianSettings& settings = {});
 
 }  // namespace handsel::trajectory_planner

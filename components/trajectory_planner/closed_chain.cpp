@@ -11,7 +11,8 @@ constexpr double kJoined = 1e-3, kJoinedTurn = 4e-3;  // at the start [m], [rad]
 
 JoinError join_error(const Pose& T_tip_follower, const Pose& wanted) {
   return {(T_tip_follower.translation() - wanted.translation()).norm(),
-          Eigen::AngleAxisd(Eigen::Matrix3d(T_tip_follower.linear().transpose() * wanted.linear())).angle()};
+          Eigen::AngleAxisd(Eigen::Matrix3d(T_tip_follower.linear().transpose() * wanted.linear()))
+              .angle()};
 }
 
 ClosedChain::ClosedChain(const RobotModel& robot, const JoinedArm& joined, const Vector& start)
@@ -29,7 +30,9 @@ std::string ClosedChain::objection(const Pose& T_root_tip) const {
   const JoinError off = error(T_root_tip, start_);
   if (off.apart <= kJoined && off.turned <= kJoinedTurn) return {};
   char out[200];
-  std::snprintf(out, sizeof out, "the tip of %s is %.1f mm and %.1f degrees from where it is said to be joined to the other arm's",
+  std::snprintf(out, sizeof out,
+                "the tip of %s is %.1f mm and %.1f degrees from where it is said to be joined to "
+                "the other arm's",
                 joined_.arm->name.c_str(), 1e3 * off.apart, off.turned * 180 / M_PI);
   return out;
 }
@@ -42,13 +45,17 @@ bool ClosedChain::follow(const Pose& T_root_tip, double largest_step, std::strin
   const Pose T = T_root_tip * joined_.T_tip_follower;
   const auto next = arm_->nearest(T, elbow_, q_);
   if (!next) {
-    why = joined_.arm->name + (arm_->branches(T, elbow_).empty() ? " does not reach so far" : " meets a joint limit");
+    why = joined_.arm->name +
+          (arm_->branches(T, elbow_).empty() ? " does not reach so far" : " meets a joint limit");
     return false;
   }
   Eigen::Index joint = 0;
   if ((*next - q_).cwiseAbs().maxCoeff(&joint) > largest_step) {
-    why = "joint " + robot_.axes()[static_cast<std::size_t>(joined_.arm->axes[static_cast<std::size_t>(joint)])].name +
-          " would jump: shoulder, elbow or wrist is stretched there";
+    why =
+        "joint " +
+        robot_.axes()[static_cast<std::size_t>(joined_.arm->axes[static_cast<std::size_t>(joint)])]
+            .name +
+        " would jump: shoulder, elbow or wrist is stretched there";
     return false;
   }
   q_ = *next;

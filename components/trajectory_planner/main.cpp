@@ -1,3 +1,5 @@
 #include "components/trajectory_planner/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::trajectory_planner::Node>(argc, argv, "trajectory_planner"); }
+int main(int argc, char** argv) {
+  return handsel::run_process<handsel::trajectory_planner::Node>(argc, argv, "trajectory_planner");
+}

@@ -29,11 +29,13 @@ double extent_of(const Link& link) {
   };
   double most = 0;
   for (const PlacedShape& placed : link.collision)
-    most = std::max(most, placed.T_parent_shape.translation().norm() + std::visit(Radius{}, placed.shape));
+    most = std::max(
+        most, placed.T_parent_shape.translation().norm() + std::visit(Radius{}, placed.shape));
   return most;
 }
 
-/// How far from its axis the farthest point is that each axis moves, whatever the posture [m]; 1 for one that slides.
+/// How far from its axis the farthest point is that each axis moves, whatever the posture [m]; 1
+/// for one that slides.
 Vector longest_levers(const RobotModel& robot) {
   std::vector<double> extent;
   for (const Link& link : robot.links()) extent.push_back(extent_of(link));
@@ -51,18 +53,22 @@ Vector longest_levers(const RobotModel& robot) {
       if (up < 0) continue;
       const Joint& above = robot.joints()[static_cast<std::size_t>(up)];
       const double parent = from_joint[static_cast<std::size_t>(above.parent)];
-      const double slides = above.kind == JointKind::prismatic ? std::max(std::abs(above.lower), std::abs(above.upper)) : 0;
+      const double slides = above.kind == JointKind::prismatic
+                                ? std::max(std::abs(above.lower), std::abs(above.upper))
+                                : 0;
       if (parent >= 0) from_joint[i] = parent + above.T_parent_joint.translation().norm() + slides;
       if (from_joint[i] >= 0) lever = std::max(lever, from_joint[i] + extent[i]);
     }
-    levers[joint.dof] += std::abs(joint.mimic_factor) * (joint.kind == JointKind::prismatic ? 1.0 : lever);
+    levers[joint.dof] +=
+        std::abs(joint.mimic_factor) * (joint.kind == JointKind::prismatic ? 1.0 : lever);
   }
   return levers;
 }
 
 }  // namespace
 
-MotionCheck::MotionCheck(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest)
+MotionCheck::MotionCheck(const RobotModel& robot, CollisionWorld& world,
+                         const std::vector<int>& axes, const Vector& rest, double finest)
     : robot_(robot),
       world_(world),
       axes_(axes),
@@ -75,7 +81,8 @@ MotionCheck::MotionCheck(const RobotModel& robot, CollisionWorld& world, const s
 }
 
 /// Between its ends an axis is at most a t^2 / 8 off the line between them.
-void MotionCheck::enclose(const SegmentTable& table, const Piece& piece, Vector& low, Vector& high) {
+void MotionCheck::enclose(const SegmentTable& table, const Piece& piece, Vector& low,
+                          Vector& high) {
   const double lasts = piece.end - piece.begin;
   table.evaluate(piece.begin, cursor_, at_begin_);
   table.evaluate(piece.end, cursor_, at_end_);
@@ -105,7 +112,8 @@ void MotionCheck::cut_in_two(const Piece& piece) {
 bool MotionCheck::free(const Trajectory& trajectory, const SegmentTable& table) {
   for (std::size_t i = 0; i < axes_.size(); ++i)
     acceleration_[static_cast<Eigen::Index>(i)] =
-        rate_extremes(trajectory.axes[i].start, trajectory.axes[i].segments.data(), static_cast<int>(trajectory.axes[i].segments.size()))
+        rate_extremes(trajectory.axes[i].start, trajectory.axes[i].segments.data(),
+                      static_cast<int>(trajectory.axes[i].segments.size()))
             .acceleration;
   at_begin_ = at_end_ = trajectory.at(0);
   cursor_ = 0;

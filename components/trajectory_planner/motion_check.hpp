@@ -20,7 +20,8 @@ class MotionCheck {
  public:
   /// `rest`: all axes [rad]; those that the trajectory does not move are there. Sets the moving
   /// axes of the world.
-  MotionCheck(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest = 0.0004);
+  MotionCheck(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes,
+              const Vector& rest, double finest = 0.0004);
 
   /// Returns whether no configuration on the trajectory is in contact. `table`: of the same
   /// trajectory, in the order of the axes given.

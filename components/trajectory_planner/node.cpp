@@ -25,10 +25,12 @@ Node::Node(Bus& bus, const NodeContext& context)
       world_(*context.robot, context.objects),
       cost_(*context.robot, weights_) {
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
-  const auto file = settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
+  const auto file =
+      settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
   settings_.blend_step = file.blend_step;
-  settings_.speed = {file.cost_step,       file.min_speed_factor, file.concern_radius, file.approach_speed,
-                     file.approach_factor, file.unseen_angle,     file.unseen_factor};
+  settings_.speed = {file.cost_step,      file.min_speed_factor, file.concern_radius,
+                     file.approach_speed, file.approach_factor,  file.unseen_angle,
+                     file.unseen_factor};
   settings_.tool.allowed_excess = file.allowed_excess;
   const auto sped = [](RateBounds& bounds, double velocity) {
     const double factor = velocity / bounds.velocity;
@@ -39,12 +41,17 @@ Node::Node(Bus& bus, const NodeContext& context)
   sped(settings_.tool.elbow, file.tool_turn_speed);
   max_scene_age_ = from_seconds(file.max_scene_age);
   check_time_ = from_seconds(file.check_time);
-  bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
-  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
-  bus.subscribe<Costmap>(
-      [this](const Costmap& layer, const Receipt& receipt) { layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival); });
+  bus.subscribe<Scene>(
+      [this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) {
+    people_ = std::make_shared<HumanState>(people);
+  });
+  bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
+    layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
+  });
   bus.every(kLayerWatch, [this](TimePoint now) { bus_.set_degraded(layers_.complaint(now)); });
-  bus.subscribe<TrajectoryRequest>([this](const TrajectoryRequest& request, const Receipt&) { on_request(request); });
+  bus.subscribe<TrajectoryRequest>(
+      [this](const TrajectoryRequest& request, const Receipt&) { on_request(request); });
 }
 
 void Node::on_request(const TrajectoryRequest& request) {
@@ -74,12 +81,14 @@ void Node::refuse(const RequestId& id, const std::string& reason) {
 
 bool Node::drives(const TrajectoryRequest& request) const {
   return on_platform_ && !request.poses.empty() &&
-         std::any_of(request.also.begin(), request.also.end(), [&](std::uint32_t axis) { return static_cast<int>(axis) >= robot_->dof(); });
+         std::any_of(request.also.begin(), request.also.end(),
+                     [&](std::uint32_t axis) { return static_cast<int>(axis) >= robot_->dof(); });
 }
 
 std::string Node::not_ready() const {
   if (!scene_ || bus_.lag<Scene>() > max_scene_age_) return "no current scene is known";
-  if (!people_ || bus_.lag<HumanState>() > max_scene_age_) return "no current state of people is known";
+  if (!people_ || bus_.lag<HumanState>() > max_scene_age_)
+    return "no current state of people is known";
   if (!scene_->robot_known) return "the robot's place is not known yet";
   return {};
 }
@@ -93,14 +102,22 @@ void Node::start(const TrajectoryRequest& request) {
     bool driving;
     Result result;
   };
-  auto work = std::make_shared<Work>(Work{request, *scene_, {*people_, scene_->T_world_base}, layers_.at(bus_.now()), drives(request), {}});
+  auto work = std::make_shared<Work>(Work{request,
+                                          *scene_,
+                                          {*people_, scene_->T_world_base},
+                                          layers_.at(bus_.now()),
+                                          drives(request),
+                                          {}});
   if (work->driving) {
-    if (request.start.size() == robot_->dof()) work->request.start = with_platform(request.start, scene_->T_world_base);
-    work->scene.T_world_base = work->around.T_world_base = make_pose({0, 0, scene_->T_world_base.translation().z()});
+    if (request.start.size() == robot_->dof())
+      work->request.start = with_platform(request.start, scene_->T_world_base);
+    work->scene.T_world_base = work->around.T_world_base =
+        make_pose({0, 0, scene_->T_world_base.translation().z()});
   }
   bus_.run_job(
       [this, work](const CancelToken&) {
-        if (work->driving && !mobile_) mobile_ = std::make_unique<Mobile>(*on_platform_, objects_, weights_);
+        if (work->driving && !mobile_)
+          mobile_ = std::make_unique<Mobile>(*on_platform_, objects_, weights_);
         const RobotModel& robot = work->driving ? *on_platform_ : *robot_;
         CollisionWorld& world = work->driving ? mobile_->world : world_;
         HumanCost& cost = work->driving ? mobile_->cost : cost_;
@@ -110,7 +127,8 @@ void Node::start(const TrajectoryRequest& request) {
         cost.set_people(work->around.people);
         cost.set_layers(work->layers);
         cost.set_base(work->around.T_world_base);
-        if (const Group* group = robot.group(work->request.group)) cost.set_moving_axes(group->axes);
+        if (const Group* group = robot.group(work->request.group))
+          cost.set_moving_axes(group->axes);
         work->result = plan(robot, world, cost, work->around, work->request, settings_);
         return kLeastModelled + check_time_ * static_cast<Duration::rep>(work->result.checks);
       },

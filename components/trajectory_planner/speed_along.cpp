@@ -10,12 +10,14 @@ constexpr double kFades = 0.35;  // from looked at to not looked at [rad]
 
 }  // namespace
 
-SpeedAlong::SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around, const SpeedSettings& settings)
+SpeedAlong::SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around,
+                       const SpeedSettings& settings)
     : robot_(robot),
       cost_(cost),
       settings_(settings),
       T_world_base_(around.T_world_base),
-      tool_(robot.tool_link() >= 0 ? robot.tool_link() : static_cast<int>(robot.links().size()) - 1) {
+      tool_(robot.tool_link() >= 0 ? robot.tool_link()
+                                   : static_cast<int>(robot.links().size()) - 1) {
   for (const Person& person : around.people.people) {
     Someone someone;
     someone.body = simplified_body(person);
@@ -41,10 +43,12 @@ double SpeedAlong::what_people_do(const Vector& q) const {
     double unseen = 1;
     if (someone.sight) {
       const Vector3 sight = tool - someone.sight->eyes;
-      const double angle = std::acos(std::clamp(sight.dot(someone.sight->direction) / std::max(sight.norm(), 1e-9), -1.0, 1.0));
+      const double angle = std::acos(std::clamp(
+          sight.dot(someone.sight->direction) / std::max(sight.norm(), 1e-9), -1.0, 1.0));
       unseen = std::clamp(1 + (angle - settings_.unseen_angle) / kFades, 0.0, 1.0);
     }
-    least = std::min(least, (1 - (1 - settings_.approach_factor) * near * std::clamp(closing / settings_.approach_speed, 0.0, 1.0)) *
+    least = std::min(least, (1 - (1 - settings_.approach_factor) * near *
+                                     std::clamp(closing / settings_.approach_speed, 0.0, 1.0)) *
                                 (1 - (1 - settings_.unseen_factor) * near * unseen));
   }
   return least;
@@ -62,13 +66,16 @@ SpeedAlong::SpeedSample SpeedAlong::at(const Vector& q) const {
 
 std::vector<SpeedAlong::SpeedSample> SpeedAlong::along(const Vector& from, const Vector& to) const {
   const int parts =
-      unconcerned() ? 1 : std::max(1, static_cast<int>(std::ceil((to - from).lpNorm<Eigen::Infinity>() / settings_.cost_step)));
+      unconcerned() ? 1
+                    : std::max(1, static_cast<int>(std::ceil((to - from).lpNorm<Eigen::Infinity>() /
+                                                             settings_.cost_step)));
   std::vector<double> at, cost(static_cast<std::size_t>(parts) + 1);
   for (int k = 0; k <= parts; ++k) at.push_back(static_cast<double>(k) / parts);
   cost_.on_line(from, to, at.data(), parts + 1, cost.data());
   std::vector<SpeedSample> samples;
   for (std::size_t k = 0; k < at.size(); ++k)
-    samples.push_back({at[k], cost[k], unconcerned() ? 1.0 : factor(cost[k], from + at[k] * (to - from))});
+    samples.push_back(
+        {at[k], cost[k], unconcerned() ? 1.0 : factor(cost[k], from + at[k] * (to - from))});
   return samples;
 }
 

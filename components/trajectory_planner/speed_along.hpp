@@ -35,7 +35,8 @@ struct SpeedSettings {
 class SpeedAlong {
  public:
   /// `cost` knows the same people; it, and the robot, must live on.
-  SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around, const SpeedSettings& settings);
+  SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around,
+             const SpeedSettings& settings);
 
   struct SpeedSample {
     double at{};       ///< position on the motion, 0 at its start, 1 at its end

@@ -12,24 +12,29 @@ namespace handsel::trajectory_planner {
 namespace {
 
 std::string why_bad(const RobotModel& robot, const TrajectoryRequest& request) {
-  if (!(request.speed_scale > 0 && request.speed_scale <= 1)) return "speed_scale must be in (0, 1]";
+  if (!(request.speed_scale > 0 && request.speed_scale <= 1))
+    return "speed_scale must be in (0, 1]";
   const Group* group = robot.group(request.group);
   if (group == nullptr) return "the robot has no group \"" + request.group + "\"";
   if (request.start.size() != robot.dof()) {
-    return "the start has " + std::to_string(request.start.size()) + " axes, the robot " + std::to_string(robot.dof());
+    return "the start has " + std::to_string(request.start.size()) + " axes, the robot " +
+           std::to_string(robot.dof());
   }
   if (!request.start.allFinite()) return "the start has a number that is not finite";
   if (!request.follower.empty()) {
     const Group* follower = robot.group(request.follower);
-    if (follower == nullptr || follower->tip < 0) return "the robot has no arm \"" + request.follower + "\" that could follow";
-    if (request.poses.empty()) return "an arm can only follow a motion of the tool, the request is one of joints";
+    if (follower == nullptr || follower->tip < 0)
+      return "the robot has no arm \"" + request.follower + "\" that could follow";
+    if (request.poses.empty())
+      return "an arm can only follow a motion of the tool, the request is one of joints";
   }
-  if (!request.poses.empty()) return group->tip < 0 ? "the group \"" + request.group + "\" has no tip" : std::string{};
+  if (!request.poses.empty())
+    return group->tip < 0 ? "the group \"" + request.group + "\" has no tip" : std::string{};
   if (request.nodes.empty()) return "there are no nodes";
   for (const Vector& node : request.nodes) {
     if (node.size() != static_cast<Eigen::Index>(group->axes.size())) {
-      return "a node has " + std::to_string(node.size()) + " axes, the group \"" + request.group + "\" " +
-             std::to_string(group->axes.size());
+      return "a node has " + std::to_string(node.size()) + " axes, the group \"" + request.group +
+             "\" " + std::to_string(group->axes.size());
     }
   }
   return {};
@@ -37,14 +42,15 @@ std::string why_bad(const RobotModel& robot, const TrajectoryRequest& request) {
 
 KinematicLimits comfort_limits(const RobotModel& robot, const Group& group, double speed_factor) {
   const KinematicLimits& all = robot.comfort_limits();
-  return {RobotModel::part(all.velocity, group) * speed_factor, RobotModel::part(all.acceleration, group),
-          RobotModel::part(all.jerk, group)};
+  return {RobotModel::part(all.velocity, group) * speed_factor,
+          RobotModel::part(all.acceleration, group), RobotModel::part(all.jerk, group)};
 }
 
 /// Judges corners: position limits on the exact extremes, collisions along the way.
 class CornerJudge {
  public:
-  CornerJudge(const RobotModel& robot, const Group& group, CollisionWorld& world, const HumanCost& cost, const Vector& start, double step)
+  CornerJudge(const RobotModel& robot, const Group& group, CollisionWorld& world,
+              const HumanCost& cost, const Vector& start, double step)
       : robot_(robot),
         group_(group),
         cost_(cost),
@@ -70,7 +76,8 @@ class CornerJudge {
     int cursor = 0;
     for (int k = 0; k <= parts; ++k) {
       table.evaluate(table.duration() * k / parts, cursor, state);
-      if (cost_.forbidden(RobotModel::with(start_, group_, state.position)).layer != nullptr) return false;
+      if (cost_.forbidden(RobotModel::with(start_, group_, state.position)).layer != nullptr)
+        return false;
     }
     return true;
   }
@@ -86,12 +93,14 @@ class CornerJudge {
 };
 
 /// Zones of the legs, as far as people are concerned.
-void look_along(const SpeedAlong& people, const TrajectoryRequest& request, const Group& group, Result& result) {
+void look_along(const SpeedAlong& people, const TrajectoryRequest& request, const Group& group,
+                Result& result) {
   if (people.unconcerned()) return;
   for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
     const auto samples = people.along(RobotModel::with(request.start, group, request.nodes[k]),
                                       RobotModel::with(request.start, group, request.nodes[k + 1]));
-    for (const SpeedAlong::SpeedSample& look : samples) result.cost = std::max(result.cost, std::clamp(look.cost, 0.0, 1.0));
+    for (const SpeedAlong::SpeedSample& look : samples)
+      result.cost = std::max(result.cost, std::clamp(look.cost, 0.0, 1.0));
     result.speeds.push_back(SpeedAlong::zones(samples));
   }
 }
@@ -103,13 +112,15 @@ void tell_speeds(const TrajectoryRequest& request, Result& result) {
   speeds = Vector::Ones(static_cast<Eigen::Index>(result.speeds.size()));
   for (std::size_t k = 0; k < result.speeds.size(); ++k)
     for (const SpeedZone& zone : result.speeds[k])
-      speeds[static_cast<Eigen::Index>(k)] = std::min(speeds[static_cast<Eigen::Index>(k)], zone.scale);
+      speeds[static_cast<Eigen::Index>(k)] =
+          std::min(speeds[static_cast<Eigen::Index>(k)], zone.scale);
   result.speed_factor *= speeds.minCoeff();
 }
 
 void tell_stops(const std::vector<BlendReport>& corners, TrajectoryReply& reply) {
   for (const BlendReport& corner : corners)
-    if (corner.method == BlendMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
+    if (corner.method == BlendMethod::stop)
+      reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
 }
 
 /// One request, and what it is planned with.
@@ -121,7 +132,8 @@ struct PlanningCase {
   const Settings& settings;
 };
 
-void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAlong& people, Result& result) {
+void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAlong& people,
+                 Result& result) {
   const auto& [robot, group, world, request, settings] = given;
   look_along(people, request, group, result);
   tell_speeds(request, result);
@@ -140,7 +152,8 @@ void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAl
   reply.trajectory = std::move(smoothed.trajectory);
 }
 
-void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& T_world_base, Result& result) {
+void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& T_world_base,
+               Result& result) {
   const auto& [robot, group, world, request, settings] = given;
   const Pose T_base_world = T_world_base.inverse();
   CartesianRequest wanted;
@@ -149,9 +162,13 @@ void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& 
   wanted.speed_scale = request.speed_scale;
   wanted.people = people.unconcerned() ? nullptr : &people;
   for (const TipNode& node : request.poses)
-    wanted.nodes.push_back({T_base_world * node.T_world_tip, node.has_elbow ? std::optional(node.elbow) : std::nullopt, node.also});
-  if (request.upright) wanted.level = HeldLevel{request.upright_axis, T_base_world.linear() * Vector3::UnitZ(), request.max_tilt};
-  if (!request.follower.empty()) wanted.joined = JoinedArm{robot.group(request.follower), request.T_tip_follower};
+    wanted.nodes.push_back({T_base_world * node.T_world_tip,
+                            node.has_elbow ? std::optional(node.elbow) : std::nullopt, node.also});
+  if (request.upright)
+    wanted.level =
+        HeldLevel{request.upright_axis, T_base_world.linear() * Vector3::UnitZ(), request.max_tilt};
+  if (!request.follower.empty())
+    wanted.joined = JoinedArm{robot.group(request.follower), request.T_tip_follower};
   CartesianMotion motion = plan_cartesian(robot, group, world, wanted, settings.tool);
   TrajectoryReply& reply = result.reply;
   reply.solved = motion.solved;
@@ -163,14 +180,16 @@ void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& 
   result.speeds = std::move(motion.speeds);
   result.cost = motion.cost;
   tell_speeds(request, result);
-  for (BlendReport& corner : motion.corners) corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
+  for (BlendReport& corner : motion.corners)
+    corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
   tell_stops(motion.corners, reply);
 }
 
 }  // namespace
 
-Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Surroundings& around,
-            const TrajectoryRequest& request, const Settings& settings) {
+Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost,
+            const Surroundings& around, const TrajectoryRequest& request,
+            const Settings& settings) {
   Result result;
   result.reply.id = request.id;
   if (!(result.reply.reason = why_bad(robot, request)).empty()) return result;

@@ -30,7 +30,7 @@ struct Result {
 
 /// `world` and `cost` hold scene, people and attachment; `around` the same people. Never throws for
 /// a bad request: the reply says why not, and as far as a motion of the tool goes it is there.
-Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Surroundings& around,
-            const TrajectoryRequest& request, const Settings& settings);
+Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost,
+            const Surroundings& around, const TrajectoryRequest& request, const Settings& settings);
 
 }  // namespace handsel::trajectory_planner

@@ -7,16 +7,19 @@ namespace handsel::drivers {
 
 bool fit(std::initializer_list<const Vector*> vectors, const std::vector<int>& axes) {
   const auto count = static_cast<Eigen::Index>(axes.size());
-  return std::all_of(vectors.begin(), vectors.end(), [count](const Vector* v) { return v->size() == count; });
+  return std::all_of(vectors.begin(), vectors.end(),
+                     [count](const Vector* v) { return v->size() == count; });
 }
 
 void scatter(const Vector& values, const std::vector<int>& axes, Vector& robot) {
-  for (std::size_t i = 0; i < axes.size(); ++i) robot[axes[i]] = values[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    robot[axes[i]] = values[static_cast<Eigen::Index>(i)];
 }
 
 Vector gather(const Vector& robot, const std::vector<int>& axes) {
   Vector values(static_cast<Eigen::Index>(axes.size()));
-  for (std::size_t i = 0; i < axes.size(); ++i) values[static_cast<Eigen::Index>(i)] = robot[axes[i]];
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    values[static_cast<Eigen::Index>(i)] = robot[axes[i]];
   return values;
 }
 
@@ -33,18 +36,22 @@ int CycleCount::passed(std::uint64_t cycle) {
   return static_cast<int>(std::min<std::uint64_t>(since, 20));
 }
 
-DriverCore::DriverCore(const RobotModel& model, std::vector<int> arm_axes, const DriverSettings& settings)
+DriverCore::DriverCore(const RobotModel& model, std::vector<int> arm_axes,
+                       const DriverSettings& settings)
     : model_(model),
       arm_axes_(std::move(arm_axes)),
       settings_(settings),
       side_(model, Vector::Zero(model.dof()), settings.watch),
       reference_(Vector::Zero(model.dof())),
       fading_(arm_axes_.size()) {
-  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque = reference_;
+  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque =
+      reference_;
 }
 
 bool DriverCore::command(const JointCommand& command, double now) {
-  if (!side_known_ || waits_for_person_ || command.position.size() != reference_.size() || !command.position.allFinite()) return false;
+  if (!side_known_ || waits_for_person_ || command.position.size() != reference_.size() ||
+      !command.position.allFinite())
+    return false;
   const bool followed = side_.follows();
   if (!side_.command(command, now)) {
     if (followed && !side_.follows()) why_ = side_.refusal();
@@ -81,14 +88,17 @@ void DriverCore::update(const Measured& measured, double now, double dt) {
   follow_set_points(dt);
 }
 
-/// The wire's clock is not the maker's: a cycle may find one set-point more or less than the one before. What is told now beyond what was
-/// to be expected goes into the difference between reference and set-points, which fades; the reference itself never jumps.
+/// The wire's clock is not the maker's: a cycle may find one set-point more or less than the one
+/// before. What is told now beyond what was to be expected goes into the difference between
+/// reference and set-points, which fades; the reference itself never jumps.
 void DriverCore::follow_set_points(double dt) noexcept {
   const KinematicLimits& guard = model_.guard_limits();
   reference_ = side_.position();
   for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
     const int axis = arm_axes_[i];
-    const double expected = commanded_.position[axis] + dt * (commanded_.velocity[axis] + 0.5 * dt * commanded_.acceleration[axis]);
+    const double expected =
+        commanded_.position[axis] +
+        dt * (commanded_.velocity[axis] + 0.5 * dt * commanded_.acceleration[axis]);
     AxisState off = fading_[i].state();
     off.position += expected - side_.position()[axis];
     AxisLimits limits = limits_of(guard, axis);
@@ -111,7 +121,8 @@ void DriverCore::hold(const std::string& why) {
 void DriverCore::start_from(const Vector& position) noexcept {
   for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
     const int axis = arm_axes_[i];
-    fading_[i] = SetpointFilter({position[axis] - commanded_.position[axis], 0.0, 0.0}, limits_of(model_.guard_limits(), axis));
+    fading_[i] = SetpointFilter({position[axis] - commanded_.position[axis], 0.0, 0.0},
+                                limits_of(model_.guard_limits(), axis));
   }
 }
 
@@ -151,7 +162,8 @@ RobotState DriverCore::state(bool commanding) const {
 
 std::string DriverCore::trouble() const {
   if (following()) return {};
-  if (waits_for_person_ && measured_.mode == DriveMode::enabled) return why_ + "; over, waits for a person's acknowledgement";
+  if (waits_for_person_ && measured_.mode == DriveMode::enabled)
+    return why_ + "; over, waits for a person's acknowledgement";
   return why_;
 }
 

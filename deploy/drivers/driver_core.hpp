@@ -63,7 +63,9 @@ class DriverCore {
 
   const Vector& reference() const { return reference_; }  ///< all axes, for this cycle
   /// Returns true when the maker's controller has reported and set-points are followed.
-  bool following() const { return side_known_ && side_.mode() == DriveMode::enabled && side_.follows(); }
+  bool following() const {
+    return side_known_ && side_.mode() == DriveMode::enabled && side_.follows();
+  }
   /// Returns true from a stop that needs a person until acknowledge().
   bool waits_for_person() const { return waits_for_person_; }
   /// For the wire. `commanding`: the maker's controller follows references right now.

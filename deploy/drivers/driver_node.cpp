@@ -5,9 +5,13 @@
 
 namespace handsel::drivers {
 
-DriverNode::DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<CycleSource> source, std::unique_ptr<Driver> driver,
-                       double cycle)
-    : bus_(bus), context_(context), source_(std::move(source)), driver_(std::move(driver)), state_out_(bus.advertise<RobotState>()) {
+DriverNode::DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<CycleSource> source,
+                       std::unique_ptr<Driver> driver, double cycle)
+    : bus_(bus),
+      context_(context),
+      source_(std::move(source)),
+      driver_(std::move(driver)),
+      state_out_(bus.advertise<RobotState>()) {
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
     if (m.robot != context_.robot->name()) {
       bus_.count_left_out("joint_command: for another robot", 1);

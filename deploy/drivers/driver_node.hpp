@@ -25,7 +25,8 @@ class CycleSource {
 class DriverNode {
  public:
   /// `cycle` of the arm's controller [s].
-  DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<CycleSource> source, std::unique_ptr<Driver> driver, double cycle);
+  DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<CycleSource> source,
+             std::unique_ptr<Driver> driver, double cycle);
   ~DriverNode();
   DriverNode(const DriverNode&) = delete;
   DriverNode& operator=(const DriverNode&) = delete;

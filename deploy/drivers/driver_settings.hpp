@@ -20,8 +20,10 @@ struct Place {
 /// Reads <folder>/position_arm.txtpb, and the period of the set-points from
 /// <folder>/trajectory_controller.txtpb. Returns port and arm axes. Throws ConfigError naming file
 /// and field.
-Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, PositionSettings& out);
+Place load_settings(const std::filesystem::path& folder, const RobotModel& robot,
+                    PositionSettings& out);
 /// The same for reflex_arm.txtpb.
-Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, ReflexSettings& out);
+Place load_settings(const std::filesystem::path& folder, const RobotModel& robot,
+                    ReflexSettings& out);
 
 }  // namespace handsel::drivers

@@ -19,7 +19,8 @@ namespace handsel::drivers {
 
 namespace {
 
-constexpr std::uint32_t kCyclic = 0x48434131, kReflex = 0x48524131, kOrder = 0x484f5231;  // first word of each kind
+constexpr std::uint32_t kCyclic = 0x48434131, kReflex = 0x48524131,
+                        kOrder = 0x484f5231;  // first word of each kind
 constexpr std::uint32_t kMostValues = 32, kMostText = 200;
 
 class Writer {
@@ -142,24 +143,27 @@ sockaddr_in here(std::uint16_t port_in_network_order) {
 
 std::string encode(const CyclicState& s) {
   Writer out;
-  out << kCyclic << s.cycle << s.session << s.safety << s.drives_on << s.brakes_open << s.position << s.velocity << s.torque
-      << s.external_torque << s.interpolated;
+  out << kCyclic << s.cycle << s.session << s.safety << s.drives_on << s.brakes_open << s.position
+      << s.velocity << s.torque << s.external_torque << s.interpolated;
   return out.take();
 }
 
 bool decode(std::string_view datagram, CyclicState& s) {
   Reader in(datagram);
   if (!is(in, kCyclic)) return false;
-  in >> s.cycle >> s.session >> s.safety >> s.drives_on >> s.brakes_open >> s.position >> s.velocity >> s.torque >> s.external_torque >>
-      s.interpolated;
+  in >> s.cycle >> s.session >> s.safety >> s.drives_on >> s.brakes_open >> s.position >>
+      s.velocity >> s.torque >> s.external_torque >> s.interpolated;
   const auto n = s.position.size();
-  return in.done() && s.velocity.size() == n && s.torque.size() == n && s.external_torque.size() == n && s.interpolated.size() == n;
+  return in.done() && s.velocity.size() == n && s.torque.size() == n &&
+         s.external_torque.size() == n && s.interpolated.size() == n;
 }
 
 std::string encode(const ReflexState& s) {
   Writer out;
-  out << kReflex << s.cycle << s.mode << s.powered << s.brakes_open << s.position << s.velocity << s.torque << s.external_torque;
-  for (const Vector3& v : {s.wrist_wrench.force, s.wrist_wrench.torque}) out << v.x() << v.y() << v.z();
+  out << kReflex << s.cycle << s.mode << s.powered << s.brakes_open << s.position << s.velocity
+      << s.torque << s.external_torque;
+  for (const Vector3& v : {s.wrist_wrench.force, s.wrist_wrench.torque})
+    out << v.x() << v.y() << v.z();
   out << s.gripper_width << s.gripper_force << s.error;
   return out.take();
 }
@@ -167,10 +171,12 @@ std::string encode(const ReflexState& s) {
 bool decode(std::string_view datagram, ReflexState& s) {
   Reader in(datagram);
   if (!is(in, kReflex)) return false;
-  in >> s.cycle >> s.mode >> s.powered >> s.brakes_open >> s.position >> s.velocity >> s.torque >> s.external_torque >>
-      s.wrist_wrench.force >> s.wrist_wrench.torque >> s.gripper_width >> s.gripper_force >> s.error;
+  in >> s.cycle >> s.mode >> s.powered >> s.brakes_open >> s.position >> s.velocity >> s.torque >>
+      s.external_torque >> s.wrist_wrench.force >> s.wrist_wrench.torque >> s.gripper_width >>
+      s.gripper_force >> s.error;
   const auto n = s.position.size();
-  return in.done() && s.velocity.size() == n && s.torque.size() == n && s.external_torque.size() == n;
+  return in.done() && s.velocity.size() == n && s.torque.size() == n &&
+         s.external_torque.size() == n;
 }
 
 std::string encode(const Order& order) {
@@ -188,9 +194,12 @@ bool decode(std::string_view datagram, Order& order) {
   return in.done() && (size < 0 || order.values.size() == size);
 }
 
-UdpPort::UdpPort(int port) : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+UdpPort::UdpPort(int port)
+    : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   const sockaddr_in address = here(htons(static_cast<std::uint16_t>(port)));
-  if (socket_ >= 0 && bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
+  if (socket_ >= 0 &&
+      bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
+    return;
   const std::string why = std::strerror(errno);
   if (socket_ >= 0) close(socket_);
   throw MissingError("UDP port " + std::to_string(port) + " cannot be had: " + why);
@@ -216,7 +225,8 @@ bool UdpPort::receive(std::string& datagram) {
   std::array<char, 4096> buffer;
   sockaddr_in from{};
   socklen_t size = sizeof from;
-  const ssize_t n = recvfrom(socket_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+  const ssize_t n =
+      recvfrom(socket_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
   if (n < 0) return false;
   peer_ = from.sin_port;
   datagram.assign(buffer.data(), static_cast<std::size_t>(n));
@@ -230,7 +240,8 @@ void UdpPort::answer(const std::string& datagram) const {
 void UdpPort::send_to(int port, const std::string& datagram) const {
   const sockaddr_in to = here(htons(static_cast<std::uint16_t>(port)));
   // A datagram nobody takes is one lost: both sides live with that.
-  (void)sendto(socket_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  (void)sendto(socket_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+               sizeof to);
 }
 
 bool UdpCyclicLink::receive(CyclicState& out) { return newest(port_, out, cycle_); }
@@ -238,7 +249,9 @@ void UdpCyclicLink::set_load(double mass) { send_order(OrderKind::load, values({
 
 bool UdpReflexLink::read(ReflexState& out) { return newest(port_, out, cycle_); }
 void UdpReflexLink::set_load(double mass) { send_order(OrderKind::load, values({mass})); }
-void UdpReflexLink::gripper_move(double width, double speed) { send_order(OrderKind::gripper_move, values({width, speed})); }
+void UdpReflexLink::gripper_move(double width, double speed) {
+  send_order(OrderKind::gripper_move, values({width, speed}));
+}
 void UdpReflexLink::gripper_grasp(double width, double speed, double force) {
   send_order(OrderKind::gripper_grasp, values({width, speed, force}));
 }

@@ -78,7 +78,9 @@ class UdpCyclicLink : public CyclicLink {
   void set_load(double mass) override;
 
  private:
-  void send_order(OrderKind kind, const Vector& values) const { port_.answer(encode(Order{kind, cycle_, values})); }
+  void send_order(OrderKind kind, const Vector& values) const {
+    port_.answer(encode(Order{kind, cycle_, values}));
+  }
   UdpPort& port_;
   std::uint64_t cycle_{};
 };
@@ -94,7 +96,9 @@ class UdpReflexLink : public ReflexLink {
   void gripper_grasp(double width, double speed, double force) override;
 
  private:
-  void send_order(OrderKind kind, const Vector& values) const { port_.answer(encode(Order{kind, cycle_, values})); }
+  void send_order(OrderKind kind, const Vector& values) const {
+    port_.answer(encode(Order{kind, cycle_, values}));
+  }
   UdpPort& port_;
   std::uint64_t cycle_{};
 };

@@ -22,22 +22,28 @@ void judge(const CyclicState& s, bool lost, Measured& out) {
     out.why = "the brakes are closed";
   } else {
     out.by_person = false;
-    out.mode = !lost && s.session >= Session::monitoring_ready ? DriveMode::enabled : DriveMode::braked;
-    out.why = lost ? "the arm's controller is silent" : "the arm's controller is not ready for commands";
+    out.mode =
+        !lost && s.session >= Session::monitoring_ready ? DriveMode::enabled : DriveMode::braked;
+    out.why =
+        lost ? "the arm's controller is silent" : "the arm's controller is not ready for commands";
   }
 }
 
 }  // namespace
 
-PositionArm::PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle, CyclicLink& link, const DriverSettings& settings)
+PositionArm::PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle,
+                         CyclicLink& link, const DriverSettings& settings)
     : cycle_(cycle), link_(link), core_(model, std::move(arm_axes), settings) {
-  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque = Vector::Zero(model.dof());
+  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque =
+      Vector::Zero(model.dof());
 }
 
 void PositionArm::cycle(double now) {
   CyclicState s;
   // A state of another arm counts as none.
-  const bool came = link_.receive(s) && fit({&s.position, &s.velocity, &s.torque, &s.external_torque, &s.interpolated}, core_.arm_axes());
+  const bool came = link_.receive(s) &&
+                    fit({&s.position, &s.velocity, &s.torque, &s.external_torque, &s.interpolated},
+                        core_.arm_axes());
   if (came) {
     missed_in_a_row_ = 0;
     last_ = s;
@@ -51,8 +57,10 @@ void PositionArm::cycle(double now) {
   if (!came && !lost) return;  // ridden out: the next one says how many cycles have passed
   const double dt = came ? cycle_ * count_.passed(s.cycle) : cycle_;
   // The arm left commanding by itself: the references start again from where it stands.
-  const bool dropped = session_ == Session::commanding_active && (lost || s.session < Session::commanding_active);
-  const bool starts = !lost && session_ == Session::commanding_wait && s.session == Session::commanding_active;
+  const bool dropped =
+      session_ == Session::commanding_active && (lost || s.session < Session::commanding_active);
+  const bool starts =
+      !lost && session_ == Session::commanding_wait && s.session == Session::commanding_active;
   session_ = lost ? Session::idle : s.session;
   judge(s, lost, measured_);
   const std::vector<int>& axes = core_.arm_axes();
@@ -63,7 +71,8 @@ void PositionArm::cycle(double now) {
   scatter(s.external_torque, axes, measured_.external_torque);
   if (starts) core_.start_from(measured_.position);
   core_.update(measured_, now, dt);
-  if (dropped && measured_.mode == DriveMode::enabled) core_.hold("the arm's controller ended the commanding session");
+  if (dropped && measured_.mode == DriveMode::enabled)
+    core_.hold("the arm's controller ended the commanding session");
   if (!came || core_.settings().dry_run) return;
   if (session_ == Session::monitoring_ready && core_.following()) link_.request_commanding();
   if (session_ == Session::commanding_wait) link_.answer(s.interpolated);
@@ -76,8 +85,11 @@ void PositionArm::set_load(double mass) {
 }
 
 std::string PositionArm::trouble() const {
-  if (!core_.trouble().empty() || core_.settings().dry_run || session_ == Session::commanding_active) return core_.trouble();
-  return last_.position.size() == 0 ? "nothing was received from the arm's controller yet" : "the commanding session is being negotiated";
+  if (!core_.trouble().empty() || core_.settings().dry_run ||
+      session_ == Session::commanding_active)
+    return core_.trouble();
+  return last_.position.size() == 0 ? "nothing was received from the arm's controller yet"
+                                    : "the commanding session is being negotiated";
 }
 
 }  // namespace handsel::drivers

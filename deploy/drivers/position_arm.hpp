@@ -8,15 +8,21 @@
 namespace handsel::drivers {
 
 /// Ordered: further down means more is possible.
-enum class Session : std::uint8_t { idle, monitoring, monitoring_ready, commanding_wait, commanding_active };
+enum class Session : std::uint8_t {
+  idle,
+  monitoring,
+  monitoring_ready,
+  commanding_wait,
+  commanding_active
+};
 enum class Safety : std::uint8_t { clear, user_stop, emergency_stop };
 
 /// What the arm's controller sends at the beginning of a cycle; arm axes only.
 struct CyclicState {
-  std::uint64_t cycle{};                               ///< number of the arm's cycle: a gap shows missed states
-  Session session{Session::idle};                      ///< what commands the controller accepts
-  Safety safety{Safety::clear};                        ///< stop that is in force; clear: none
-  bool drives_on{}, brakes_open{};                     ///< motion needs both
+  std::uint64_t cycle{};            ///< number of the arm's cycle: a gap shows missed states
+  Session session{Session::idle};   ///< what commands the controller accepts
+  Safety safety{Safety::clear};     ///< stop that is in force; clear: none
+  bool drives_on{}, brakes_open{};  ///< motion needs both
   Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm]
   /// Position of its own interpolator [rad]: the required answer in commanding_wait.
   Vector interpolated;
@@ -39,7 +45,8 @@ class PositionArm : public Driver {
  public:
   /// `cycle` of the arm's controller [s]; `arm_axes`: robot axes in the order of the arm's
   /// controller.
-  PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle, CyclicLink& link, const DriverSettings& settings);
+  PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle, CyclicLink& link,
+              const DriverSettings& settings);
 
   void cycle(double now) override;
   void acknowledge() override { core_.acknowledge(); }
@@ -49,7 +56,9 @@ class PositionArm : public Driver {
   std::uint64_t missed() const { return missed_; }  ///< cycles without a message
 
  protected:
-  bool follow(const JointCommand& command, double now) override { return core_.command(command, now); }
+  bool follow(const JointCommand& command, double now) override {
+    return core_.command(command, now);
+  }
   void set_load(double mass) override;
 
  private:

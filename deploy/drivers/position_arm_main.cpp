@@ -9,8 +9,10 @@ int main(int argc, char** argv) {
     PositionSettings settings;
     const Place place = load_settings(context.settings, *context.robot, settings);
     auto source = std::make_unique<UdpSource<UdpCyclicLink>>(place.port);
-    auto arm = std::make_unique<PositionArm>(*context.robot, place.axes, settings.cycle, source->link, settings.common);
-    return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm), settings.cycle);
+    auto arm = std::make_unique<PositionArm>(*context.robot, place.axes, settings.cycle,
+                                             source->link, settings.common);
+    return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm),
+                                        settings.cycle);
   };
   return run_process(argc, argv, "driver", make, Urgency::control);
 }

@@ -14,23 +14,29 @@ double velocity_toward_end(double position, double end, double max_velocity, dou
   return std::min(max_velocity, std::sqrt(2.0 * deceleration * std::max(0.0, end - position)));
 }
 
-ReflexArm::ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link, const ReflexSettings& settings)
+ReflexArm::ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link,
+                     const ReflexSettings& settings)
     : link_(link), settings_(settings), core_(model, std::move(arm_axes), settings.common) {
-  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque = Vector::Zero(model.dof());
+  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque =
+      Vector::Zero(model.dof());
 }
 
 bool ReflexArm::follow(const JointCommand& command, double now) {
   const RobotModel& model = core_.model();
-  if (core_.following() && command.position.size() == model.dof() && command.velocity.size() == model.dof()) {
+  if (core_.following() && command.position.size() == model.dof() &&
+      command.velocity.size() == model.dof()) {
     for (int axis : core_.arm_axes()) {
       const Axis& bounds = model.axes()[static_cast<std::size_t>(axis)];
-      const double q = command.position[axis], v = command.velocity[axis], max_velocity = model.guard_limits().velocity[axis];
+      const double q = command.position[axis], v = command.velocity[axis],
+                   max_velocity = model.guard_limits().velocity[axis];
       const double allowed =
-          settings_.limit_ratio * (v > 0 ? velocity_toward_end(q, bounds.upper, max_velocity, settings_.joint_deceleration)
-                                         : velocity_toward_end(-q, -bounds.lower, max_velocity, settings_.joint_deceleration));
+          settings_.limit_ratio *
+          (v > 0 ? velocity_toward_end(q, bounds.upper, max_velocity, settings_.joint_deceleration)
+                 : velocity_toward_end(-q, -bounds.lower, max_velocity,
+                                       settings_.joint_deceleration));
       if (std::abs(v) <= allowed + 1e-6) continue;
-      core_.stop("axis " + bounds.name + " at " + std::to_string(q) + " rad may move at " + std::to_string(allowed) + " rad/s, not at " +
-                 std::to_string(v));
+      core_.stop("axis " + bounds.name + " at " + std::to_string(q) + " rad may move at " +
+                 std::to_string(allowed) + " rad/s, not at " + std::to_string(v));
       return false;
     }
   }
@@ -64,10 +70,12 @@ void ReflexArm::update_mode() {
 
 void ReflexArm::cycle(double now) {
   ReflexState& s = received_;
-  const bool came = link_.read(s) && fit({&s.position, &s.velocity, &s.torque, &s.external_torque}, core_.arm_axes());
+  const bool came = link_.read(s) && fit({&s.position, &s.velocity, &s.torque, &s.external_torque},
+                                         core_.arm_axes());
   if (came) std::swap(state_, received_);  // a state of another arm counts as none
   lost_ = came ? 0 : lost_ + 1;
-  if (state_.position.size() == 0 || (lost_ > 0 && lost_ < settings_.lost_cycles)) return;  // ridden out
+  if (state_.position.size() == 0 || (lost_ > 0 && lost_ < settings_.lost_cycles))
+    return;  // ridden out
   const double dt = lost_ == 0 ? kCycle * count_.passed(state_.cycle) : kCycle;
   const std::vector<int>& axes = core_.arm_axes();
   measured_.position = core_.reference();
@@ -78,7 +86,9 @@ void ReflexArm::cycle(double now) {
   scatter(state_.external_torque, axes, measured_.external_torque);
   const GripperSettings& g = settings_.gripper;
   if (g.axis >= 0) {
-    measured_.position[g.axis] = g.closed + (state_.gripper_width - g.closed_width) / (g.open_width - g.closed_width) * (g.open - g.closed);
+    measured_.position[g.axis] = g.closed + (state_.gripper_width - g.closed_width) /
+                                                (g.open_width - g.closed_width) *
+                                                (g.open - g.closed);
     measured_.effort[g.axis] = state_.gripper_force;
   }
   update_mode();
@@ -104,7 +114,8 @@ void ReflexArm::acknowledge() {
 
 double ReflexArm::width_of(double position) const {
   const GripperSettings& g = settings_.gripper;
-  return std::clamp(g.closed_width + (position - g.closed) / (g.open - g.closed) * (g.open_width - g.closed_width),
+  return std::clamp(g.closed_width + (position - g.closed) / (g.open - g.closed) *
+                                         (g.open_width - g.closed_width),
                     std::min(g.closed_width, g.open_width), std::max(g.closed_width, g.open_width));
 }
 
@@ -116,7 +127,8 @@ void ReflexArm::drive_gripper() {
   const double force = std::clamp(g.stiffness * beyond, g.min_force, g.max_force);
   const bool closing = beyond > kWidthStep;
   const bool new_width = std::abs(wanted - commanded_width_) > kWidthStep;
-  if (!new_width && !(closing && std::abs(force - commanded_force_) > 0.1 * commanded_force_)) return;
+  if (!new_width && !(closing && std::abs(force - commanded_force_) > 0.1 * commanded_force_))
+    return;
   gripper_wait_ = 0;
   commanded_width_ = wanted;
   commanded_force_ = closing ? force : 0.0;

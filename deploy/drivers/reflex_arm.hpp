@@ -12,9 +12,9 @@ enum class ArmMode : std::uint8_t { idle, moving, reflex, user_stopped, emergenc
 
 /// What the arm's controller says each cycle; arm axes only.
 struct ReflexState {
-  std::uint64_t cycle{};                               ///< number of the arm's cycle: a gap shows missed states
-  ArmMode mode{ArmMode::idle};                         ///< of the arm's controller
-  bool powered{true}, brakes_open{true};               ///< motion needs both
+  std::uint64_t cycle{};                  ///< number of the arm's cycle: a gap shows missed states
+  ArmMode mode{ArmMode::idle};            ///< of the arm's controller
+  bool powered{true}, brakes_open{true};  ///< motion needs both
   Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm, Nm]
   Wrench wrist_wrench;                                 ///< on the hand with its load, tool frame
   double gripper_width{};                              ///< between the fingers [m]
@@ -28,10 +28,10 @@ class ReflexLink {
   virtual ~ReflexLink() = default;
   /// The newest state; false when this cycle's did not come.
   virtual bool read(ReflexState& out) = 0;
-  virtual void move_to(const Vector& position) = 0;                          ///< for this cycle
-  virtual void recover() = 0;                                                ///< from a reflex
-  virtual void set_load(double mass) = 0;                                    ///< [kg]
-  virtual void gripper_move(double width, double speed) = 0;                 ///< without force [m, m/s]
+  virtual void move_to(const Vector& position) = 0;           ///< for this cycle
+  virtual void recover() = 0;                                 ///< from a reflex
+  virtual void set_load(double mass) = 0;                     ///< [kg]
+  virtual void gripper_move(double width, double speed) = 0;  ///< without force [m, m/s]
   virtual void gripper_grasp(double width, double speed, double force) = 0;  ///< [m, m/s, N]
 };
 
@@ -41,8 +41,8 @@ struct GripperSettings {
   double open{}, closed{};                     ///< axis positions of the widths below
   double open_width{0.08}, closed_width{0.0};  ///< [m]
   double speed{0.1};                           ///< [m/s]
-  double stiffness{400.0};                     ///< force for a set-point beyond the measured position [N/m of width]
-  double min_force{5.0}, max_force{40.0};      ///< [N]
+  double stiffness{400.0};  ///< force for a set-point beyond the measured position [N/m of width]
+  double min_force{5.0}, max_force{40.0};  ///< [N]
 };
 
 struct ReflexSettings {
@@ -54,22 +54,24 @@ struct ReflexSettings {
   int lost_cycles{20};       ///< so many without a state: the arm's controller is silent
 };
 
-/// Returns the largest speed allowed at `position` toward `end`: the smaller of `max_velocity` and the
-/// speed from which `deceleration` stops at `end` [rad/s]; 0 at `end` and beyond.
+/// Returns the largest speed allowed at `position` toward `end`: the smaller of `max_velocity` and
+/// the speed from which `deceleration` stops at `end` [rad/s]; 0 at `end` and beyond.
 double velocity_toward_end(double position, double end, double max_velocity, double deceleration);
 
 class ReflexArm : public Driver {
  public:
   static constexpr double kCycle = 0.001;  ///< of the arm's controller [s]
 
-  ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link, const ReflexSettings& settings);
+  ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link,
+            const ReflexSettings& settings);
 
   void cycle(double now) override;
   /// Recovers from a reflex too: never by itself.
   void acknowledge() override;
   RobotState state() const override { return core_.state(commanding_); }
   std::string trouble() const override {
-    return state_.position.size() == 0 ? "nothing was received from the arm's controller yet" : core_.trouble();
+    return state_.position.size() == 0 ? "nothing was received from the arm's controller yet"
+                                       : core_.trouble();
   }
   const DriverCore& core() const override { return core_; }
 

@@ -10,7 +10,8 @@ int main(int argc, char** argv) {
     const Place place = load_settings(context.settings, *context.robot, settings);
     auto source = std::make_unique<UdpSource<UdpReflexLink>>(place.port);
     auto arm = std::make_unique<ReflexArm>(*context.robot, place.axes, source->link, settings);
-    return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm), ReflexArm::kCycle);
+    return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm),
+                                        ReflexArm::kCycle);
   };
   return run_process(argc, argv, "driver", make, Urgency::control);
 }

@@ -15,8 +15,11 @@ void require_known(const CLI::App& app, int argc, char** argv) {
     const std::string word = argv[i];
     const auto all = command->get_subcommands([](const CLI::App*) { return true; });
     if (all.empty()) return;
-    const auto found = command->get_subcommands([&](const CLI::App* candidate) { return candidate->get_name() == word; });
-    if (found.empty()) throw handsel::ConfigError("there is no command \"" + word + "\" here; --help names those there are");
+    const auto found = command->get_subcommands(
+        [&](const CLI::App* candidate) { return candidate->get_name() == word; });
+    if (found.empty())
+      throw handsel::ConfigError("there is no command \"" + word +
+                                 "\" here; --help names those there are");
     command = found.front();
   }
 }
@@ -24,7 +27,9 @@ void require_known(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Handsel lets a robot arm hand things to people. `handsel COMMAND --help` explains a command."};
+  CLI::App app{
+      "Handsel lets a robot arm hand things to people. `handsel COMMAND --help` explains a "
+      "command."};
   app.name("handsel");
   app.require_subcommand(1);
   app.set_version_flag("--version", handsel::version_text);

@@ -17,15 +17,19 @@ void HandoverOracle::observe(const ObjectSituation& now, double dt) {
     contact_ = now.human_touches ? contact_ + dt : 0;
     contact_before_release_ = contact_;
   }
-  const bool alone = now.human_grips && !now.robot_grips && !now.robot_touches && !now.on_surface && !now.on_floor;
+  const bool alone =
+      now.human_grips && !now.robot_grips && !now.robot_touches && !now.on_surface && !now.on_floor;
   alone_ = alone ? alone_ + dt : 0;
-  const bool robot_alone = now.robot_grips && !now.human_grips && !now.human_touches && !now.on_surface && !now.on_floor;
+  const bool robot_alone =
+      now.robot_grips && !now.human_grips && !now.human_touches && !now.on_surface && !now.on_floor;
   robot_alone_ = robot_alone ? robot_alone_ + dt : 0;
-  const bool both = from_person_ ? now.human_grips && now.robot_touches : now.robot_grips && now.human_touches;
+  const bool both =
+      from_person_ ? now.human_grips && now.robot_touches : now.robot_grips && now.human_touches;
   shared_ += both ? dt : 0;
   held_by_both_ += now.robot_grips && now.human_grips ? dt : 0;
   dropped_ = dropped_ || now.on_floor;
-  const bool given = max_lifted_ >= kLifted && contact_before_release_ >= kShared && alone_ >= kAlone - 1e-9;
+  const bool given =
+      max_lifted_ >= kLifted && contact_before_release_ >= kShared && alone_ >= kAlone - 1e-9;
   const bool taken = held_by_both_ >= kShared - 1e-9 && robot_alone_ >= kAlone - 1e-9;
   done_ = done_ || (!dropped_ && (from_person_ ? taken : given));
   last_ = now;

@@ -18,7 +18,8 @@ class HandoverOracle {
  public:
   /// `from_person`: a person has the object at the start; the handover is then the robot's taking
   /// of it.
-  HandoverOracle(double start_height, bool from_person) : from_person_(from_person), start_height_(start_height) {}
+  HandoverOracle(double start_height, bool from_person)
+      : from_person_(from_person), start_height_(start_height) {}
 
   /// Takes in one physics step of length dt [s].
   void observe(const ObjectSituation&, double dt);
@@ -33,8 +34,8 @@ class HandoverOracle {
 
  private:
   bool from_person_;
-  double start_height_, height_{0}, max_lifted_{0}, contact_{0}, contact_before_release_{0}, alone_{0}, shared_{0}, held_by_both_{0},
-      robot_alone_{0};
+  double start_height_, height_{0}, max_lifted_{0}, contact_{0}, contact_before_release_{0},
+      alone_{0}, shared_{0}, held_by_both_{0}, robot_alone_{0};
   bool dropped_{false}, done_{false};
   ObjectSituation last_;
 };

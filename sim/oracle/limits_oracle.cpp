@@ -13,15 +13,18 @@ constexpr double kRestartJump = 0.05;  // from the robot's posture [rad]
 constexpr std::size_t kLearn = 100, kLearnAtMost = 3200;
 constexpr std::array kUsual{0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020};
 
-/// The usual period that most intervals are near, if more than half are, or `any`; 0: none. A busy machine leaves out cycles and delays
-/// others, which moves a mean but not where most intervals are.
+/// The usual period that most intervals are near, if more than half are, or `any`; 0: none. A busy
+/// machine leaves out cycles and delays others, which moves a mean but not where most intervals
+/// are.
 double period_of(const std::vector<LimitsOracle::Held>& stream, bool any) {
   std::array<std::size_t, kUsual.size()> votes{};
   for (std::size_t i = 1; i < stream.size(); ++i) {
     if (!stream[i].continues) continue;
     const double interval =
-        (stream[i].time - stream[i - 1].time) / static_cast<double>(stream[i].command.sequence - stream[i - 1].command.sequence);
-    for (std::size_t k = 0; k < kUsual.size(); ++k) votes[k] += std::abs(interval - kUsual[k]) < 0.1 * kUsual[k];
+        (stream[i].time - stream[i - 1].time) /
+        static_cast<double>(stream[i].command.sequence - stream[i - 1].command.sequence);
+    for (std::size_t k = 0; k < kUsual.size(); ++k)
+      votes[k] += std::abs(interval - kUsual[k]) < 0.1 * kUsual[k];
   }
   const auto most = std::max_element(votes.begin(), votes.end());
   if (*most == 0 || (!any && 2 * *most < stream.size())) return 0;
@@ -31,11 +34,15 @@ double period_of(const std::vector<LimitsOracle::Held>& stream, bool any) {
 }  // namespace
 
 LimitsOracle::LimitsOracle(const RobotModel& model, double restart_after, double period)
-    : model_(model), limits_(model.guard_limits()), restart_after_(restart_after), period_(period) {}
+    : model_(model),
+      limits_(model.guard_limits()),
+      restart_after_(restart_after),
+      period_(period) {}
 
 void LimitsOracle::violated(const char* what, Eigen::Index axis, double value, double bound) {
   bad_ = true;
-  last_ = std::string(what) + " of " + model_.axes()[axis].name + ": " + std::to_string(value) + " beyond " + std::to_string(bound);
+  last_ = std::string(what) + " of " + model_.axes()[axis].name + ": " + std::to_string(value) +
+          " beyond " + std::to_string(bound);
 }
 
 void LimitsOracle::check_bounds(const JointCommand& c) {
@@ -44,9 +51,11 @@ void LimitsOracle::check_bounds(const JointCommand& c) {
     ratios_[0] = std::max(ratios_[0], v / limits_.velocity[i]);
     ratios_[1] = std::max(ratios_[1], a / limits_.acceleration[i]);
     if (v > limits_.velocity[i] * (1 + kTolerance)) violated("velocity", i, v, limits_.velocity[i]);
-    if (a > limits_.acceleration[i] * (1 + kTolerance)) violated("acceleration", i, a, limits_.acceleration[i]);
+    if (a > limits_.acceleration[i] * (1 + kTolerance))
+      violated("acceleration", i, a, limits_.acceleration[i]);
     const Axis& axis = model_.axes()[i];
-    if (axis.lower < axis.upper && (c.position[i] < axis.lower - kTolerance || c.position[i] > axis.upper + kTolerance)) {
+    if (axis.lower < axis.upper &&
+        (c.position[i] < axis.lower - kTolerance || c.position[i] > axis.upper + kTolerance)) {
       violated("position", i, c.position[i], c.position[i] < axis.lower ? axis.lower : axis.upper);
     }
   }
@@ -61,7 +70,8 @@ void LimitsOracle::check_step(const JointCommand& from, const JointCommand& to, 
     const double J = limits_.jerk[i];
     const double da = std::abs(to.acceleration[i] - from.acceleration[i]);
     const double dv = std::abs(to.velocity[i] - from.velocity[i] - from.acceleration[i] * t);
-    const double dp = std::abs(to.position[i] - from.position[i] - from.velocity[i] * t - from.acceleration[i] * t * t / 2);
+    const double dp = std::abs(to.position[i] - from.position[i] - from.velocity[i] * t -
+                               from.acceleration[i] * t * t / 2);
     const double share = std::max(da / (J * t), dv / (J * t * t / 2));
     ratios_[2] = std::max(ratios_[2], share);
     if (share > 1 + kTolerance) violated("jerk", i, share * J, J);
@@ -81,12 +91,15 @@ void LimitsOracle::check_change(const JointCommand& from, const JointCommand& to
     const auto moved = [&](double t) { return v0 * t + a0 * t * t / 2; };
     const double turn = a0 != 0 ? std::clamp(-v0 / a0, 0.0, T) : 0.0;
     const auto [least, greatest] = std::minmax({0.0, moved(turn), moved(T)});
-    const double dp = to.position[i] - from.position[i], dp_room = J * T * T * T / 6 * (1 + kTolerance) + kRounding;
-    if (dp < least - dp_room || dp > greatest + dp_room) violated("position step at a change", i, dp, greatest + dp_room);
+    const double dp = to.position[i] - from.position[i],
+                 dp_room = J * T * T * T / 6 * (1 + kTolerance) + kRounding;
+    if (dp < least - dp_room || dp > greatest + dp_room)
+      violated("position step at a change", i, dp, greatest + dp_room);
   }
 }
 
-void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, double now, const Vector& actual, const Vector& held) {
+void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, double now,
+                           const Vector& actual, const Vector& held) {
   if (command.position.size() != actual.size() || command.velocity.size() != actual.size() ||
       command.acceleration.size() != actual.size()) {
     return;
@@ -107,18 +120,22 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
       if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
     }
   } else if (!continues) {
-    check_change(previous_, command, std::max(0.0, silence) + (period_ > 0 ? period_ : kUsual.back()));
+    check_change(previous_, command,
+                 std::max(0.0, silence) + (period_ > 0 ? period_ : kUsual.back()));
   }
   if (period_ > 0) {
     if (continues) check_step(previous_, command, between(previous_, command));
   } else {
     if (starts) waiting_.clear();
-    waiting_.push_back({command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now, continues});
-    if (waiting_.size() % kLearn == 0) period_ = period_of(waiting_, waiting_.size() >= kLearnAtMost);
+    waiting_.push_back(
+        {command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now, continues});
+    if (waiting_.size() % kLearn == 0)
+      period_ = period_of(waiting_, waiting_.size() >= kLearnAtMost);
     if (period_ > 0) {
       for (std::size_t i = 1; i < waiting_.size(); ++i)
         if (waiting_[i].continues)
-          check_step(waiting_[i - 1].command, waiting_[i].command, between(waiting_[i - 1].command, waiting_[i].command));
+          check_step(waiting_[i - 1].command, waiting_[i].command,
+                     between(waiting_[i - 1].command, waiting_[i].command));
       waiting_.clear();
       waiting_.shrink_to_fit();
     }

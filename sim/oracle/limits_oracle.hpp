@@ -34,13 +34,16 @@ class LimitsOracle {
 
   /// Checks a set-point that arrives at `now` [s]; one without values for all axes is ignored.
   /// `actual`: measured positions; `held`: what the servos hold; all axes.
-  void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual, const Vector& held);
+  void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual,
+               const Vector& held);
   /// Checks a set-point where the servos hold the measured positions.
-  void observe(const JointCommand& c, std::uint64_t writer, double now, const Vector& actual) { observe(c, writer, now, actual, actual); }
+  void observe(const JointCommand& c, std::uint64_t writer, double now, const Vector& actual) {
+    observe(c, writer, now, actual, actual);
+  }
 
   double ratio_velocity() const { return ratios_[0]; }      ///< largest |velocity| / limit so far
   double ratio_acceleration() const { return ratios_[1]; }  ///< the same of the acceleration
-  double ratio_jerk() const { return ratios_[2]; }          ///< the same of the jerk between set-points
+  double ratio_jerk() const { return ratios_[2]; }  ///< the same of the jerk between set-points
   /// Set-points that broke a bound by more than 1e-6 of it.
   std::uint64_t violations() const { return violations_; }
   const std::string& last_violation() const { return last_; }  ///< one sentence; empty: none

@@ -14,7 +14,9 @@ struct Corners {
   std::vector<Vector3>& out;
   const Pose& T;
   void box(const Vector3& h) const {
-    for (int i = 0; i < 8; ++i) out.push_back(T * Vector3((i & 1) ? h.x() : -h.x(), (i & 2) ? h.y() : -h.y(), (i & 4) ? h.z() : -h.z()));
+    for (int i = 0; i < 8; ++i)
+      out.push_back(T * Vector3((i & 1) ? h.x() : -h.x(), (i & 2) ? h.y() : -h.y(),
+                                (i & 4) ? h.z() : -h.z()));
   }
   void operator()(const Sphere& s) const { box(Vector3::Constant(s.radius)); }
   void operator()(const Box& b) const { box(b.size / 2); }
@@ -25,7 +27,8 @@ struct Corners {
   }
 };
 
-double closest(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1, double& s, double& t) {
+double closest(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1,
+               double& s, double& t) {
   const Vector3 u = p1 - p0, v = q1 - q0, w = p0 - q0;
   const double a = u.squaredNorm(), b = u.dot(v), c = v.squaredNorm(), d = u.dot(w), e = v.dot(w);
   const double det = a * c - b * b;
@@ -60,7 +63,8 @@ void PeakSpeed::add(double speed) noexcept {
   peak_ = std::max(peak_, sorted[2]);
 }
 
-SeparationOracle::SeparationOracle(const RobotModel& model, const SsmSettings& settings) : settings_(settings), stop_(model.stop_limits()) {
+SeparationOracle::SeparationOracle(const RobotModel& model, const SsmSettings& settings)
+    : settings_(settings), stop_(model.stop_limits()) {
   for (int l = 0; l < static_cast<int>(model.links().size()); ++l) {
     for (const PlacedShape& part : model.links()[l].collision) {
       std::vector<Vector3> points;
@@ -71,7 +75,8 @@ SeparationOracle::SeparationOracle(const RobotModel& model, const SsmSettings& s
       mean /= static_cast<double>(points.size());
       Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
       for (const Vector3& p : points) spread += (p - mean) * (p - mean).transpose();
-      const Vector3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+      const Vector3 axis =
+          Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
       LinkVolume volume;
       volume.link = l;
       double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -80,7 +85,8 @@ SeparationOracle::SeparationOracle(const RobotModel& model, const SsmSettings& s
         low = std::min(low, along), high = std::max(high, along);
         volume.radius = std::max(volume.radius, (p - mean - along * axis).norm());
       }
-      const double middle = (low + high) / 2, half = std::max(0.0, (high - low) / 2 - volume.radius * 0.5);
+      const double middle = (low + high) / 2,
+                   half = std::max(0.0, (high - low) / 2 - volume.radius * 0.5);
       volume.a = mean + (middle - half) * axis;
       volume.b = mean + (middle + half) * axis;
       for (const Vector3& p : points) {
@@ -93,14 +99,16 @@ SeparationOracle::SeparationOracle(const RobotModel& model, const SsmSettings& s
   }
 }
 
-TrueSeparation SeparationOracle::separation(const RobotBody& robot, const std::vector<PersonVolume>& people) const {
+TrueSeparation SeparationOracle::separation(const RobotBody& robot,
+                                            const std::vector<PersonVolume>& people) const {
   TrueSeparation best;
   best.distance = std::numeric_limits<double>::infinity();
   for (const PersonVolume& volume : people) {
     const std::vector<BodyCapsule> body = body_capsules(*volume.person);
     // What a sphere about each part leaves no hope for is passed over.
     std::vector<std::pair<Vector3, double>> spheres;
-    for (const BodyCapsule& part : body) spheres.emplace_back((part.a + part.b) / 2, (part.b - part.a).norm() / 2 + part.radius);
+    for (const BodyCapsule& part : body)
+      spheres.emplace_back((part.a + part.b) / 2, (part.b - part.a).norm() / 2 + part.radius);
     for (const LinkVolume& link : volumes_) {
       const Pose& T = robot.T_world_link(link.link);
       const Vector3 a = T * link.a, b = T * link.b, middle = (a + b) / 2;
@@ -108,7 +116,8 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot, const std::v
         const BodyCapsule& part = body[i];
         if (volume.exception && exchanging_part(part.part, volume.side)) continue;
         const double hopeless = best.distance + link.bound + spheres[i].second;
-        if (hopeless < 0 || (middle - spheres[i].first).squaredNorm() >= hopeless * hopeless) continue;
+        if (hopeless < 0 || (middle - spheres[i].first).squaredNorm() >= hopeless * hopeless)
+          continue;
         double s = 0, t = 0;
         const double d = closest(a, b, part.a, part.b, s, t) - link.radius - part.radius;
         if (d >= best.distance) continue;
@@ -125,7 +134,8 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot, const std::v
   return best;
 }
 
-void SeparationOracle::stop_measure(double v, double a, double A, double J, double& time, double& distance) {
+void SeparationOracle::stop_measure(double v, double a, double A, double J, double& time,
+                                    double& distance) {
   time = distance = 0;
   const auto go = [&](double duration, double jerk) {
     distance += duration * (v + duration * (a / 2 + duration * jerk / 6));
@@ -134,8 +144,9 @@ void SeparationOracle::stop_measure(double v, double a, double A, double J, doub
     time += duration;
   };
   if (std::abs(a) > A) go((std::abs(a) - A) / J, a > 0 ? -J : J);
-  const double v_left = v + a * std::abs(a) / (2 * J);  // speed once the acceleration is taken away at once
-  const double sign = v_left > 0 ? -1 : 1;              // direction of the braking lobe
+  const double v_left =
+      v + a * std::abs(a) / (2 * J);        // speed once the acceleration is taken away at once
+  const double sign = v_left > 0 ? -1 : 1;  // direction of the braking lobe
   // In mirrored coordinates (braking upward): from a to a1, hold, back to zero, gaining -v.
   const double a_m = sign * a, need = -sign * v;
   const double peak = std::sqrt(std::max(0.0, J * need + a_m * a_m / 2));
@@ -147,9 +158,11 @@ void SeparationOracle::stop_measure(double v, double a, double A, double J, doub
   if (std::abs(a) > 0) go(std::abs(a) / J, a > 0 ? -J : J);
 }
 
-bool SeparationOracle::violates(const TrueSeparation& near, const RobotBody& robot, const Vector& velocity, const Vector& acceleration) {
+bool SeparationOracle::violates(const TrueSeparation& near, const RobotBody& robot,
+                                const Vector& velocity, const Vector& acceleration) {
   if (!std::isfinite(near.distance) || near.link < 0) return false;
-  const Vector3 n = (near.on_person - near.on_robot).stableNormalized() * (near.distance < 0 ? -1.0 : 1.0);
+  const Vector3 n =
+      (near.on_person - near.on_robot).stableNormalized() * (near.distance < 0 ? -1.0 : 1.0);
   const int body = robot.body_of(near.link);
   const double toward = robot.point_velocity(body, near.on_robot).dot(n);
   if (toward < settings_.moving) return false;
@@ -158,17 +171,19 @@ bool SeparationOracle::violates(const TrueSeparation& near, const RobotBody& rob
   for (Eigen::Index i = 0; i < velocity.size(); ++i) {
     if (jacobian_[i] == 0) continue;
     double time = 0, distance = 0;
-    stop_measure(velocity[i], acceleration[i], stop_.acceleration[i], stop_.jerk[i], time, distance);
+    stop_measure(velocity[i], acceleration[i], stop_.acceleration[i], stop_.jerk[i], time,
+                 distance);
     stop_time = std::max(stop_time, time);
     stop_distance += jacobian_[i] * distance;
   }
   const double human = std::clamp(near.person_velocity.dot(-n), 0.0, 2.2);
-  const double protective =
-      human * (settings_.reaction + stop_time) + toward * settings_.reaction + std::max(0.0, stop_distance) + settings_.margin;
+  const double protective = human * (settings_.reaction + stop_time) + toward * settings_.reaction +
+                            std::max(0.0, stop_distance) + settings_.margin;
   return near.distance < protective;
 }
 
-bool SeparationOracle::presses(const RobotBody& robot, const std::vector<Touch>& touches, const Vector& velocity) {
+bool SeparationOracle::presses(const RobotBody& robot, const std::vector<Touch>& touches,
+                               const Vector& velocity) {
   double force = 0, power = 0;
   for (const Touch& t : touches) {
     robot.directed_jacobian(t.index_a, t.point, -t.normal, jacobian_);

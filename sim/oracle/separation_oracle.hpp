@@ -28,10 +28,10 @@ struct PersonVolume {
 };
 
 struct TrueSeparation {
-  double distance{};                                              ///< [m], +inf if nobody; negative: overlapping
-  int link{-1};                                                   ///< of the robot; -1 if nobody
+  double distance{};  ///< [m], +inf if nobody; negative: overlapping
+  int link{-1};       ///< of the robot; -1 if nobody
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< nearest points, world [m]
-  Vector3 person_velocity{Vector3::Zero()};                       ///< of the joint nearest to on_person, world [m/s]
+  Vector3 person_velocity{Vector3::Zero()};  ///< of the joint nearest to on_person, world [m/s]
 };
 
 /// The highest speed that lasts: the median of five steps in a row. An elbow whose bend is solved
@@ -55,12 +55,14 @@ class SeparationOracle {
   TrueSeparation separation(const RobotBody&, const std::vector<PersonVolume>&) const;
   /// Whether the robot is faster toward the person than SSM allows, given its servo references (all
   /// axes).
-  bool violates(const TrueSeparation&, const RobotBody&, const Vector& velocity, const Vector& acceleration);
+  bool violates(const TrueSeparation&, const RobotBody&, const Vector& velocity,
+                const Vector& acceleration);
   /// Whether the servo references (all axes) move the robot against these touches, robot first, of
   /// a person. An arm that complies with a push moves with the hand that pushes, wherever that is.
   bool presses(const RobotBody&, const std::vector<Touch>&, const Vector& velocity);
   /// Time and distance of the jerk-limited minimum-time stop of one axis from (v, a).
-  static void stop_measure(double v, double a, double max_a, double max_j, double& time, double& distance);
+  static void stop_measure(double v, double a, double max_a, double max_j, double& time,
+                           double& distance);
 
  private:
   struct LinkVolume {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMostJoints = 512, kMostDepth = 128, kMostValues = 40'000'000;
 constexpr double kLargest = 1e6;
-constexpr std::string_view kChannelNames[] = {"Xposition", "Yposition", "Zposition", "Xrotation", "Yrotation", "Zrotation"};
+constexpr std::string_view kChannelNames[] = {"Xposition", "Yposition", "Zposition",
+                                              "Xrotation", "Yrotation", "Zrotation"};
 
 class Parser {
  public:
@@ -27,18 +28,23 @@ class Parser {
     expect("MOTION");
     expect("Frames:");
     const double frames = number("the number of frames");
-    if (!(frames >= 1) || frames != std::floor(frames)) fail("Frames: must be a whole number of at least 1");
-    if (frames * bvh_.channels > static_cast<double>(kMostValues)) fail("more than " + std::to_string(kMostValues) + " values");
+    if (!(frames >= 1) || frames != std::floor(frames))
+      fail("Frames: must be a whole number of at least 1");
+    if (frames * bvh_.channels > static_cast<double>(kMostValues))
+      fail("more than " + std::to_string(kMostValues) + " values");
     expect("Frame");
     expect("Time:");
     bvh_.frame_time = number("the frame time");
-    if (!(bvh_.frame_time > 1e-4 && bvh_.frame_time <= 1)) fail("Frame Time: must be above 0.0001 and at most 1 second");
+    if (!(bvh_.frame_time > 1e-4 && bvh_.frame_time <= 1))
+      fail("Frame Time: must be above 0.0001 and at most 1 second");
     read_frames(static_cast<std::size_t>(frames));
     return std::move(bvh_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw ConfigError(name_ + ":" + std::to_string(line_) + ": " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw ConfigError(name_ + ":" + std::to_string(line_) + ": " + what);
+  }
 
   static bool blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
@@ -77,20 +83,24 @@ class Parser {
     if (found.size() > 1 && found[0] == '+') found.remove_prefix(1);
     double value{};
     const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
-    if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value) || std::abs(value) > kLargest)
+    if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value) ||
+        std::abs(value) > kLargest)
       fail(std::string(what) + " is " + shown(whole) + ", must be a number within 1e6");
     return value;
   }
 
   std::string joint_name() {
     std::string_view found = token("a joint's name");
-    if (const auto colon = found.rfind(':'); colon != std::string_view::npos && colon + 1 < found.size()) found.remove_prefix(colon + 1);
+    if (const auto colon = found.rfind(':');
+        colon != std::string_view::npos && colon + 1 < found.size())
+      found.remove_prefix(colon + 1);
     if (found == "{") fail("a joint has no name");
     return std::string(found.substr(0, 64));
   }
 
   int add_joint(std::string name, int parent) {
-    if (bvh_.joints.size() >= kMostJoints) fail("more than " + std::to_string(kMostJoints) + " joints");
+    if (bvh_.joints.size() >= kMostJoints)
+      fail("more than " + std::to_string(kMostJoints) + " joints");
     if (bvh_.find(name) >= 0) fail("joint " + shown(name) + " is there twice");
     bvh_.joints.push_back({std::move(name), parent, Vector3::Zero(), {}, bvh_.channels});
     return static_cast<int>(bvh_.joints.size()) - 1;
@@ -98,21 +108,26 @@ class Parser {
 
   void read_offset(int joint) {
     expect("OFFSET");
-    for (int i = 0; i < 3; ++i) bvh_.joints[static_cast<std::size_t>(joint)].offset[i] = number("an offset");
+    for (int i = 0; i < 3; ++i)
+      bvh_.joints[static_cast<std::size_t>(joint)].offset[i] = number("an offset");
   }
 
   void read_channels(int joint) {
     expect("CHANNELS");
     const double count = number("the number of channels");
-    if (count != std::floor(count) || count < 0 || count > 6) fail("a joint has between 0 and 6 channels");
+    if (count != std::floor(count) || count < 0 || count > 6)
+      fail("a joint has between 0 and 6 channels");
     for (int i = 0; i < static_cast<int>(count); ++i) {
       const std::string_view found = token("a channel");
-      const auto* const known = std::find(std::begin(kChannelNames), std::end(kChannelNames), found);
+      const auto* const known =
+          std::find(std::begin(kChannelNames), std::end(kChannelNames), found);
       if (known == std::end(kChannelNames))
-        fail("channel " + shown(found) + " is unknown; there are Xposition ... Zposition, Xrotation ... Zrotation");
+        fail("channel " + shown(found) +
+             " is unknown; there are Xposition ... Zposition, Xrotation ... Zrotation");
       const auto channel = static_cast<BvhChannel>(known - std::begin(kChannelNames));
       auto& channels = bvh_.joints[static_cast<std::size_t>(joint)].channels;
-      if (std::find(channels.begin(), channels.end(), channel) != channels.end()) fail("channel " + shown(found) + " is there twice");
+      if (std::find(channels.begin(), channels.end(), channel) != channels.end())
+        fail("channel " + shown(found) + " is there twice");
       channels.push_back(channel);
       ++bvh_.channels;
     }
@@ -148,14 +163,16 @@ class Parser {
     for (std::size_t i = 0; i < wanted; ++i) {
       if (peek().empty()) {
         line_ = next_line_;
-        fail("the motion ends in frame " + std::to_string(i / static_cast<std::size_t>(bvh_.channels) + 1) + " of " +
+        fail("the motion ends in frame " +
+             std::to_string(i / static_cast<std::size_t>(bvh_.channels) + 1) + " of " +
              std::to_string(frames) + " announced by Frames:");
       }
       bvh_.values.push_back(number("a value"));
     }
     if (!peek().empty()) {
       line_ = next_line_;
-      fail("there is more motion than the " + std::to_string(frames) + " frames of " + std::to_string(bvh_.channels) + " values announced");
+      fail("there is more motion than the " + std::to_string(frames) + " frames of " +
+           std::to_string(bvh_.channels) + " values announced");
     }
   }
 

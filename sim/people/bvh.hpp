@@ -13,8 +13,8 @@ namespace handsel::sim {
 enum class BvhChannel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
 
 struct BvhJoint {
-  std::string name;                  ///< without a prefix before ':'; of an end site: its parent's name + "_End"
-  int parent{-1};                    ///< index into Bvh::joints; -1: the root
+  std::string name;  ///< without a prefix before ':'; of an end site: its parent's name + "_End"
+  int parent{-1};    ///< index into Bvh::joints; -1: the root
   Vector3 offset{Vector3::Zero()};   ///< from the parent, file units
   std::vector<BvhChannel> channels;  ///< rotations apply in this order, the first outermost
   int first_channel{};               ///< in a frame
@@ -27,7 +27,9 @@ struct Bvh {
   std::vector<double> values;    ///< frames x channels: file units and degrees
 
   /// Returns the number of complete frames.
-  std::size_t frames() const { return channels > 0 ? values.size() / static_cast<std::size_t>(channels) : 0; }
+  std::size_t frames() const {
+    return channels > 0 ? values.size() / static_cast<std::size_t>(channels) : 0;
+  }
   int find(std::string_view joint) const;  ///< -1: none
   /// World positions of all joints, in file units and axes.
   void positions(std::size_t frame, std::vector<Vector3>& out) const;

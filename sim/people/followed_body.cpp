@@ -6,11 +6,17 @@
 
 namespace handsel::sim {
 namespace {
-constexpr double kShortest = 0.005, kLongest = 0.1;  // [s] between samples; after a longer silence it catches up within this
-constexpr double kJump = 0.5, kFastest = 5.0;        // waist, farther than this from one sample to the next [m], and faster [m/s]
+constexpr double kShortest = 0.005,
+                 kLongest =
+                     0.1;  // [s] between samples; after a longer silence it catches up within this
+constexpr double
+    kJump = 0.5,
+    kFastest = 5.0;  // waist, farther than this from one sample to the next [m], and faster [m/s]
 }  // namespace
 
-FollowedBody::FollowedBody(const BodyPoints& start, double stature) : from_(start), to_(start) { fitted_.stature = stature; }
+FollowedBody::FollowedBody(const BodyPoints& start, double stature) : from_(start), to_(start) {
+  fitted_.stature = stature;
+}
 
 bool FollowedBody::observe(const ObservedPerson& seen, double now) {
   std::vector<BodyJoint> joints = fit_body(seen, seen_ ? &fitted_ : nullptr, fitted_.stature);

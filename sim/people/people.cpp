@@ -9,11 +9,13 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr int kCodes = 100;  // capsules a person may have: a touch's index is person * kCodes + capsule
+constexpr int kCodes =
+    100;  // capsules a person may have: a touch's index is person * kCodes + capsule
 
 Pose along(const Vector3& a, const Vector3& b) {
-  return make_pose((a + b) / 2,
-                   Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), (b - a).norm() > 1e-9 ? Vector3(b - a) : Vector3(0, 0, 1)));
+  return make_pose((a + b) / 2, Eigen::Quaterniond::FromTwoVectors(
+                                    Vector3::UnitZ(),
+                                    (b - a).norm() > 1e-9 ? Vector3(b - a) : Vector3(0, 0, 1)));
 }
 
 bool of_hand(BodyPart part, Side side) {
@@ -27,14 +29,17 @@ int hand_number(BodyPart part) { return part == BodyPart::hand_left ? 0 : 1; }
 }  // namespace
 
 int object_index(const ObjectBodies& objects, const std::string& id) {
-  const auto found = std::find_if(objects.begin(), objects.end(), [&](const ObjectBody& o) { return o.start().id == id; });
+  const auto found = std::find_if(objects.begin(), objects.end(),
+                                  [&](const ObjectBody& o) { return o.start().id == id; });
   return found == objects.end() ? -1 : static_cast<int>(found - objects.begin());
 }
 
-People::People(const SceneSetup& setup, const SimSettings& settings, ObjectBodies& objects, ShapeStore& shapes, btDynamicsWorld& world)
+People::People(const SceneSetup& setup, const SimSettings& settings, ObjectBodies& objects,
+               ShapeStore& shapes, btDynamicsWorld& world)
     : objects_(objects), world_(world) {
   people_.reserve(setup.people.size());
-  for (const StartPerson& start : setup.people) build(start, settings, static_cast<int>(people_.size()), shapes);
+  for (const StartPerson& start : setup.people)
+    build(start, settings, static_cast<int>(people_.size()), shapes);
 }
 
 People::~People() {
@@ -45,15 +50,24 @@ People::~People() {
   }
 }
 
-void People::build(const StartPerson& start, const SimSettings& settings, int number, ShapeStore& shapes) {
-  Body person{PersonModel(start.settings), Grip(settings.person_grip), -1, object_index(objects_, start.fetches), false, {}, {}, {}};
+void People::build(const StartPerson& start, const SimSettings& settings, int number,
+                   ShapeStore& shapes) {
+  Body person{PersonModel(start.settings),
+              Grip(settings.person_grip),
+              -1,
+              object_index(objects_, start.fetches),
+              false,
+              {},
+              {},
+              {}};
   person.capsules = body_capsules(person.model.body());
   for (std::size_t c = 0; c < person.capsules.size(); ++c) {
     const BodyCapsule& capsule = person.capsules[c];
     const int code = number * kCodes + static_cast<int>(c);
     if (is_hand(capsule.part)) {
       const int hand = hand_number(capsule.part);
-      person.hands[hand] = std::make_unique<PersonHand>(settings.person_hand, person.model.hand(hand), world_, kPerson, kRobot);
+      person.hands[hand] = std::make_unique<PersonHand>(
+          settings.person_hand, person.model.hand(hand), world_, kPerson, kRobot);
       own(person.hands[hand]->body(), Owner::person, code);
       person.colliders.push_back(nullptr);
       continue;
@@ -84,13 +98,15 @@ void People::follow(const HumanObservation& seen) {
   for (Body& person : people_) {
     if (person.model.source() != seen.source || seen.people.empty()) continue;
     const auto named =
-        std::find_if(seen.people.begin(), seen.people.end(), [&](const ObservedPerson& p) { return p.body == person.model.id(); });
+        std::find_if(seen.people.begin(), seen.people.end(),
+                     [&](const ObservedPerson& p) { return p.body == person.model.id(); });
     person.model.follow(named == seen.people.end() ? seen.people.front() : *named);
   }
 }
 
 bool People::follow_somebody() const {
-  return std::any_of(people_.begin(), people_.end(), [](const Body& person) { return !person.model.source().empty(); });
+  return std::any_of(people_.begin(), people_.end(),
+                     [](const Body& person) { return !person.model.source().empty(); });
 }
 
 void People::move(double dt, const BodyState& robot_hand, int gripped) {
@@ -105,7 +121,10 @@ void People::observe(Body& person, double dt, const BodyState& robot_hand, int g
   PersonView view;
   view.robot_hand = robot_hand.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
-    person.object = person.fetches >= 0 ? person.fetches : gripped >= 0 ? gripped : person.model.in_handover() ? person.object : -1;
+    person.object = person.fetches >= 0          ? person.fetches
+                    : gripped >= 0               ? gripped
+                    : person.model.in_handover() ? person.object
+                                                 : -1;
   if (person.object >= 0) {
     const ObjectBody& object = objects_[person.object];
     view.object = &object.model();
@@ -115,7 +134,8 @@ void People::observe(Body& person, double dt, const BodyState& robot_hand, int g
     view.grip_force = person.grip.wrench().force;
   }
   for (int s = 0; s < 2; ++s) {
-    view.hand_pushed[s] = person.hands[s]->state().T_world_body.translation() - person.model.hand(s).T_world_body.translation();
+    view.hand_pushed[s] = person.hands[s]->state().T_world_body.translation() -
+                          person.model.hand(s).T_world_body.translation();
   }
   view.grip_broke = person.broke;
   person.broke = false;
@@ -130,7 +150,8 @@ void People::hold_or_release(Body& person) {
     person.grip.release();
   } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
     if (hand_gap(person) < PersonModel::kPalm + 0.03) {
-      person.grip.hold(person.hand().state().T_world_body.inverse() * objects_[person.object].state().T_world_body);
+      person.grip.hold(person.hand().state().T_world_body.inverse() *
+                       objects_[person.object].state().T_world_body);
     } else {
       person.broke = true;
     }
@@ -143,15 +164,18 @@ void People::pull(Body& person, double dt) {
   for (int s = 0; s < 2; ++s) person.hands[s]->pull_to(person.model.hand(s), dt);
   for (std::size_t c = 0; c < person.colliders.size(); ++c) {
     const BodyCapsule& capsule = person.capsules[c];
-    if (person.colliders[c]) person.colliders[c]->setWorldTransform(to_bt(along(capsule.a, capsule.b)));
-    btRigidBody& body = person.colliders[c] ? *person.colliders[c] : person.hands[hand_number(capsule.part)]->body();
+    if (person.colliders[c])
+      person.colliders[c]->setWorldTransform(to_bt(along(capsule.a, capsule.b)));
+    btRigidBody& body = person.colliders[c] ? *person.colliders[c]
+                                            : person.hands[hand_number(capsule.part)]->body();
     const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
     const bool yielding = soft && of_hand(capsule.part, person.model.side());
     body.setCollisionFlags(yielding ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE : flags);
   }
   if (!person.grip.holding()) return;
   ObjectBody& object = objects_[person.object];
-  const Wrench& w = person.grip.update(person.hand().state(), object.state(), object.model().mass, object.min_inertia(), dt);
+  const Wrench& w = person.grip.update(person.hand().state(), object.state(), object.model().mass,
+                                       object.min_inertia(), dt);
   object.push(w);
   person.hand().push(object.state().T_world_body.translation(), {-w.force, -w.torque});
   person.broke = !person.grip.holding();
@@ -159,11 +183,13 @@ void People::pull(Body& person, double dt) {
 
 double People::hand_gap(const Body& person) const {
   const ObjectBody& object = objects_[person.object];
-  return surface_distance(object.model(), object.T_world_object().inverse() * person.hand().state().T_world_body.translation());
+  return surface_distance(object.model(), object.T_world_object().inverse() *
+                                              person.hand().state().T_world_body.translation());
 }
 
 bool People::grips(int object) const {
-  return std::any_of(people_.begin(), people_.end(), [&](const Body& p) { return p.grip.holding() && p.object == object; });
+  return std::any_of(people_.begin(), people_.end(),
+                     [&](const Body& p) { return p.grip.holding() && p.object == object; });
 }
 
 bool People::touches(int object) const {
@@ -171,13 +197,15 @@ bool People::touches(int object) const {
     if (p.object != object || object < 0) return false;
     if (p.grip.holding()) return true;
     const PersonPhase phase = p.model.phase();
-    return (phase == PersonPhase::closing || phase == PersonPhase::reaching) && hand_gap(p) < PersonModel::kPalm + 0.012;
+    return (phase == PersonPhase::closing || phase == PersonPhase::reaching) &&
+           hand_gap(p) < PersonModel::kPalm + 0.012;
   });
 }
 
 bool People::yields(int code) const {
   const Body& person = people_[code / kCodes];
-  return person.model.in_handover() && of_hand(person.capsules[code % kCodes].part, person.model.side());
+  return person.model.in_handover() &&
+         of_hand(person.capsules[code % kCodes].part, person.model.side());
 }
 
 const std::string& People::id(int code) const { return people_[code / kCodes].model.id(); }
@@ -185,9 +213,11 @@ const std::string& People::id(int code) const { return people_[code / kCodes].mo
 void People::volumes(const Vector3& robot_hand, std::vector<PersonVolume>& out) const {
   out.clear();
   for (const Body& person : people_) {
-    const bool exchanged = person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
-                           (robot_hand - objects_[person.object].state().T_world_body.translation()).norm() < 0.35;
-    out.push_back({&person.model.body(), person.model.in_handover() || exchanged, person.model.side()});
+    const bool exchanged =
+        person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
+        (robot_hand - objects_[person.object].state().T_world_body.translation()).norm() < 0.35;
+    out.push_back(
+        {&person.model.body(), person.model.in_handover() || exchanged, person.model.side()});
   }
 }
 

@@ -25,7 +25,8 @@ int object_index(const ObjectBodies& objects, const std::string& id);
 class People {
  public:
   /// Puts an object into the hand of each person that starts with one.
-  People(const SceneSetup&, const SimSettings&, ObjectBodies& objects, ShapeStore&, btDynamicsWorld&);
+  People(const SceneSetup&, const SimSettings&, ObjectBodies& objects, ShapeStore&,
+         btDynamicsWorld&);
   ~People();
   People(const People&) = delete;
   People& operator=(const People&) = delete;

@@ -9,28 +9,32 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kStill = 0.05;      // an object slower than this is offered [m/s]
-constexpr double kEarly = 0.35;      // for who does not wait, slower than this [m/s] ...
-constexpr double kGone = 0.2;        // who reaches for an object follows it up to this speed, who is early ...
+constexpr double kStill = 0.05;  // an object slower than this is offered [m/s]
+constexpr double kEarly = 0.35;  // for who does not wait, slower than this [m/s] ...
+constexpr double kGone =
+    0.2;  // who reaches for an object follows it up to this speed, who is early ...
 constexpr double kGoneEarly = 0.5;   // ... up to this [m/s]
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
 constexpr double kStepBack = 0.2;    // with what it took [m]
 constexpr double kStay = 2.0;        // who has fetched something goes then [s]
-constexpr double kStep = 0.3;        // a recorded body is moved on the floor by no more than this before contact [m]
+constexpr double kStep =
+    0.3;  // a recorded body is moved on the floor by no more than this before contact [m]
 
 }  // namespace
 
 const char* name(PersonPhase phase) {
-  static constexpr const char* kNames[] = {"arriving", "watching",   "reaching", "closing", "pulling", "withdrawing",
-                                           "keeping",  "retracting", "offering", "darting", "leaving"};
+  static constexpr const char* kNames[] = {"arriving", "watching",    "reaching", "closing",
+                                           "pulling",  "withdrawing", "keeping",  "retracting",
+                                           "offering", "darting",     "leaving"};
   return kNames[static_cast<int>(phase)];
 }
 
 PersonModel::PersonModel(const PersonSettings& settings)
     : settings_(settings), feet_(settings.feet), home_(settings.feet), yaw_(settings.yaw) {
-  const std::vector<BodyJoint> rest = settings_.behaviour.seated ? sitting_body(Vector3::Zero(), 0, settings_.stature)
-                                                                 : standing_body(Vector3::Zero(), 0, settings_.stature);
+  const std::vector<BodyJoint> rest = settings_.behaviour.seated
+                                          ? sitting_body(Vector3::Zero(), 0, settings_.stature)
+                                          : standing_body(Vector3::Zero(), 0, settings_.stature);
   for (std::size_t i = 0; i < template_.size(); ++i) template_[i] = rest[i].position;
   side_ = settings_.left_handed ? Side::left : Side::right;
   if (settings_.recording) {
@@ -38,7 +42,8 @@ PersonModel::PersonModel(const PersonSettings& settings)
     template_ = settings_.recording->frames.front();
   }
   const int s = index();
-  reach_ = (template_[kElbow[s]] - template_[kShoulder[s]]).norm() + (template_[kWrist[s]] - template_[kElbow[s]]).norm() +
+  reach_ = (template_[kElbow[s]] - template_[kShoulder[s]]).norm() +
+           (template_[kWrist[s]] - template_[kElbow[s]]).norm() +
            (template_[kHand[s]] - template_[kWrist[s]]).norm();
   gaze_ = forward();
   body_.id = settings_.id;
@@ -122,7 +127,8 @@ void PersonModel::step(double dt, const PersonView& view) {
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     body_.joints[i].position = points_[i];
-    body_.joints[i].velocity = first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((points_[i] - before_[i]) / dt);
+    body_.joints[i].velocity =
+        first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((points_[i] - before_[i]) / dt);
   }
   before_ = points_;
   first_ = false;
@@ -133,8 +139,10 @@ void PersonModel::step(double dt, const PersonView& view) {
 void PersonModel::want_hands(double dt) {
   for (int s = 0; s < 2; ++s) {
     const Vector3 before = hands_[s].T_world_body.translation(), now = points_[kHand[s]];
-    hands_[s].velocity = first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((now - before) / dt);
-    hands_[s].T_world_body = make_pose(now, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ())));
+    hands_[s].velocity =
+        first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((now - before) / dt);
+    hands_[s].T_world_body =
+        make_pose(now, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ())));
   }
 }
 
@@ -142,9 +150,11 @@ void PersonModel::act(double dt, const PersonView& view) {
   if (wants_grip_ && view.grip_broke) give_up();
   switch (phase_) {
     case PersonPhase::arriving: {
-      const double length = settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
+      const double length =
+          settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
       const double s = length > 0 ? since() * kWalkSpeed / length : 1;
-      feet_ = home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();
+      feet_ =
+          home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();
       if (s < 1) break;
       if (settings_.kind == PersonKind::walker) {
         walk_direction_ = -walk_direction_;
@@ -203,30 +213,39 @@ void PersonModel::act(double dt, const PersonView& view) {
   }
 }
 
-/// What the person is after is not where they would take it from: the robot's hand, or, for who fetches it, the place where it stands.
-bool PersonModel::out_of_hand(const PersonView& view) const { return view.held_by_robot == (settings_.kind == PersonKind::fetcher); }
+/// What the person is after is not where they would take it from: the robot's hand, or, for who
+/// fetches it, the place where it stands.
+bool PersonModel::out_of_hand(const PersonView& view) const {
+  return view.held_by_robot == (settings_.kind == PersonKind::fetcher);
+}
 
 bool PersonModel::offered(const PersonView& view, int side) const {
   const double fastest = settings_.behaviour.early ? kEarly : kStill;
-  if (refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest) return false;
+  if (refusing_ || view.object == nullptr || out_of_hand(view) ||
+      view.object_velocity.norm() > fastest)
+    return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
-  return (object_centre(view) - shoulder(side)).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
+  return (object_centre(view) - shoulder(side)).norm() <
+         reach_ + (settings_.recording ? kStep : kLeanReach);
 }
 
 // The better hand, unless the other is clearly nearer or the only one that reaches.
 void PersonModel::choose_hand(const PersonView& view) {
   if (settings_.recording || view.object == nullptr) return;
   const Side better = settings_.left_handed ? Side::left : Side::right;
-  const double right = (object_centre(view) - shoulder(1)).norm(), left_distance = (object_centre(view) - shoulder(0)).norm();
-  const double own = better == Side::right ? right : left_distance, other = better == Side::right ? left_distance : right;
+  const double right = (object_centre(view) - shoulder(1)).norm(),
+               left_distance = (object_centre(view) - shoulder(0)).norm();
+  const double own = better == Side::right ? right : left_distance,
+               other = better == Side::right ? left_distance : right;
   const bool change = own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own);
   side_ = change == (better == Side::right) ? Side::left : Side::right;
 }
 
 void PersonModel::watch(double dt, const PersonView& view) {
   cooldown_ = std::max(0.0, cooldown_ - dt);
-  const bool takes =
-      settings_.kind == PersonKind::taker || settings_.kind == PersonKind::recording || settings_.kind == PersonKind::fetcher;
+  const bool takes = settings_.kind == PersonKind::taker ||
+                     settings_.kind == PersonKind::recording ||
+                     settings_.kind == PersonKind::fetcher;
   if (offer_time_ <= 0) choose_hand(view);
   offer_time_ = takes && cooldown_ <= 0 && offered(view, index()) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
@@ -234,13 +253,18 @@ void PersonModel::watch(double dt, const PersonView& view) {
   const Vector3 centre = object_centre(view);
   const Vector3 toward = (shoulder(index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
-  side_of_object_ = (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero()))).normalized();
+  side_of_object_ =
+      (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero())))
+          .normalized();
   from_ = hand_point();
   const Vector3 goal = grasp_point(view);
-  duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
+  duration_ =
+      std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
   lean_from_ = lean_;
   const double excess = (goal - shoulder(index())).norm() - 0.95 * reach_;
-  lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[index()]].z() - template_[kWaist].z()), 0.0, 0.35);
+  lean_to_ = std::clamp(
+      lean_ + excess / std::max(0.2, template_[kShoulder[index()]].z() - template_[kWaist].z()),
+      0.0, 0.35);
   hand_target_ = from_;
   hand_active_ = !settings_.recording;
   playback_ = 0;
@@ -262,12 +286,15 @@ Vector3 PersonModel::at_contact(const Vector3& feet) const {
 // The place for the middle of the hand nearest to `from` from which it holds the object.
 Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) const {
   const Pose T_object_world = view.T_world_object.inverse();
-  const auto distance = [&](const Vector3& p) { return surface_distance(*view.object, T_object_world * p); };
+  const auto distance = [&](const Vector3& p) {
+    return surface_distance(*view.object, T_object_world * p);
+  };
   Vector3 p = from;
   for (int i = 0; i < 8; ++i) {
     const double d = distance(p), h = 1e-4;
     if (std::abs(d - kPalm) < 5e-4) break;
-    const Vector3 slope((distance(p + h * Vector3::UnitX()) - d) / h, (distance(p + h * Vector3::UnitY()) - d) / h,
+    const Vector3 slope((distance(p + h * Vector3::UnitX()) - d) / h,
+                        (distance(p + h * Vector3::UnitY()) - d) / h,
                         (distance(p + h * Vector3::UnitZ()) - d) / h);
     if (slope.norm() < 1e-6) break;
     p -= (d - kPalm) * slope.normalized();
@@ -277,7 +304,8 @@ Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) c
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
   const double fastest = settings_.behaviour.early ? kGoneEarly : kGone;
-  const bool lost = refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest;
+  const bool lost = refusing_ || view.object == nullptr || out_of_hand(view) ||
+                    view.object_velocity.norm() > fastest;
   lost_time_ = lost ? lost_time_ + dt : 0;
   if (lost_time_ > 0.3) return give_up();
   if (view.object == nullptr) return;
@@ -295,11 +323,13 @@ void PersonModel::reach_out(double dt, const PersonView& view) {
 
 void PersonModel::play(double dt, const PersonView& view) {
   const Recording& recording = *settings_.recording;
-  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > 0.2;
+  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot ||
+                    view.object_velocity.norm() > 0.2;
   lost_time_ = lost ? lost_time_ + dt : 0;
   if (lost_time_ > 0.5 || since() > recording.contact + 1.5) return give_up();
   playback_ = std::min(playback_ + dt, recording.contact);
-  feet_ = home_ + min_jerk(playback_ / std::max(0.1, recording.contact - settings_.warp_time)) * step_;
+  feet_ =
+      home_ + min_jerk(playback_ / std::max(0.1, recording.contact - settings_.warp_time)) * step_;
   place_base();
   const Vector3 recorded = points_[kHand[index()]];
   if (view.object != nullptr) {
@@ -310,12 +340,14 @@ void PersonModel::play(double dt, const PersonView& view) {
   const double s = min_jerk(1 - (recording.contact - playback_) / settings_.warp_time);
   hand_active_ = s > 0;
   hand_target_ = recorded + s * warp_;
-  if (playback_ >= recording.contact && view.object != nullptr && gap(view) < kPalm + 0.012) enter(PersonPhase::closing);
+  if (playback_ >= recording.contact && view.object != nullptr && gap(view) < kPalm + 0.012)
+    enter(PersonPhase::closing);
 }
 
 void PersonModel::pull(double dt, const PersonView& view) {
   if (!wants_grip_ || view.object == nullptr) return give_up();
-  const Vector3 direction = (keep_point() - hand_target_).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const Vector3 direction =
+      (keep_point() - hand_target_).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const double ramp = std::min(1.0, since() / 0.4);
   const double felt = view.grip_force.dot(direction);
   const double speed = std::clamp(0.02 * (ramp * settings_.pull - felt), -0.1, 0.1);
@@ -363,7 +395,8 @@ void PersonModel::retract(double) {
   const double s = min_jerk(since() / duration_);
   lean_ = (1 - s) * lean_from_;
   playback_ = settings_.recording ? (1 - s) * warp_.x() : 0;
-  const Vector3 rest = feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[index()]];
+  const Vector3 rest =
+      feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[index()]];
   hand_target_ = from_ + s * (rest - from_);
   if (since() < duration_) return;
   hand_active_ = false;
@@ -377,14 +410,16 @@ void PersonModel::dart_on(double dt, const PersonView& view) {
   const double move = std::min(pace * dt, std::max(0.0, to.norm() - 0.08));
   if (to.norm() > 1e-6) hand_target_ += move / to.norm() * to;
   const Vector3 beyond = hand_target_ - shoulder(index());
-  const Vector3 lacking = std::max(0.0, 1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
+  const Vector3 lacking =
+      std::max(0.0, 1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
   feet_speed_ = std::min(feet_speed_ + kMaxTrunkAcceleration * dt, lacking.norm() / dt);
   if (feet_speed_ > 0) feet_ += feet_speed_ * dt * lacking.normalized();
   if (since() > 1.5) give_up();
 }
 
 Vector3 PersonModel::keep_point() const {
-  return points_[kTorso] + 0.22 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() - Vector3(0, 0, 0.05);
+  return points_[kTorso] + 0.22 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() -
+         Vector3(0, 0, 0.05);
 }
 
 Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }
@@ -399,7 +434,8 @@ Vector3 PersonModel::grasp_point(const PersonView& view) const {
   const Pose T_object_world = view.T_world_object.inverse();
   double t = 0.4;
   for (int i = 0; i < 40; ++i) {
-    const double beyond = surface_distance(*view.object, T_object_world * (centre + t * side_of_object_)) - kPalm;
+    const double beyond =
+        surface_distance(*view.object, T_object_world * (centre + t * side_of_object_)) - kPalm;
     t -= beyond;
     if (std::abs(beyond) < 5e-4 || t < 0) break;
   }
@@ -428,22 +464,30 @@ void PersonModel::place_base() {
   for (std::size_t i = 0; i < own.size(); ++i) points_[i] = feet_ + aside_ + R * own[i];
 }
 
-// Moves the hand to `target`. Near the base posture the arm keeps its shape, farther away hand and forearm line up, elbow down and out:
-// no joint jumps when the hand begins or ends to be led.
+// Moves the hand to `target`. Near the base posture the arm keeps its shape, farther away hand and
+// forearm line up, elbow down and out: no joint jumps when the hand begins or ends to be led.
 void PersonModel::bend_arm(int s, const Vector3& target) {
-  const Vector3 root = points_[kShoulder[s]], elbow = points_[kElbow[s]], wrist = points_[kWrist[s]], hand = points_[kHand[s]];
-  const double upper = (elbow - root).norm(), lower = (wrist - elbow).norm(), palm = (hand - wrist).norm();
+  const Vector3 root = points_[kShoulder[s]], elbow = points_[kElbow[s]],
+                wrist = points_[kWrist[s]], hand = points_[kHand[s]];
+  const double upper = (elbow - root).norm(), lower = (wrist - elbow).norm(),
+               palm = (hand - wrist).norm();
   const double away = min_jerk((target - hand).norm() / 0.3);
   const Vector3 along = (target - root).stableNormalized();
-  const Vector3 palm_vector = palm * ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
+  const Vector3 palm_vector =
+      palm * ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
   Vector3 to = target - palm_vector - root;
   const double d = std::clamp(to.norm(), std::abs(upper - lower) + 1e-3, upper + lower - 1e-6);
   to = to.norm() > 1e-9 ? Vector3(to.normalized()) : forward();
   const double a = (upper * upper - lower * lower + d * d) / (2 * d);
   const double h = std::sqrt(std::max(0.0, upper * upper - a * a));
-  const auto across = [&](const Vector3& v) { return Vector3((v - v.dot(to) * to).stableNormalized()); };
-  const Vector3 led = across(Vector3(0, 0, -0.8) + (s == 0 ? 0.4 : -0.4) * left() - 0.2 * forward());
-  const Vector3 bent = elbow - root - (elbow - root).dot((wrist - root).stableNormalized()) * (wrist - root).stableNormalized();
+  const auto across = [&](const Vector3& v) {
+    return Vector3((v - v.dot(to) * to).stableNormalized());
+  };
+  const Vector3 led =
+      across(Vector3(0, 0, -0.8) + (s == 0 ? 0.4 : -0.4) * left() - 0.2 * forward());
+  const Vector3 bent =
+      elbow - root -
+      (elbow - root).dot((wrist - root).stableNormalized()) * (wrist - root).stableNormalized();
   const Vector3 own = bent.norm() > 1e-4 ? across(bent) : led;
   const Vector3 out = across((1 - away) * own + away * led);
   points_[kElbow[s]] = root + a * to + h * out;

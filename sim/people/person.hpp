@@ -23,10 +23,10 @@ enum class PersonKind { taker, still, walker, recording, giver, external, fetche
 
 /// What makes a person different from the next.
 struct BehaviourProfile {
-  double speed_scale{1};              ///< of the hand, times the usual
-  double hesitation{};                ///< stops midway on the first reach or offer [s]
-  bool withdraws{};                   ///< withdraws the hand once from its first reach or offer, and comes again
-  double look_away{};                 ///< looks elsewhere once, so long [s] ...
+  double speed_scale{1};  ///< of the hand, times the usual
+  double hesitation{};    ///< stops midway on the first reach or offer [s]
+  bool withdraws{};    ///< withdraws the hand once from its first reach or offer, and comes again
+  double look_away{};  ///< looks elsewhere once, so long [s] ...
   double look_away_at{};              ///< ... from this time on [s]
   Vector3 sidestep{Vector3::Zero()};  ///< walks so far [m] ...
   double sidestep_at{};               ///< ... from this time on [s]
@@ -41,15 +41,15 @@ struct Furniture {
 };
 
 struct PersonSettings {
-  std::string id;                              ///< unique in the scenario
-  Vector3 feet{Vector3::Zero()};               ///< world [m]
-  double yaw{};                                ///< facing, 0 = +x [rad]
-  double stature{1.75};                        ///< [m]
-  PersonKind kind{PersonKind::taker};          ///< behaviour
-  double reaction{0.4};                        ///< from offer to reach [s]
-  double approach_from{};                      ///< walks in from this far behind its place [m]
-  double pull{8.0};                            ///< when taking [N]
-  bool left_handed{};                          ///< prefers the left hand; a recording has a hand of its own
+  std::string id;                      ///< unique in the scenario
+  Vector3 feet{Vector3::Zero()};       ///< world [m]
+  double yaw{};                        ///< facing, 0 = +x [rad]
+  double stature{1.75};                ///< [m]
+  PersonKind kind{PersonKind::taker};  ///< behaviour
+  double reaction{0.4};                ///< from offer to reach [s]
+  double approach_from{};              ///< walks in from this far behind its place [m]
+  double pull{8.0};                    ///< when taking [N]
+  bool left_handed{};                  ///< prefers the left hand; a recording has a hand of its own
   std::shared_ptr<const Recording> recording;  ///< motion to play; null: none
   std::string external;                        ///< source of the body an external person follows
   /// An external person's hand closer than this to an offered object is led to it [m].
@@ -74,7 +74,19 @@ struct PersonView {
   Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
 };
 
-enum class PersonPhase { arriving, watching, reaching, closing, pulling, withdrawing, keeping, retracting, offering, darting, leaving };
+enum class PersonPhase {
+  arriving,
+  watching,
+  reaching,
+  closing,
+  pulling,
+  withdrawing,
+  keeping,
+  retracting,
+  offering,
+  darting,
+  leaving
+};
 const char* name(PersonPhase);  ///< as in the enumeration
 
 class PersonModel {
@@ -94,18 +106,18 @@ class PersonModel {
   const std::string& source() const { return settings_.external; }  ///< followed; empty: none
   const std::string& id() const { return settings_.id; }            ///< unique in the scenario
   PersonPhase phase() const { return phase_; }                      ///< what the person does now
-  const Person& body() const { return body_; }                      ///< ground truth, velocities included
-  Side side() const { return side_; }                               ///< of the handover hand
-  bool wants_grip() const { return wants_grip_; }                   ///< whether that hand is to hold its object
+  const Person& body() const { return body_; }     ///< ground truth, velocities included
+  Side side() const { return side_; }              ///< of the handover hand
+  bool wants_grip() const { return wants_grip_; }  ///< whether that hand is to hold its object
   /// Whether a handover is under way: from reach or offer until the object is withdrawn or
   /// the hand is back. Never for a fetcher, which takes an object by itself.
   bool in_handover() const;
   /// Where the handover hand is wanted; axes turn with the body.
   const BodyState& hand() const { return hands_[index()]; }
   const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
-  bool placed() const { return placed_; }                         ///< the next step takes it elsewhere without a motion
-  double reach() const { return reach_; }                         ///< shoulder to middle of the hand [m]
-  static constexpr double kPalm = 0.03;                           ///< middle of the hand to what it holds [m]
+  bool placed() const { return placed_; }  ///< the next step takes it elsewhere without a motion
+  double reach() const { return reach_; }  ///< shoulder to middle of the hand [m]
+  static constexpr double kPalm = 0.03;    ///< middle of the hand to what it holds [m]
 
  private:
   void place_base();
@@ -152,19 +164,22 @@ class PersonModel {
 
   PersonSettings settings_;
   BodyPoints template_{}, points_{}, before_{};
-  double reach_{}, clock_{0}, phase_since_{0}, offer_time_{0}, lost_time_{0}, sore_time_{0}, cooldown_{0}, playback_{0}, progress_{0};
+  double reach_{}, clock_{0}, phase_since_{0}, offer_time_{0}, lost_time_{0}, sore_time_{0},
+      cooldown_{0}, playback_{0}, progress_{0};
   PersonPhase phase_{PersonPhase::watching};
   Side side_{Side::right};
-  bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true}, placed_{false};
+  bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true},
+      placed_{false};
   bool came_once_{false};  // the first reach or offer is over
   double step_clock_{0};   // of the sidestep
   double ignored_{0};      // the offer, so long [s]
   int steps_nearer_{0};
   Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};
-  double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, feet_speed_{0}, walk_direction_{1};
-  Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
-      warp_{Vector3::Zero()}, step_{Vector3::Zero()};
+  double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, feet_speed_{0},
+      walk_direction_{1};
+  Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()},
+      side_of_object_{Vector3::UnitX()}, warp_{Vector3::Zero()}, step_{Vector3::Zero()};
   std::optional<FollowedBody> followed_;  // of an external person
   Vector3 led_{Vector3::Zero()};          // of its hand from where it is reported to be
   Vector3 gaze_{Vector3::UnitX()};

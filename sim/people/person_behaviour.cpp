@@ -8,8 +8,8 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kPart = 0.6;         // each part of a reach with a stop takes this share of one without
-constexpr double kLetGo = 0.5;        // who gives lets go once the robot has held on for so long [s]
+constexpr double kPart = 0.6;   // each part of a reach with a stop takes this share of one without
+constexpr double kLetGo = 0.5;  // who gives lets go once the robot has held on for so long [s]
 constexpr double kComeNear = 0.35;    // the robot's hand, when who changes their mind does so [m]
 constexpr double kReconsider = 2.0;   // before the second offer [s]
 constexpr double kOfferTime = 1.0;    // of the motion [s]
@@ -18,10 +18,11 @@ constexpr double kBeforeHand = 0.5;   // from the robot's hand, where something 
 constexpr double kImpatience = 8.0;   // who is ignored for so long holds it out anew [s] ...
 constexpr double kStepNearer = 0.12;  // ... and comes nearer by this [m] ...
 constexpr int kMostSteps = 2;         // ... so often
-// [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it, and lower with every step away from
-// there.
+// [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it,
+// and lower with every step away from there.
 constexpr double kAbove = 0.12, kBeside = 0.12;
-// Who takes something draws it away from the robot's hand before it is lifted: within so long [s], and from so far off on [m].
+// Who takes something draws it away from the robot's hand before it is lifted: within so long [s],
+// and from so far off on [m].
 constexpr double kLift = 1.2, kClearOfHand = 0.30, kOffHand = 0.15;
 
 }  // namespace
@@ -31,11 +32,13 @@ double PersonModel::reach_fraction() const {
   const double t = since(), part = kPart * duration_, stop = settings_.behaviour.hesitation;
   const bool wavers = !came_once_ && (stop > 0 || settings_.behaviour.withdraws);
   if (!wavers) return min_jerk(t / duration_);
-  return t < part + stop ? kMidway * min_jerk(t / part) : kMidway + (1 - kMidway) * min_jerk((t - part - stop) / part);
+  return t < part + stop ? kMidway * min_jerk(t / part)
+                         : kMidway + (1 - kMidway) * min_jerk((t - part - stop) / part);
 }
 
 double PersonModel::reach_time() const {
-  const bool wavers = !came_once_ && (settings_.behaviour.hesitation > 0 || settings_.behaviour.withdraws);
+  const bool wavers =
+      !came_once_ && (settings_.behaviour.hesitation > 0 || settings_.behaviour.withdraws);
   return wavers ? 2 * kPart * duration_ + settings_.behaviour.hesitation : duration_;
 }
 
@@ -53,7 +56,8 @@ void PersonModel::hold_back(const PersonView& view) {
 Vector3 PersonModel::offer_from_shoulder(const PersonView& view) const {
   const Vector3 root = shoulder(index()), to_hand = view.robot_hand - root;
   Vector3 arm = comfortable_reach(body_, side_) - root;
-  const double turn = std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);
+  const double turn =
+      std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);
   arm = Eigen::AngleAxisd(std::clamp(turn, -kMostTurn, kMostTurn), Vector3::UnitZ()) * arm;
   const double too_near = kBeforeHand - (to_hand - arm).norm();
   if (too_near > 0) arm.head<2>() *= std::max(0.0, 1 - too_near / arm.head<2>().norm());
@@ -65,7 +69,8 @@ void PersonModel::offer(double dt, const PersonView& view) {
   if (lost_time_ > kLetGo) return give_up();
   if (view.held_by_robot) return;
   hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
-  const bool near = view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kComeNear;
+  const bool near =
+      view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kComeNear;
   if (near || since() < duration_) ignored_ = 0;
   if ((ignored_ += dt) > kImpatience) {  // holds it out anew, nearer to where the robot's hand is
     ignored_ = 0;
@@ -73,7 +78,9 @@ void PersonModel::offer(double dt, const PersonView& view) {
     p_shoulder_offer_ = offer_from_shoulder(view);
     if (!settings_.behaviour.seated && steps_nearer_ < kMostSteps) {
       ++steps_nearer_;
-      settings_.behaviour.sidestep = kStepNearer * (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+      settings_.behaviour.sidestep =
+          kStepNearer *
+          (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
       home_aside_ = aside_;
       step_clock_ = 0;
       settings_.behaviour.sidestep_at = clock_;
@@ -91,8 +98,8 @@ void PersonModel::offer(double dt, const PersonView& view) {
 void PersonModel::step_aside(double dt) {
   const double length = settings_.behaviour.sidestep.norm();
   if (length <= 0) return;
-  const bool free =
-      phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping || (phase_ == PersonPhase::offering && lost_time_ <= 0);
+  const bool free = phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping ||
+                    (phase_ == PersonPhase::offering && lost_time_ <= 0);
   const double duration = step_time(length);
   const bool under_way = step_clock_ > 0 && step_clock_ < duration;
   if (clock_ < settings_.behaviour.sidestep_at || !(free || under_way)) return;
@@ -105,7 +112,8 @@ double PersonModel::height_above_furniture(const Vector3& hand) const {
   double least = -std::numeric_limits<double>::infinity();
   for (const Furniture& box : settings_.furniture) {
     const Vector3 p = box.T_world_box.inverse() * hand, half = box.size / 2;
-    const double up = (box.T_world_box.linear().row(2).transpose().cwiseAbs()).dot(half), z = box.T_world_box.translation().z();
+    const double up = (box.T_world_box.linear().row(2).transpose().cwiseAbs()).dot(half),
+                 z = box.T_world_box.translation().z();
     if (hand.z() < z - up) continue;  // it hangs over them
     const double beside = (p.cwiseAbs() - half).cwiseMax(0).head<2>().norm();
     least = std::max(least, z + up + kAbove - std::max(0.0, beside - kBeside));
@@ -115,20 +123,26 @@ double PersonModel::height_above_furniture(const Vector3& hand) const {
 
 /// Only what nobody else has hold of.
 void PersonModel::keep_above_furniture(const Vector3& robot_hand) {
-  const bool alone = phase_ == PersonPhase::withdrawing || phase_ == PersonPhase::keeping || phase_ == PersonPhase::leaving ||
+  const bool alone = phase_ == PersonPhase::withdrawing || phase_ == PersonPhase::keeping ||
+                     phase_ == PersonPhase::leaving ||
                      (phase_ == PersonPhase::offering && lost_time_ <= 0);
   if (!alone) return;
   const double away = ((hand_target_ - robot_hand).norm() - kClearOfHand) / kOffHand;
-  const double share = phase_ == PersonPhase::withdrawing ? std::min(min_jerk(since() / kLift), min_jerk(away)) : 1.0;
-  hand_target_.z() += share * std::max(0.0, height_above_furniture(hand_target_) - hand_target_.z());
+  const double share = phase_ == PersonPhase::withdrawing
+                           ? std::min(min_jerk(since() / kLift), min_jerk(away))
+                           : 1.0;
+  hand_target_.z() +=
+      share * std::max(0.0, height_above_furniture(hand_target_) - hand_target_.z());
 }
 
 Vector3 PersonModel::looked_at(const PersonView& view) const {
-  if (refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker) return points_[kHead] + forward();
+  if (refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker)
+    return points_[kHead] + forward();
   const BehaviourProfile& behaviour = settings_.behaviour;
   if (clock_ >= behaviour.look_away_at && clock_ < behaviour.look_away_at + behaviour.look_away)
     return points_[kHead] + left() + 0.3 * forward();
-  const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_ || settings_.kind == PersonKind::fetcher);
+  const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_ ||
+                                                      settings_.kind == PersonKind::fetcher);
   return interesting ? object_centre(view) : view.robot_hand;
 }
 

@@ -1,6 +1,7 @@
-// A person moved from outside: the body goes where it is told; only the exchange is its own (ours). What is offered near a hand draws the
-// hand onto it, as somebody who sees it would; a hand that is told to go away while the robot still holds on pulls, with limited force; a
-// hand that was led comes back to where it is told to be.
+// A person moved from outside: the body goes where it is told; only the exchange is its own (ours).
+// What is offered near a hand draws the hand onto it, as somebody who sees it would; a hand that is
+// told to go away while the robot still holds on pulls, with limited force; a hand that was led
+// comes back to where it is told to be.
 #include <algorithm>
 
 #include "sim/people/person.hpp"
@@ -19,13 +20,16 @@ constexpr double kGivesUp = 0.5;      // away from what it holds while the robot
 constexpr double kAdmittance = 0.02;  // [m/s/N]
 constexpr double kBack = 0.02;        // a hand this near to where it is told to be is back [m]
 
-Vector3 limited(const Vector3& v, double longest) { return v.norm() > longest ? Vector3(longest / v.norm() * v) : v; }
+Vector3 limited(const Vector3& v, double longest) {
+  return v.norm() > longest ? Vector3(longest / v.norm() * v) : v;
+}
 
 }  // namespace
 
 void PersonModel::follow(const ObservedPerson& seen) {
   if (!followed_ || frozen_) return;
-  if (followed_->observe(seen, clock_)) {  // it is there from one moment to the next: nothing is moved, pushed or taken along
+  if (followed_->observe(seen, clock_)) {  // it is there from one moment to the next: nothing is
+                                           // moved, pushed or taken along
     first_ = placed_ = true;
     wants_grip_ = hand_active_ = false;
     led_.setZero();
@@ -57,7 +61,8 @@ void PersonModel::accompany(double dt, const PersonView& view) {
       }
       hand_target_ = told(index()) + led_;
       const bool touches = wanted && gap(view) < kPalm + kTouch;
-      if (touches != (phase_ == PersonPhase::closing)) enter(touches ? PersonPhase::closing : PersonPhase::reaching);
+      if (touches != (phase_ == PersonPhase::closing))
+        enter(touches ? PersonPhase::closing : PersonPhase::reaching);
       if (phase_ != PersonPhase::closing || since() < kClose) return;
       wants_grip_ = true;
       enter(PersonPhase::pulling);
@@ -93,7 +98,8 @@ void PersonModel::pull_after(const Vector3& would_be, double dt, const PersonVie
   const Vector3 away = would_be - hand_target_;
   const Vector3 direction = away.stableNormalized();
   const double wanted = std::min(settings_.pull, kStretch * away.norm());
-  const double speed = std::clamp(kAdmittance * (wanted - view.grip_force.dot(direction)), -kPullSpeed, kPullSpeed);
+  const double speed =
+      std::clamp(kAdmittance * (wanted - view.grip_force.dot(direction)), -kPullSpeed, kPullSpeed);
   hand_target_ += speed * dt * direction;
   sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
   lost_time_ = view.held_by_robot ? 0 : lost_time_ + dt;

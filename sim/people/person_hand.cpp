@@ -16,10 +16,15 @@ GripSettings spring_of(const PersonHandSettings& s) {
 
 }  // namespace
 
-PersonHand::PersonHand(const PersonHandSettings& settings, const BodyState& start, btDynamicsWorld& world, int group, int mask)
-    : settings_(settings), world_(world), spring_(spring_of(settings)), shape_(std::make_unique<btSphereShape>(settings.radius)) {
-  btRigidBody::btRigidBodyConstructionInfo info(settings.mass, nullptr, shape_.get(),
-                                                btVector3(settings.inertia, settings.inertia, settings.inertia));
+PersonHand::PersonHand(const PersonHandSettings& settings, const BodyState& start,
+                       btDynamicsWorld& world, int group, int mask)
+    : settings_(settings),
+      world_(world),
+      spring_(spring_of(settings)),
+      shape_(std::make_unique<btSphereShape>(settings.radius)) {
+  btRigidBody::btRigidBodyConstructionInfo info(
+      settings.mass, nullptr, shape_.get(),
+      btVector3(settings.inertia, settings.inertia, settings.inertia));
   info.m_startWorldTransform = to_bt(start.T_world_body);
   info.m_friction = settings.friction;
   info.m_linearDamping = info.m_angularDamping = 0;
@@ -34,7 +39,8 @@ PersonHand::PersonHand(const PersonHandSettings& settings, const BodyState& star
 PersonHand::~PersonHand() { world_.removeRigidBody(body_.get()); }
 
 BodyState PersonHand::state() const {
-  return {from_bt(body_->getWorldTransform()), from_bt(body_->getLinearVelocity()), from_bt(body_->getAngularVelocity())};
+  return {from_bt(body_->getWorldTransform()), from_bt(body_->getLinearVelocity()),
+          from_bt(body_->getAngularVelocity())};
 }
 
 void PersonHand::place(const BodyState& at) {

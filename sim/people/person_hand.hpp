@@ -21,7 +21,8 @@ struct PersonHandSettings {
 
 class PersonHand {
  public:
-  PersonHand(const PersonHandSettings&, const BodyState& start, btDynamicsWorld&, int group, int mask);
+  PersonHand(const PersonHandSettings&, const BodyState& start, btDynamicsWorld&, int group,
+             int mask);
   ~PersonHand();
   PersonHand(const PersonHand&) = delete;
   PersonHand& operator=(const PersonHand&) = delete;

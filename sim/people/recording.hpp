@@ -40,7 +40,8 @@ Recording load_recording(const std::filesystem::path& path);
 
 /// A relative path is below `data_root`. Throws MissingError when it is relative and there is no
 /// such folder.
-std::filesystem::path resolve_recording(const std::filesystem::path& recording, const std::filesystem::path& data_root);
+std::filesystem::path resolve_recording(const std::filesystem::path& recording,
+                                        const std::filesystem::path& data_root);
 
 /// The unit in which this is a person's stature: its factor to metres and its name; a factor of 0
 /// when there is none.

@@ -25,7 +25,8 @@ std::unique_ptr<btConvexShape> hull(const TriangleMesh& mesh) {
   if (vertices.size() > 42) {
     btShapeHull reduced(&full);
     reduced.buildHull(0);
-    for (int i = 0; i < reduced.numVertices(); ++i) small->addPoint(reduced.getVertexPointer()[i], false);
+    for (int i = 0; i < reduced.numVertices(); ++i)
+      small->addPoint(reduced.getVertexPointer()[i], false);
   } else {
     for (const Vector3& v : vertices) small->addPoint(to_bt(v), false);
   }
@@ -35,7 +36,9 @@ std::unique_ptr<btConvexShape> hull(const TriangleMesh& mesh) {
 }
 
 struct Make {
-  std::unique_ptr<btConvexShape> operator()(const Sphere& s) const { return std::make_unique<btSphereShape>(s.radius); }
+  std::unique_ptr<btConvexShape> operator()(const Sphere& s) const {
+    return std::make_unique<btSphereShape>(s.radius);
+  }
   std::unique_ptr<btConvexShape> operator()(const Box& b) const {
     auto shape = std::make_unique<btBoxShape>(to_bt(Vector3(b.size / 2)));
     shape->setMargin(kMargin);
@@ -46,7 +49,9 @@ struct Make {
     shape->setMargin(kMargin);
     return shape;
   }
-  std::unique_ptr<btConvexShape> operator()(const Capsule& c) const { return std::make_unique<btCapsuleShapeZ>(c.radius, c.length); }
+  std::unique_ptr<btConvexShape> operator()(const Capsule& c) const {
+    return std::make_unique<btCapsuleShapeZ>(c.radius, c.length);
+  }
   std::unique_ptr<btConvexShape> operator()(const MeshPtr& m) const { return hull(*m); }
 };
 
@@ -59,10 +64,12 @@ btConvexShape* ShapeStore::convex(const Shape& shape) {
   return raw;
 }
 
-btCollisionShape* ShapeStore::combine(const std::vector<PlacedShape>& parts, const Pose& T_body_parent) {
+btCollisionShape* ShapeStore::combine(const std::vector<PlacedShape>& parts,
+                                      const Pose& T_body_parent) {
   if (parts.empty()) return nullptr;
   auto compound = std::make_unique<btCompoundShape>(parts.size() > 4);
-  for (const PlacedShape& part : parts) compound->addChildShape(to_bt(Pose(T_body_parent * part.T_parent_shape)), convex(part.shape));
+  for (const PlacedShape& part : parts)
+    compound->addChildShape(to_bt(Pose(T_body_parent * part.T_parent_shape)), convex(part.shape));
   compound->setMargin(kMargin);
   btCollisionShape* raw = compound.get();
   shapes_.push_back(std::move(compound));

@@ -17,7 +17,9 @@ inline Vector3 from_bt(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 /// Returns the quaternion as Bullet's type, which stores w last.
 inline btQuaternion to_bt(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 /// Returns the pose as Bullet's type.
-inline btTransform to_bt(const Pose& T) { return btTransform(to_bt(Eigen::Quaterniond(T.linear())), to_bt(Vector3(T.translation()))); }
+inline btTransform to_bt(const Pose& T) {
+  return btTransform(to_bt(Eigen::Quaterniond(T.linear())), to_bt(Vector3(T.translation())));
+}
 /// Returns Bullet's transform as a pose, its rotation normalized.
 inline Pose from_bt(const btTransform& T) {
   const btQuaternion q = T.getRotation();

@@ -22,7 +22,8 @@ void gather(btDispatcher& dispatcher, double dt, double reach, std::vector<Touch
       t.friction = point.m_combinedFriction;
       t.torsion = point.m_combinedSpinningFriction;
       t.normal_force = point.m_appliedImpulse / dt;
-      t.force_on_a = t.normal_force * t.normal + point.m_appliedImpulseLateral1 / dt * from_bt(point.m_lateralFrictionDir1) +
+      t.force_on_a = t.normal_force * t.normal +
+                     point.m_appliedImpulseLateral1 / dt * from_bt(point.m_lateralFrictionDir1) +
                      point.m_appliedImpulseLateral2 / dt * from_bt(point.m_lateralFrictionDir2);
       if (t.b == Owner::robot || (t.b == Owner::object && t.a != Owner::robot)) {
         std::swap(t.a, t.b);

@@ -18,7 +18,7 @@ struct GripSettings {
 
 /// A rigid body at an instant, world frame; the pose is that of its centre of mass.
 struct BodyState {
-  Pose T_world_body{Pose::Identity()};                                   ///< origin at the centre of mass
+  Pose T_world_body{Pose::Identity()};  ///< origin at the centre of mass
   Vector3 velocity{Vector3::Zero()}, angular_velocity{Vector3::Zero()};  ///< [m/s], [rad/s]
 };
 
@@ -39,7 +39,8 @@ class Grip {
 
   /// Returns the wrench on the object about its centre of mass, world axes. Zero when nothing is
   /// held. `inertia`: least principal one [kg m^2].
-  const Wrench& update(const BodyState& holder, const BodyState& object, double mass, double inertia, double dt);
+  const Wrench& update(const BodyState& holder, const BodyState& object, double mass,
+                       double inertia, double dt);
 
  private:
   GripSettings settings_;

@@ -7,11 +7,15 @@
 
 namespace handsel::sim {
 
-ObjectBody::ObjectBody(const StartObject& start, int index, ShapeStore& shapes, btDynamicsWorld& world) : start_(start), world_(world) {
+ObjectBody::ObjectBody(const StartObject& start, int index, ShapeStore& shapes,
+                       btDynamicsWorld& world)
+    : start_(start), world_(world) {
   Pose T_com_object = Pose::Identity();
   T_com_object.translation() = -model().com;
   btCollisionShape* shape = shapes.combine(model().parts, T_com_object);
-  if (shape == nullptr) throw ConfigError("object " + start.id + " of model " + start.model_name + " has no parts to collide with");
+  if (shape == nullptr)
+    throw ConfigError("object " + start.id + " of model " + start.model_name +
+                      " has no parts to collide with");
   btVector3 inertia(0, 0, 0);
   shape->calculateLocalInertia(model().mass, inertia);
   btRigidBody::btRigidBodyConstructionInfo info(model().mass, nullptr, shape, inertia);
@@ -42,7 +46,8 @@ void ObjectBody::push(const Wrench& wrench) {
 }
 
 void ObjectBody::read() {
-  state_ = {from_bt(body_->getWorldTransform()), from_bt(body_->getLinearVelocity()), from_bt(body_->getAngularVelocity())};
+  state_ = {from_bt(body_->getWorldTransform()), from_bt(body_->getLinearVelocity()),
+            from_bt(body_->getAngularVelocity())};
   T_world_object_ = state_.T_world_body;
   T_world_object_.translation() -= T_world_object_.linear() * model().com;
 }

@@ -35,7 +35,8 @@ struct Distance {
 double surface_distance(const ObjectModel& model, const Vector3& p_object) {
   double least = std::numeric_limits<double>::infinity();
   for (const PlacedShape& part : model.parts) {
-    least = std::min(least, std::visit(Distance{part.T_parent_shape.inverse() * p_object}, part.shape));
+    least =
+        std::min(least, std::visit(Distance{part.T_parent_shape.inverse() * p_object}, part.shape));
   }
   return least;
 }

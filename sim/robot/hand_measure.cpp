@@ -6,14 +6,20 @@
 namespace handsel::sim {
 
 HandMeasure::HandMeasure(int dof, double cut_off, double step, bool whole)
-    : cut_off_(cut_off), step_(step), whole_(whole), torque_(Vector::Zero(dof)), external_(Vector::Zero(dof)) {}
+    : cut_off_(cut_off),
+      step_(step),
+      whole_(whole),
+      torque_(Vector::Zero(dof)),
+      external_(Vector::Zero(dof)) {}
 
-void HandMeasure::update(const std::vector<Touch>& touches, const RobotBody& robot, const RobotGrasp& grasp, const Pose& tool,
-                         const Wrench& load, const Vector3& at) {
+void HandMeasure::update(const std::vector<Touch>& touches, const RobotBody& robot,
+                         const RobotGrasp& grasp, const Pose& tool, const Wrench& load,
+                         const Vector3& at) {
   Wrench wrench;
   external_.setZero();
   const Vector3 origin = tool.translation();
-  const auto add = [&](int body, const Vector3& point, const Vector3& force, const Vector3& torque) {
+  const auto add = [&](int body, const Vector3& point, const Vector3& force,
+                       const Vector3& torque) {
     if (whole_) robot.project(body, point, {force, torque}, external_);
     if (grasp.chain_of(body) < 0) return;
     wrench.force += force;

@@ -19,7 +19,8 @@ class HandMeasure {
 
   /// Takes in one physics step; to be called once a step. `tool`: pose of the tool; `load`: wrench
   /// of the hold on the palm about `at`, world, zero when there is none.
-  void update(const std::vector<Touch>&, const RobotBody&, const RobotGrasp&, const Pose& tool, const Wrench& load, const Vector3& at);
+  void update(const std::vector<Touch>&, const RobotBody&, const RobotGrasp&, const Pose& tool,
+              const Wrench& load, const Vector3& at);
 
   const Wrench& wrist_wrench() const { return wrench_; }     ///< tool axes, at the tool's origin
   const Vector& external_torque() const { return torque_; }  ///< all axes [Nm] ([N])

@@ -40,17 +40,22 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
     b.R_body_principal = eigen.eigenvectors();
     if (b.R_body_principal.determinant() < 0) b.R_body_principal.col(0) *= -1;
     const Vector3 diagonal = eigen.eigenvalues().cwiseMax(kLeastInertia);
-    const Eigen::Matrix3d R_parent = b.parent < 0 ? Eigen::Matrix3d::Identity() : bodies_[b.parent].R_body_principal;
+    const Eigen::Matrix3d R_parent =
+        b.parent < 0 ? Eigen::Matrix3d::Identity() : bodies_[b.parent].R_body_principal;
     const Vector3 com_parent = b.parent < 0 ? Vector3(Vector3::Zero()) : bodies_[b.parent].com;
-    const Eigen::Matrix3d R_parent_this = R_parent.transpose() * b.T_parent_pivot.linear() * b.R_body_principal;
+    const Eigen::Matrix3d R_parent_this =
+        R_parent.transpose() * b.T_parent_pivot.linear() * b.R_body_principal;
     const btQuaternion rotation = to_bt(Eigen::Quaterniond(R_parent_this.transpose()));
     const btVector3 axis = to_bt(Vector3(b.R_body_principal.transpose() * b.axis));
-    const btVector3 to_pivot = to_bt(Vector3(R_parent.transpose() * (b.T_parent_pivot.translation() - com_parent)));
+    const btVector3 to_pivot =
+        to_bt(Vector3(R_parent.transpose() * (b.T_parent_pivot.translation() - com_parent)));
     const btVector3 to_com = to_bt(Vector3(b.R_body_principal.transpose() * b.com));
     if (b.prismatic) {
-      multibody_->setupPrismatic(i, b.mass, to_bt(diagonal), b.parent, rotation, axis, to_pivot, to_com, true);
+      multibody_->setupPrismatic(i, b.mass, to_bt(diagonal), b.parent, rotation, axis, to_pivot,
+                                 to_com, true);
     } else {
-      multibody_->setupRevolute(i, b.mass, to_bt(diagonal), b.parent, rotation, axis, to_pivot, to_com, true);
+      multibody_->setupRevolute(i, b.mass, to_bt(diagonal), b.parent, rotation, axis, to_pivot,
+                                to_com, true);
     }
   }
   multibody_->finalizeMultiDof();
@@ -58,7 +63,8 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
   multibody_->setAngularDamping(0);
   multibody_->setHasSelfCollision(false);
   multibody_->setCanSleep(false);
-  for (int i = 0; i < n; ++i) multibody_->setJointPos(i, bodies_[i].factor * q_[bodies_[i].dof] + bodies_[i].offset);
+  for (int i = 0; i < n; ++i)
+    multibody_->setJointPos(i, bodies_[i].factor * q_[bodies_[i].dof] + bodies_[i].offset);
   world_.addMultiBody(multibody_.get());
 
   for (int i = 0; i < n; ++i) {
@@ -118,7 +124,8 @@ void RobotBody::lump(const RobotModel& model) {
       if (joint.kind == JointKind::fixed || joint.dof < 0) {
         body_of_link_[l] = parent_body;
         T_body_link_[l] = T_parent_joint;
-        if (joint.kind == JointKind::prismatic) T_body_link_[l].translate(joint.mimic_offset * joint.axis);
+        if (joint.kind == JointKind::prismatic)
+          T_body_link_[l].translate(joint.mimic_offset * joint.axis);
         if (joint.kind == JointKind::revolute || joint.kind == JointKind::continuous)
           T_body_link_[l].rotate(Eigen::AngleAxisd(joint.mimic_offset, joint.axis));
       } else {
@@ -154,7 +161,8 @@ void RobotBody::lump(const RobotModel& model) {
     }
   }
   for (Body& b : bodies_) {
-    b.inertia -= b.mass * (b.com.squaredNorm() * Eigen::Matrix3d::Identity() - b.com * b.com.transpose());
+    b.inertia -=
+        b.mass * (b.com.squaredNorm() * Eigen::Matrix3d::Identity() - b.com * b.com.transpose());
     b.mass = std::max(b.mass, kLeastMass);
   }
   find_fingers();
@@ -172,7 +180,8 @@ void RobotBody::find_fingers() {
   }
 }
 
-// Stiffness in proportion to what a joint moves, as high as the torque limits and the fastest motion of the finger allow; Rayleigh damping.
+// Stiffness in proportion to what a joint moves, as high as the torque limits and the fastest
+// motion of the finger allow; Rayleigh damping.
 void RobotBody::soften_fingers() {
   std::vector<int> together;  // for each finger the first of those it is coupled with
   for (const Body& b : bodies_)
@@ -198,13 +207,18 @@ void RobotBody::soften_fingers() {
         Body& b = bodies_[finger[i]];
         const auto leader = std::find(finger.begin(), finger.end(), b.leader) - finger.begin();
         b.stiffness = share * M(i, i) * fastest * fastest;
-        if (!follows(b)) b.stiffness = std::min(b.limit / (settings_.finger_travel * (b.prismatic ? 0.01 : 1)), b.stiffness);
+        if (!follows(b))
+          b.stiffness =
+              std::min(b.limit / (settings_.finger_travel * (b.prismatic ? 0.01 : 1)), b.stiffness);
         b.damping = b.stiffness / fastest;
         Eigen::VectorXd way = Eigen::VectorXd::Unit(n, i);
         if (follows(b) && leader < n) way[leader] = -b.factor;
         K += b.stiffness * way * way.transpose();
       }
-      quickest = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(K, M, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+      quickest =
+          Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(K, M, Eigen::EigenvaluesOnly)
+              .eigenvalues()
+              .maxCoeff();
     }
   }
 }
@@ -226,14 +240,17 @@ Eigen::MatrixXd RobotBody::mass_matrix(const std::vector<int>& of) {
   return (M + M.transpose()) / 2 + 1e-9 * Eigen::MatrixXd::Identity(n, n);
 }
 
-void RobotBody::drive(const Vector& position, const Vector& velocity, const Vector& acceleration, const Vector& effort) {
+void RobotBody::drive(const Vector& position, const Vector& velocity, const Vector& acceleration,
+                      const Vector& effort) {
   const double w = settings_.bandwidth;
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
     wanted_[i] = b.factor * acceleration[b.dof];
     wanted_[i] += 2 * w * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
     if (b.finger >= 0) continue;
-    wanted_[i] += w * w * std::clamp(b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i), -0.1, 0.1);
+    wanted_[i] +=
+        w * w *
+        std::clamp(b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i), -0.1, 0.1);
   }
   inverse_dynamics(wanted_);
   for (const Body& b : bodies_) {
@@ -243,8 +260,9 @@ void RobotBody::drive(const Vector& position, const Vector& velocity, const Vect
     Body& b = bodies_[i];
     if (follows(b)) continue;
     if (b.finger >= 0) {
-      b.torque += b.stiffness * (b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i)) +
-                  b.damping * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
+      b.torque +=
+          b.stiffness * (b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i)) +
+          b.damping * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
     }
     b.torque = std::clamp(b.torque + b.factor * effort[b.dof], -b.limit, b.limit);
     multibody_->addJointTorque(i, b.torque);
@@ -252,8 +270,11 @@ void RobotBody::drive(const Vector& position, const Vector& velocity, const Vect
   for (int i = 0; i < bodies(); ++i) {
     Body& b = bodies_[i];
     if (!follows(b)) continue;
-    const double off = b.factor * multibody_->getJointPos(b.leader) + b.offset - multibody_->getJointPos(i);
-    const double tie = b.stiffness * off + b.damping * (b.factor * multibody_->getJointVel(b.leader) - multibody_->getJointVel(i));
+    const double off =
+        b.factor * multibody_->getJointPos(b.leader) + b.offset - multibody_->getJointPos(i);
+    const double tie =
+        b.stiffness * off +
+        b.damping * (b.factor * multibody_->getJointVel(b.leader) - multibody_->getJointVel(i));
     multibody_->addJointTorque(i, tie);
     multibody_->addJointTorque(b.leader, -b.factor * tie);
     b.torque = 0;
@@ -264,7 +285,8 @@ void RobotBody::push(int body, const Vector3& point, const Wrench& wrench) {
   if (body < 0) return;
   const Vector3 com = bodies_[body].T_world * bodies_[body].com;
   multibody_->addLinkForce(body, to_bt(wrench.force));
-  multibody_->addLinkTorque(body, to_bt(Vector3(wrench.torque + (point - com).cross(wrench.force))));
+  multibody_->addLinkTorque(body,
+                            to_bt(Vector3(wrench.torque + (point - com).cross(wrench.force))));
 }
 
 void RobotBody::read() {
@@ -285,11 +307,14 @@ void RobotBody::read() {
 void RobotBody::forward() {
   for (int i = 0; i < bodies(); ++i) {
     Body& b = bodies_[i];
-    const Pose T_world_pivot = (b.parent < 0 ? T_world_base_ : bodies_[b.parent].T_world) * b.T_parent_pivot;
+    const Pose T_world_pivot =
+        (b.parent < 0 ? T_world_base_ : bodies_[b.parent].T_world) * b.T_parent_pivot;
     const Vector3 w0 = b.parent < 0 ? Vector3(Vector3::Zero()) : bodies_[b.parent].omega;
-    const Vector3 v0 = b.parent < 0
-                           ? Vector3(Vector3::Zero())
-                           : Vector3(bodies_[b.parent].v + w0.cross(T_world_pivot.translation() - bodies_[b.parent].T_world.translation()));
+    const Vector3 v0 =
+        b.parent < 0
+            ? Vector3(Vector3::Zero())
+            : Vector3(bodies_[b.parent].v + w0.cross(T_world_pivot.translation() -
+                                                     bodies_[b.parent].T_world.translation()));
     const double q = multibody_->getJointPos(i), qd = multibody_->getJointVel(i);
     const Vector3 axis = T_world_pivot.linear() * b.axis;
     b.T_world = T_world_pivot;
@@ -309,14 +334,16 @@ void RobotBody::forward() {
   }
 }
 
-// Newton and Euler in world axes about each body's frame origin, at the present velocities and the wanted accelerations.
+// Newton and Euler in world axes about each body's frame origin, at the present velocities and the
+// wanted accelerations.
 void RobotBody::inverse_dynamics(const std::vector<double>& acceleration) {
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
     const Vector3 p = b.T_world.translation();
     const Vector3 axis = b.T_world.linear() * b.axis;
     const double qdd = acceleration[i], qd = multibody_->getJointVel(i);
-    Vector3 w0 = Vector3::Zero(), alpha0 = Vector3::Zero(), a0 = Vector3(0, 0, kGravity), r = Vector3::Zero();
+    Vector3 w0 = Vector3::Zero(), alpha0 = Vector3::Zero(), a0 = Vector3(0, 0, kGravity),
+            r = Vector3::Zero();
     if (b.parent >= 0) {
       w0 = bodies_[b.parent].omega;
       alpha0 = alpha_[b.parent];
@@ -325,7 +352,8 @@ void RobotBody::inverse_dynamics(const std::vector<double>& acceleration) {
     }
     const Vector3 carried = a0 + alpha0.cross(r) + w0.cross(w0.cross(r));
     alpha_[i] = b.prismatic ? alpha0 : Vector3(alpha0 + qdd * axis + w0.cross(Vector3(qd * axis)));
-    acc_[i] = b.prismatic ? Vector3(carried + qdd * axis + 2 * w0.cross(Vector3(qd * axis))) : carried;
+    acc_[i] =
+        b.prismatic ? Vector3(carried + qdd * axis + 2 * w0.cross(Vector3(qd * axis))) : carried;
     const Vector3 c = b.T_world.linear() * b.com;
     const Vector3 a_com = acc_[i] + alpha_[i].cross(c) + b.omega.cross(b.omega.cross(c));
     const Eigen::Matrix3d I = b.T_world.linear() * b.inertia * b.T_world.linear().transpose();
@@ -349,21 +377,29 @@ Vector3 RobotBody::point_velocity(int body, const Vector3& point) const {
   return b.v + b.omega.cross(point - b.T_world.translation());
 }
 
-Vector3 RobotBody::angular_velocity(int body) const { return body < 0 ? Vector3(Vector3::Zero()) : bodies_[body].omega; }
+Vector3 RobotBody::angular_velocity(int body) const {
+  return body < 0 ? Vector3(Vector3::Zero()) : bodies_[body].omega;
+}
 
-const std::string& RobotBody::name_of(int body) const { return model_.links()[body < 0 ? 0 : bodies_[body].link].name; }
+const std::string& RobotBody::name_of(int body) const {
+  return model_.links()[body < 0 ? 0 : bodies_[body].link].name;
+}
 
-void RobotBody::project(int body, const Vector3& point, const Wrench& wrench, Vector& torque) const {
+void RobotBody::project(int body, const Vector3& point, const Wrench& wrench,
+                        Vector& torque) const {
   for (int i = body; i >= 0; i = bodies_[i].parent) {
     const Body& b = bodies_[i];
     const Vector3 axis = b.T_world.linear() * b.axis;
     const double amount =
-        b.prismatic ? axis.dot(wrench.force) : axis.dot(wrench.torque + (point - b.T_world.translation()).cross(wrench.force));
+        b.prismatic
+            ? axis.dot(wrench.force)
+            : axis.dot(wrench.torque + (point - b.T_world.translation()).cross(wrench.force));
     torque[b.dof] += b.factor * amount;
   }
 }
 
-void RobotBody::directed_jacobian(int body, const Vector3& point, const Vector3& n, Vector& out) const {
+void RobotBody::directed_jacobian(int body, const Vector3& point, const Vector3& n,
+                                  Vector& out) const {
   out.setZero(model_.dof());
   project(body, point, Wrench{n, Vector3::Zero()}, out);
 }

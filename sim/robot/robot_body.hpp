@@ -53,7 +53,8 @@ class RobotBody {
 
   /// Set-points of all axes for the coming step; efforts are added to what the servos give. Coupled
   /// joints follow their axis.
-  void drive(const Vector& position, const Vector& velocity, const Vector& acceleration, const Vector& effort);
+  void drive(const Vector& position, const Vector& velocity, const Vector& acceleration,
+             const Vector& effort);
   /// Wrench on the body at a world point, for the coming step.
   void push(int body, const Vector3& point, const Wrench&);
   /// Reads the state after a step.
@@ -97,7 +98,7 @@ class RobotBody {
     Pose T_world{Pose::Identity()};
     Vector3 omega{Vector3::Zero()}, v{Vector3::Zero()};  // of the frame origin, world
     int finger{-1};                                      // which chain beyond the tool's body
-    double stiffness{0}, damping{0};                     // of a finger joint's motor, or of its coupling
+    double stiffness{0}, damping{0};  // of a finger joint's motor, or of its coupling
     double torque{0};
   };
 

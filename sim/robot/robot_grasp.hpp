@@ -33,7 +33,8 @@ class RobotGrasp {
 
  private:
   bool of_hand(const Touch& t, int object) const {
-    return t.a == Owner::robot && t.b == Owner::object && t.index_b == object && chain_of(t.index_a) >= 0;
+    return t.a == Owner::robot && t.b == Owner::object && t.index_b == object &&
+           chain_of(t.index_a) >= 0;
   }
 
   double touch_force_, grasp_time_, lose_time_, closed_for_{0}, open_for_{0};

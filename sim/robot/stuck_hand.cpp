@@ -8,7 +8,9 @@ namespace handsel::sim {
 void StuckHand::apply(double dt, bool holds_object, Reference& reference) {
   constexpr double kRestTime = 0.5, kRestSpeed = 1e-6;  // [s], [rad/s, m/s]
   if (holds_object && !stuck_) {
-    const auto is_moving = [&](int axis) { return std::abs(reference.velocity[axis]) >= kRestSpeed; };
+    const auto is_moving = [&](int axis) {
+      return std::abs(reference.velocity[axis]) >= kRestSpeed;
+    };
     const bool moves = std::any_of(axes_.begin(), axes_.end(), is_moving);
     at_rest_ = moves ? 0 : at_rest_ + dt;
     stuck_ = at_rest_ > kRestTime;

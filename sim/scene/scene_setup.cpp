@@ -33,9 +33,13 @@ PersonKind kind_of(config::PersonBehaviour behaviour) {
 
 class Reader {
  public:
-  Reader(const config::Scenario& scenario, const RobotModel& robot, const ObjectLibrary& library, const std::filesystem::path& data_root,
-         std::uint64_t seed)
-      : scenario_(scenario), robot_(robot), library_(library), data_root_(data_root), random_(seed * 0x9e3779b97f4a7c15ULL + 0x5eed) {}
+  Reader(const config::Scenario& scenario, const RobotModel& robot, const ObjectLibrary& library,
+         const std::filesystem::path& data_root, std::uint64_t seed)
+      : scenario_(scenario),
+        robot_(robot),
+        library_(library),
+        data_root_(data_root),
+        random_(seed * 0x9e3779b97f4a7c15ULL + 0x5eed) {}
 
   SceneSetup read(double coverage) {
     require_names(scenario_.boxes(), "box");
@@ -46,11 +50,14 @@ class Reader {
     for (const auto& box : scenario_.boxes()) read_box(box);
     for (const auto& object : scenario_.objects()) read_object(object);
     for (const auto& person : scenario_.people()) read_person(person);
-    for (const auto& sensor : scenario_.human_sensors()) out_.human_sensors.push_back(sensor_of(sensor, coverage, true));
-    for (const auto& sensor : scenario_.object_sensors()) out_.object_sensors.push_back(sensor_of(sensor, coverage, false));
+    for (const auto& sensor : scenario_.human_sensors())
+      out_.human_sensors.push_back(sensor_of(sensor, coverage, true));
+    for (const auto& sensor : scenario_.object_sensors())
+      out_.object_sensors.push_back(sensor_of(sensor, coverage, false));
     for (const auto& d : scenario_.disturbances())
       out_.disturbances.push_back({d.at(), {0, sim_action(d.action()), d.subject(), d.value()}});
-    std::stable_sort(out_.disturbances.begin(), out_.disturbances.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    std::stable_sort(out_.disturbances.begin(), out_.disturbances.end(),
+                     [](const auto& a, const auto& b) { return a.at < b.at; });
     if (!out_.objects.empty()) out_.watched = out_.objects.front().id;
     for (const auto& task : scenario_.tasks()) {
       if (task.object().empty()) continue;
@@ -63,14 +70,19 @@ class Reader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw ConfigError("scenario " + scenario_.name() + ": " + what); }
-  double jitter(double size) { return size * (2 * std::uniform_real_distribution<double>(0, 1)(random_) - 1); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw ConfigError("scenario " + scenario_.name() + ": " + what);
+  }
+  double jitter(double size) {
+    return size * (2 * std::uniform_real_distribution<double>(0, 1)(random_) - 1);
+  }
 
   template <class Entries>
   void require_names(const Entries& entries, const std::string& kind) const {
     constexpr int kMost = 200;  // of a kind: each costs time in every physics step
     if (entries.size() > kMost)
-      fail(std::to_string(entries.size()) + " entries of kind " + kind + ", must be at most " + std::to_string(kMost));
+      fail(std::to_string(entries.size()) + " entries of kind " + kind + ", must be at most " +
+           std::to_string(kMost));
     std::set<std::string> known;
     for (const auto& entry : entries) {
       if (entry.id().empty()) fail(kind + " has no id: each needs a name of its own");
@@ -85,31 +97,40 @@ class Reader {
     for (const auto& entry : scenario_.start()) names.push_back(entry.first);
     std::sort(names.begin(), names.end());
     for (const std::string& joint : names) {
-      const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(), [&](const Axis& a) { return a.name == joint; });
-      if (axis == robot_.axes().end()) fail("start names joint " + joint + ", which robot " + robot_.name() + " does not have");
+      const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(),
+                                     [&](const Axis& a) { return a.name == joint; });
+      if (axis == robot_.axes().end())
+        fail("start names joint " + joint + ", which robot " + robot_.name() + " does not have");
       const double value = scenario_.start().at(joint);
       if (value < axis->lower || value > axis->upper) {
-        fail("start of " + joint + " is " + std::to_string(value) + ", must be between " + std::to_string(axis->lower) + " and " +
-             std::to_string(axis->upper));
+        fail("start of " + joint + " is " + std::to_string(value) + ", must be between " +
+             std::to_string(axis->lower) + " and " + std::to_string(axis->upper));
       }
       out_.start[axis - robot_.axes().begin()] = value;
     }
   }
 
   void read_box(const config::BoxDescription& box) {
-    if (vec(box.size()).minCoeff() <= 0) fail("box " + box.id() + " has a size that is not above 0");
+    if (vec(box.size()).minCoeff() <= 0)
+      fail("box " + box.id() + " has a size that is not above 0");
     out_.boxes.push_back({box.id(), pose_of(box.pose()), vec(box.size()), box.supports()});
   }
 
   void read_object(const config::ObjectPlacement& object) {
     StartObject o{object.id(), object.model(), library_(object.model()), pose_of(object.pose())};
-    if (o.model == nullptr) fail("object " + object.id() + " is of model " + object.model() + ", which is not under objects/");
+    if (o.model == nullptr)
+      fail("object " + object.id() + " is of model " + object.model() +
+           ", which is not under objects/");
     o.T_world_object.translation() += Vector3(jitter(object.jitter()), jitter(object.jitter()), 0);
     if (!object.on().empty()) {
-      const auto box = std::find_if(out_.boxes.begin(), out_.boxes.end(), [&](const StartBox& b) { return b.id == object.on(); });
-      if (box == out_.boxes.end()) fail("object " + object.id() + " stands on " + object.on() + ", which is no box of the scenario");
+      const auto box = std::find_if(out_.boxes.begin(), out_.boxes.end(),
+                                    [&](const StartBox& b) { return b.id == object.on(); });
+      if (box == out_.boxes.end())
+        fail("object " + object.id() + " stands on " + object.on() +
+             ", which is no box of the scenario");
       if (object.pose().xyz().z() == 0) {
-        o.T_world_object.translation().z() = box->T_world_box.translation().z() + box->size.z() / 2 + o.model->height_above_support;
+        o.T_world_object.translation().z() =
+            box->T_world_box.translation().z() + box->size.z() / 2 + o.model->height_above_support;
       }
     }
     out_.objects.push_back(o);
@@ -123,7 +144,8 @@ class Reader {
     s.yaw = person.yaw();
     if (person.stature() > 0) s.stature = person.stature();
     if (s.stature < 1.2 || s.stature > 2.2)
-      fail("stature of " + s.id + " is " + std::to_string(s.stature) + ", must be between 1.2 and 2.2");
+      fail("stature of " + s.id + " is " + std::to_string(s.stature) +
+           ", must be between 1.2 and 2.2");
     s.kind = kind_of(person.behaviour());
     for (const StartBox& box : out_.boxes) s.furniture.push_back({box.T_world_box, box.size});
     if (person.reaction() > 0) s.reaction = person.reaction();
@@ -139,21 +161,28 @@ class Reader {
       s.recording = std::make_shared<const Recording>(std::move(recording));
     }
     if (s.kind == PersonKind::external) {
-      if (person.external().empty()) fail("person " + s.id + " is moved from outside but `external` names no source");
+      if (person.external().empty())
+        fail("person " + s.id + " is moved from outside but `external` names no source");
       for (const auto& sensor : scenario_.human_sensors())
-        if (sensor.source() == person.external()) fail("person " + s.id + " would follow the simulator's own sensor " + sensor.source());
+        if (sensor.source() == person.external())
+          fail("person " + s.id + " would follow the simulator's own sensor " + sensor.source());
       s.external = person.external();
       if (person.correction() < 0 || person.correction() > 1)
-        fail("correction of " + s.id + " is " + std::to_string(person.correction()) + ", must be between 0 and 1");
+        fail("correction of " + s.id + " is " + std::to_string(person.correction()) +
+             ", must be between 0 and 1");
       if (person.correction() > 0) s.correction = person.correction();
     }
     if (s.kind == PersonKind::giver || s.kind == PersonKind::fetcher) {
       const bool gives = s.kind == PersonKind::giver;
       (gives ? p.holds : p.fetches) = person.object();
-      if (std::none_of(out_.objects.begin(), out_.objects.end(), [&](const StartObject& o) { return o.id == person.object(); })) {
-        fail("person " + s.id + (gives ? " holds \"" : " fetches \"") + person.object() + "\", which is no object of the scenario");
+      if (std::none_of(out_.objects.begin(), out_.objects.end(),
+                       [&](const StartObject& o) { return o.id == person.object(); })) {
+        fail("person " + s.id + (gives ? " holds \"" : " fetches \"") + person.object() +
+             "\", which is no object of the scenario");
       }
-      if (person.fetches_at() < 0) fail("fetches_at of " + s.id + " is " + std::to_string(person.fetches_at()) + ", must not be negative");
+      if (person.fetches_at() < 0)
+        fail("fetches_at of " + s.id + " is " + std::to_string(person.fetches_at()) +
+             ", must not be negative");
       s.fetches_at = person.fetches_at();
     }
     if (person.has_varies() && !vary(s, person.varies())) return;
@@ -162,14 +191,21 @@ class Reader {
 
   /// False: nobody this time.
   bool vary(PersonSettings& s, const config::PersonVariation& v) {
-    for (const double share :
-         {v.absent(), v.left_handed(), v.hesitates(), v.withdraws(), v.looks_away(), v.sidesteps(), v.seated(), v.early()})
-      if (share < 0 || share > 1) fail("varies of " + s.id + ": a share is " + std::to_string(share) + ", must be between 0 and 1");
-    for (const double size : {v.place(), v.turn(), v.stature(), v.hesitation(), v.away(), v.sidestep(), v.slowest(), v.begins_after()})
-      if (size < 0) fail("varies of " + s.id + ": " + std::to_string(size) + " must not be negative");
-    if (v.fastest() < v.slowest()) fail("varies of " + s.id + ": fastest must not be below slowest");
-    if (v.begins_before() < v.begins_after()) fail("varies of " + s.id + ": begins_before must not be below begins_after");
-    // Every number is drawn, needed or not: one share changed leaves the others' draws as they were.
+    for (const double share : {v.absent(), v.left_handed(), v.hesitates(), v.withdraws(),
+                               v.looks_away(), v.sidesteps(), v.seated(), v.early()})
+      if (share < 0 || share > 1)
+        fail("varies of " + s.id + ": a share is " + std::to_string(share) +
+             ", must be between 0 and 1");
+    for (const double size : {v.place(), v.turn(), v.stature(), v.hesitation(), v.away(),
+                              v.sidestep(), v.slowest(), v.begins_after()})
+      if (size < 0)
+        fail("varies of " + s.id + ": " + std::to_string(size) + " must not be negative");
+    if (v.fastest() < v.slowest())
+      fail("varies of " + s.id + ": fastest must not be below slowest");
+    if (v.begins_before() < v.begins_after())
+      fail("varies of " + s.id + ": begins_before must not be below begins_after");
+    // Every number is drawn, needed or not: one share changed leaves the others' draws as they
+    // were.
     const auto within = [this](double low, double high) {
       return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random_);
     };
@@ -193,13 +229,17 @@ class Reader {
     const double step = some(v.sidesteps(), v.sidestep()), way = within(M_PI_2, 3 * M_PI_2);
     s.behaviour.sidestep_at = within(v.begins_after(), v.begins_before());
     s.behaviour.seated = chance(v.seated());
-    const Vector3 to_robot = (out_.T_world_base.translation() - s.feet).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
-    if (!s.behaviour.seated) s.behaviour.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
+    const Vector3 to_robot = (out_.T_world_base.translation() - s.feet)
+                                 .cwiseProduct(Vector3(1, 1, 0))
+                                 .stableNormalized();
+    if (!s.behaviour.seated)
+      s.behaviour.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
     s.behaviour.early = chance(v.early());
     return !absent;
   }
 
-  SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage, bool of_people) const {
+  SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage,
+                           bool of_people) const {
     const auto within = [&](double value, const char* key, double low, double high) {
       if (value >= low && value <= high) return value;
       char range[64];
@@ -216,13 +256,17 @@ class Reader {
     s.jitter = within(sensor.jitter(), "jitter", 0, 10);
     s.dropout = within(sensor.dropout(), "dropout", 0, kMost);
     s.burst_rate = within(sensor.burst_rate(), "burst_rate", 0, 1000);
-    s.burst_length = within(sensor.burst_length(), "burst_length", s.burst_rate > 0 ? 1e-3 : 0, 100);
+    s.burst_length =
+        within(sensor.burst_length(), "burst_length", s.burst_rate > 0 ? 1e-3 : 0, 100);
     s.joint_dropout = within(sensor.joint_dropout(), "joint_dropout", 0, kMost);
     if (sensor.has_pose()) s.T_world_sensor = pose_of(sensor.pose());
     s.link = sensor.link();
     if (!s.link.empty()) {
-      if (sensor.has_coverage_low()) fail("sensor " + s.source + " is carried by " + s.link + ": it can claim no coverage");
-      if (robot_.link_index(s.link) < 0) fail("sensor " + s.source + " is carried by " + s.link + ", which is no link of " + robot_.name());
+      if (sensor.has_coverage_low())
+        fail("sensor " + s.source + " is carried by " + s.link + ": it can claim no coverage");
+      if (robot_.link_index(s.link) < 0)
+        fail("sensor " + s.source + " is carried by " + s.link + ", which is no link of " +
+             robot_.name());
       s.T_link_sensor = pose_of(sensor.pose());
       s.T_world_sensor = s.T_link_sensor;
     }
@@ -230,20 +274,25 @@ class Reader {
     s.fov_vertical = within(sensor.fov_vertical(), "fov_vertical", 0, M_PI);
     s.range = within(sensor.range(), "range", 0, 100);
     s.occlusion = sensor.occlusion();
-    if (!s.T_world_sensor && (s.occlusion || s.range > 0 || s.fov_horizontal > 0 || s.fov_vertical > 0))
+    if (!s.T_world_sensor &&
+        (s.occlusion || s.range > 0 || s.fov_horizontal > 0 || s.fov_vertical > 0))
       fail("sensor " + s.source + ": occlusion, range and field of view need its pose");
     const Vector3 centre = out_.T_world_base.translation();
     s.coverage.low = Vector3(centre.x() - coverage, centre.y() - coverage, -0.1);
     s.coverage.high = Vector3(centre.x() + coverage, centre.y() + coverage, 2.5);
     if (sensor.has_coverage_low() != sensor.has_coverage_high())
       fail("sensor " + s.source + ": coverage_low and coverage_high go together");
-    if (sensor.has_coverage_low()) s.coverage = {vec(sensor.coverage_low()), vec(sensor.coverage_high())};
-    if ((s.coverage.low.array() > s.coverage.high.array()).any()) fail("sensor " + s.source + ": coverage_high lies below coverage_low");
+    if (sensor.has_coverage_low())
+      s.coverage = {vec(sensor.coverage_low()), vec(sensor.coverage_high())};
+    if ((s.coverage.low.array() > s.coverage.high.array()).any())
+      fail("sensor " + s.source + ": coverage_high lies below coverage_low");
     if (of_people) {
-      if (const std::string why = claims_too_much(s); !why.empty()) fail("sensor " + s.source + ": " + why);
+      if (const std::string why = claims_too_much(s); !why.empty())
+        fail("sensor " + s.source + ": " + why);
     }
     for (const std::string& joint : sensor.joints()) {
-      if (body_joint_index(joint) < 0) fail("sensor " + s.source + " tracks " + joint + ", which is no REP-155 joint of a body");
+      if (body_joint_index(joint) < 0)
+        fail("sensor " + s.source + " tracks " + joint + ", which is no REP-155 joint of a body");
       s.joints.push_back(joint);
     }
     s.gaze = sensor.gaze() == config::NO_GAZE     ? GazeOutput::none
@@ -252,14 +301,17 @@ class Reader {
     s.gaze_noise = within(sensor.gaze_noise(), "gaze_noise", 0, 1);
     s.gaze_dropout = within(sensor.gaze_dropout(), "gaze_dropout", 0, 1);
     s.swap_rate = within(sensor.swap_rate(), "swap_rate", 0, s.rate);
-    const bool only_people = !s.joints.empty() || s.joint_dropout > 0 || sensor.gaze() != config::GAZE_WITH_BODY || s.gaze_noise > 0 ||
+    const bool only_people = !s.joints.empty() || s.joint_dropout > 0 ||
+                             sensor.gaze() != config::GAZE_WITH_BODY || s.gaze_noise > 0 ||
                              s.gaze_dropout > 0 || s.swap_rate > 0;
     if (!of_people && only_people)
-      fail("sensor " + s.source + " sees objects: joints, joint_dropout, gaze and swap_rate are for sensors of people");
+      fail("sensor " + s.source +
+           " sees objects: joints, joint_dropout, gaze and swap_rate are for sensors of people");
     for (const auto& fault : sensor.faults()) {
-      s.faults.push_back({static_cast<SensorFaultKind>(fault.kind()), within(fault.at(), "at of a fault", 0, 1e6),
-                          within(fault.length(), "length of a fault", 1e-3, 1e6), vec(fault.shift()),
-                          within(fault.delay(), "delay of a fault", 0, 10)});
+      s.faults.push_back({static_cast<SensorFaultKind>(fault.kind()),
+                          within(fault.at(), "at of a fault", 0, 1e6),
+                          within(fault.length(), "length of a fault", 1e-3, 1e6),
+                          vec(fault.shift()), within(fault.delay(), "delay of a fault", 0, 10)});
     }
     return s;
   }
@@ -277,7 +329,8 @@ class Reader {
 Pose pose_of(const config::PoseRpy& p) {
   Pose T = Pose::Identity();
   T.translation() = vec(p.xyz());
-  T.linear() = (Eigen::AngleAxisd(p.rpy().z(), Vector3::UnitZ()) * Eigen::AngleAxisd(p.rpy().y(), Vector3::UnitY()) *
+  T.linear() = (Eigen::AngleAxisd(p.rpy().z(), Vector3::UnitZ()) *
+                Eigen::AngleAxisd(p.rpy().y(), Vector3::UnitY()) *
                 Eigen::AngleAxisd(p.rpy().x(), Vector3::UnitX()))
                    .toRotationMatrix();
   return T;
@@ -292,7 +345,8 @@ SimAction sim_action(const std::string& name) {
   throw ConfigError("disturbance " + name + " is unknown; there are " + all);
 }
 
-SceneSetup set_up(const config::Scenario& scenario, const RobotModel& robot, const ObjectLibrary& library, double coverage,
+SceneSetup set_up(const config::Scenario& scenario, const RobotModel& robot,
+                  const ObjectLibrary& library, double coverage,
                   const std::filesystem::path& data_root, std::uint64_t seed) {
   return Reader(scenario, robot, library, data_root, seed).read(coverage);
 }

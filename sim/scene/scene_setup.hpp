@@ -51,14 +51,14 @@ struct SceneSetup {
   std::vector<StartPerson> people;
   std::vector<SensorSettings> human_sensors, object_sensors;  ///< in the order of the scenario
   std::vector<TimedControl> disturbances;                     ///< in time order
-  std::string watched;                                        ///< object of the first task, else the first object; may be empty
-  bool never_releases{};                                      ///< injected fault: the hand does not open again (StuckHand)
-  bool no_weld{};                                             ///< contacts alone hold objects, without a grasp constraint
+  std::string watched;    ///< object of the first task, else the first object; may be empty
+  bool never_releases{};  ///< injected fault: the hand does not open again (StuckHand)
+  bool no_weld{};         ///< contacts alone hold objects, without a grasp constraint
 };
 
 /// Throws ConfigError or MissingError naming what in the scenario is wrong and what there is.
-SceneSetup set_up(const config::Scenario&, const RobotModel&, const ObjectLibrary&, double coverage, const std::filesystem::path& data_root,
-                  std::uint64_t seed);
+SceneSetup set_up(const config::Scenario&, const RobotModel&, const ObjectLibrary&, double coverage,
+                  const std::filesystem::path& data_root, std::uint64_t seed);
 
 /// "person_dart" -> SimAction::person_dart. Throws ConfigError listing the names.
 SimAction sim_action(const std::string& name);

@@ -16,7 +16,8 @@ std::filesystem::path data_root() {
 
 SimSettings load_settings(const std::filesystem::path& folder) {
   const auto read = settings::read_sim_settings(folder / "sim.txtpb");
-  const auto controller = settings::read_trajectory_controller_settings(folder / "trajectory_controller.txtpb");
+  const auto controller =
+      settings::read_trajectory_controller_settings(folder / "trajectory_controller.txtpb");
   SimSettings s;
   s.step = read.step;
   s.solver_iterations = read.solver_iterations;

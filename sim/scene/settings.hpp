@@ -23,19 +23,19 @@ struct SimSettings {
   /// Grasp constraint of a robot's hand, grip of a person's hand.
   GripSettings robot_grip, person_grip;
   PersonHandSettings person_hand;  ///< free hand of a person on its spring
-  double touch_force{0.2};         ///< a contact weaker than this does not count for force closure [N]
-  double grasp_time{0.02};         ///< force closure for this long begins a hold [s]
-  double lose_time{0.05};          ///< no force closure for this long ends a hold [s]
-  double wrench_filter{25};        ///< cut-off of the wrench and torque measurement [Hz]
-  double force_noise{0.1};         ///< standard deviation of a measured force [N]
-  double position_noise{1e-5};     ///< standard deviation of a measured position [rad]
-  double coverage{4};              ///< half width of a sensor's default coverage [m]
-  double setpoint_period{0};       ///< [s], 0: measured
+  double touch_force{0.2};      ///< a contact weaker than this does not count for force closure [N]
+  double grasp_time{0.02};      ///< force closure for this long begins a hold [s]
+  double lose_time{0.05};       ///< no force closure for this long ends a hold [s]
+  double wrench_filter{25};     ///< cut-off of the wrench and torque measurement [Hz]
+  double force_noise{0.1};      ///< standard deviation of a measured force [N]
+  double position_noise{1e-5};  ///< standard deviation of a measured position [rad]
+  double coverage{4};           ///< half width of a sensor's default coverage [m]
+  double setpoint_period{0};    ///< [s], 0: measured
   // With simulated time only (sim/time_keeper):
-  double clock_period{0.01};        ///< one grant lets the components' time advance by this [s]
-  double max_lag{0.005};            ///< steps may come this much late before the system's time waits [s]
-  double max_wait{0.5};             ///< for a component that does not answer, or for set-points [s]
-  SsmSettings ssm;                  ///< of the separation oracle
+  double clock_period{0.01};  ///< one grant lets the components' time advance by this [s]
+  double max_lag{0.005};      ///< steps may come this much late before the system's time waits [s]
+  double max_wait{0.5};       ///< for a component that does not answer, or for set-points [s]
+  SsmSettings ssm;            ///< of the separation oracle
   std::filesystem::path data_root;  ///< where relative recordings are found; empty: nowhere
 };
 

@@ -7,14 +7,17 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kInsideOwnBody = 0.02;  // a joint this far beyond a capsule's surface still belongs to it [m]
+constexpr double kInsideOwnBody =
+    0.02;  // a joint this far beyond a capsule's surface still belongs to it [m]
 
 Vector3 noise(std::mt19937_64& random, std::normal_distribution<double>& normal, double sigma) {
   const double x = normal(random), y = normal(random), z = normal(random);
   return sigma * Vector3(x, y, z);
 }
 
-bool inside(const Coverage& c, const Vector3& p) { return (p.array() >= c.low.array()).all() && (p.array() <= c.high.array()).all(); }
+bool inside(const Coverage& c, const Vector3& p) {
+  return (p.array() >= c.low.array()).all() && (p.array() <= c.high.array()).all();
+}
 
 /// Robot, boxes and the bodies of people other than `own`; of `own` what the point is not part of.
 bool hidden(const Sight& sight, std::size_t own, const Vector3& eye, const Vector3& point) {
@@ -37,8 +40,10 @@ bool in_view(const SensorSettings& s, const Vector3& point) {
   if (!s.T_world_sensor) return true;
   const Vector3 p = s.T_world_sensor->inverse() * point;
   if (s.range > 0 && p.norm() > s.range) return false;
-  if (s.fov_horizontal > 0 && std::abs(std::atan2(p.y(), p.x())) > s.fov_horizontal / 2) return false;
-  return s.fov_vertical <= 0 || std::abs(std::atan2(p.z(), std::hypot(p.x(), p.y()))) <= s.fov_vertical / 2;
+  if (s.fov_horizontal > 0 && std::abs(std::atan2(p.y(), p.x())) > s.fov_horizontal / 2)
+    return false;
+  return s.fov_vertical <= 0 ||
+         std::abs(std::atan2(p.z(), std::hypot(p.x(), p.y()))) <= s.fov_vertical / 2;
 }
 
 void carried_to(SensorSettings& s, const Pose& T_world_sensor) {
@@ -46,7 +51,9 @@ void carried_to(SensorSettings& s, const Pose& T_world_sensor) {
   s.coverage.low = s.coverage.high = T_world_sensor.translation();
 }
 
-bool in_reach(const SensorSettings& s, const Vector3& point) { return !s.link.empty() || inside(s.coverage, point); }
+bool in_reach(const SensorSettings& s, const Vector3& point) {
+  return !s.link.empty() || inside(s.coverage, point);
+}
 
 std::string claims_too_much(const SensorSettings& s) {
   if (!s.link.empty()) return "";
@@ -57,8 +64,9 @@ std::string claims_too_much(const SensorSettings& s) {
       if (corner >> i & 1) p[i] = s.coverage.high[i];
     if (in_view(s, p)) continue;
     char text[96];
-    std::snprintf(text, sizeof text, "its coverage has a corner (%.2f, %.2f, %.2f) outside its field of view or range", p.x(), p.y(),
-                  p.z());
+    std::snprintf(text, sizeof text,
+                  "its coverage has a corner (%.2f, %.2f, %.2f) outside its field of view or range",
+                  p.x(), p.y(), p.z());
     return text;
   }
   return "";
@@ -73,7 +81,8 @@ bool SampleStream<M>::due(double now) {
 
 template <class M>
 bool SampleStream<M>::lost(double now) {
-  if (settings_.burst_rate > 0 && now >= burst_until_ && happens(std::min(1.0, settings_.burst_rate / settings_.rate)))
+  if (settings_.burst_rate > 0 && now >= burst_until_ &&
+      happens(std::min(1.0, settings_.burst_rate / settings_.rate)))
     burst_until_ = now - settings_.burst_length * std::log(1 - uniform());
   const bool alone = happens(settings_.dropout);
   return alone || now < burst_until_ || fault(now, SensorFaultKind::gap) != nullptr;
@@ -122,7 +131,9 @@ const SensorFault* SampleStream<M>::fault(double now, SensorFaultKind kind) cons
 
 template <class M>
 void SampleStream<M>::disturb(const SensorFault& fault) {
-  std::erase_if(disturbances_, [&](const SensorFault& f) { return f.kind == fault.kind || f.at + f.length <= fault.at; });
+  std::erase_if(disturbances_, [&](const SensorFault& f) {
+    return f.kind == fault.kind || f.at + f.length <= fault.at;
+  });
   disturbances_.push_back(fault);
 }
 
@@ -141,7 +152,8 @@ HumanSensor::HumanSensor(const SensorSettings& settings, std::uint64_t seed)
 bool HumanSensor::sees(const Sight& sight, std::size_t person, const Vector3& point) const {
   if (settings_.gaze != GazeOutput::only && !in_reach(settings_, point)) return false;
   if (!in_view(settings_, point)) return false;
-  return !settings_.occlusion || !hidden(sight, person, settings_.T_world_sensor->translation(), point);
+  return !settings_.occlusion ||
+         !hidden(sight, person, settings_.T_world_sensor->translation(), point);
 }
 
 const std::string& HumanSensor::shown_id(const std::string& id) {
@@ -158,7 +170,8 @@ void HumanSensor::swap_ids(const Sight& sight) {
     shown_[id] = "body" + std::to_string(++renamed_);
     return;
   }
-  const auto step = 1 + static_cast<std::size_t>(stream_.uniform() * static_cast<double>(n - 1)) % (n - 1);
+  const auto step =
+      1 + static_cast<std::size_t>(stream_.uniform() * static_cast<double>(n - 1)) % (n - 1);
   const std::string& other = sight.people[(first + step) % n]->id;
   const std::string a = shown_id(id), b = shown_id(other);
   shown_[id] = b;
@@ -176,7 +189,8 @@ void HumanSensor::observe(double now, const Sight& sight) {
     seen.coverage.low += elsewhere->shift;
     seen.coverage.high += elsewhere->shift;
   }
-  const bool sees_nobody = elsewhere != nullptr || stream_.fault(now, SensorFaultKind::blind) != nullptr ||
+  const bool sees_nobody = elsewhere != nullptr ||
+                           stream_.fault(now, SensorFaultKind::blind) != nullptr ||
                            stream_.fault(now, SensorFaultKind::repeated_empty) != nullptr;
   const SensorFault* teleport = stream_.fault(now, SensorFaultKind::teleport);
   const Vector3 shift = teleport != nullptr ? teleport->shift : Vector3(Vector3::Zero());
@@ -187,20 +201,28 @@ void HumanSensor::observe(double now, const Sight& sight) {
     for (const BodyJoint& joint : person.joints) {
       if (settings_.gaze == GazeOutput::only || !sees(sight, p, joint.position)) continue;
       const auto& tracked = settings_.joints;
-      if (!tracked.empty() && std::find(tracked.begin(), tracked.end(), joint.name) == tracked.end()) continue;
+      if (!tracked.empty() &&
+          std::find(tracked.begin(), tracked.end(), joint.name) == tracked.end())
+        continue;
       if (stream_.happens(settings_.joint_dropout)) continue;
-      observed.joints.push_back({joint.name, joint.position + shift + noise(random_, normal_, settings_.noise), 0.9});
+      observed.joints.push_back(
+          {joint.name, joint.position + shift + noise(random_, normal_, settings_.noise), 0.9});
     }
-    observed.has_gaze = person.gaze_known && settings_.gaze != GazeOutput::none && !stream_.happens(settings_.gaze_dropout);
-    if (observed.has_gaze && settings_.gaze == GazeOutput::only) observed.has_gaze = sees(sight, p, person.gaze_origin);
+    observed.has_gaze = person.gaze_known && settings_.gaze != GazeOutput::none &&
+                        !stream_.happens(settings_.gaze_dropout);
+    if (observed.has_gaze && settings_.gaze == GazeOutput::only)
+      observed.has_gaze = sees(sight, p, person.gaze_origin);
     if (observed.has_gaze && settings_.occlusion) {
       const Vector3 to_eye = settings_.T_world_sensor->translation() - person.gaze_origin;
-      observed.has_gaze = person.gaze_direction.dot(to_eye) > 0 && sees(sight, p, person.gaze_origin);
+      observed.has_gaze =
+          person.gaze_direction.dot(to_eye) > 0 && sees(sight, p, person.gaze_origin);
     }
-    if (observed.joints.empty() && !(observed.has_gaze && settings_.gaze == GazeOutput::only)) continue;
+    if (observed.joints.empty() && !(observed.has_gaze && settings_.gaze == GazeOutput::only))
+      continue;
     observed.gaze_origin = person.gaze_origin + shift + noise(random_, normal_, settings_.noise);
     const double gaze_noise = settings_.gaze_noise > 0 ? settings_.gaze_noise : 2 * settings_.noise;
-    observed.gaze_direction = (person.gaze_direction + noise(random_, normal_, gaze_noise)).normalized();
+    observed.gaze_direction =
+        (person.gaze_direction + noise(random_, normal_, gaze_noise)).normalized();
     seen.people.push_back(std::move(observed));
   }
   if (stream_.fault(now, SensorFaultKind::swap) != nullptr && !seen.people.empty()) {
@@ -224,12 +246,16 @@ void ObjectSensor::observe(double now, const Sight& sight) {
   for (const TrueObject& object : sight.objects) {
     const Vector3 where = object.T_world_object.translation();
     if (blind || !in_reach(settings_, where) || !in_view(settings_, where)) continue;
-    if (settings_.occlusion && hidden(sight, sight.people.size(), settings_.T_world_sensor->translation(), where)) continue;
+    if (settings_.occlusion &&
+        hidden(sight, sight.people.size(), settings_.T_world_sensor->translation(), where))
+      continue;
     ObservedObject observed{object.id, object.model, object.T_world_object, 0.95};
     observed.T_world_object.translation() += noise(random_, normal_, settings_.noise);
     if (teleport != nullptr) observed.T_world_object.translation() += teleport->shift;
     const Vector3 turn = noise(random_, normal_, 5 * settings_.noise);
-    if (turn.norm() > 0) observed.T_world_object.linear() *= Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    if (turn.norm() > 0)
+      observed.T_world_object.linear() *=
+          Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
     seen.objects.push_back(std::move(observed));
   }
   if (!lost) stream_.send(now, std::move(seen));

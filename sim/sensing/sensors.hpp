@@ -19,7 +19,17 @@ namespace handsel::sim {
 
 /// repeated_empty: the same picture, with nobody in it, again and again; elsewhere: the sensor
 /// observes another place, `shift` away, where nobody is.
-enum class SensorFaultKind { gap, frozen, repeated, teleport, swap, late, blind, repeated_empty, elsewhere };
+enum class SensorFaultKind {
+  gap,
+  frozen,
+  repeated,
+  teleport,
+  swap,
+  late,
+  blind,
+  repeated_empty,
+  elsewhere
+};
 
 struct SensorFault {
   SensorFaultKind kind{};          ///< what goes wrong
@@ -32,17 +42,17 @@ enum class GazeOutput { with_body, none, only };
 
 /// Fields as in SensorDescription of common/config/schema/scenario.proto.
 struct SensorSettings {
-  std::string source;                       ///< name in the observations; not empty
-  double rate{30};                          ///< [Hz]
-  double latency{0.03};                     ///< from the instant seen to delivery [s]
-  double noise{0.0};                        ///< standard deviation of each coordinate [m]
-  Coverage coverage;                        ///< box that the sensor claims to observe, world [m]
-  double jitter{};                          ///< of the delivery, to either side [s]
-  double dropout{}, joint_dropout{};        ///< fractions of samples and of joints that are lost
-  double burst_rate{}, burst_length{};      ///< of losses: mean rate [1/s], mean length [s]
-  std::optional<Pose> T_world_sensor;       ///< x forward; without it no field of view
-  std::string link;                         ///< robot link that carries the sensor; empty: it is fixed
-  Pose T_link_sensor{Pose::Identity()};     ///< pose on that link
+  std::string source;                    ///< name in the observations; not empty
+  double rate{30};                       ///< [Hz]
+  double latency{0.03};                  ///< from the instant seen to delivery [s]
+  double noise{0.0};                     ///< standard deviation of each coordinate [m]
+  Coverage coverage;                     ///< box that the sensor claims to observe, world [m]
+  double jitter{};                       ///< of the delivery, to either side [s]
+  double dropout{}, joint_dropout{};     ///< fractions of samples and of joints that are lost
+  double burst_rate{}, burst_length{};   ///< of losses: mean rate [1/s], mean length [s]
+  std::optional<Pose> T_world_sensor;    ///< x forward; without it no field of view
+  std::string link;                      ///< robot link that carries the sensor; empty: it is fixed
+  Pose T_link_sensor{Pose::Identity()};  ///< pose on that link
   double fov_horizontal{}, fov_vertical{};  ///< full angles [rad], 0: unlimited
   double range{};                           ///< [m], 0: unlimited
   bool occlusion{};                         ///< robot, boxes and bodies hide points
@@ -94,7 +104,8 @@ struct Sight {
 template <class M>
 class SampleStream {
  public:
-  SampleStream(const SensorSettings& settings, std::uint64_t seed) : settings_(settings), chance_(seed ^ 0xd1ce'5eedULL) {}
+  SampleStream(const SensorSettings& settings, std::uint64_t seed)
+      : settings_(settings), chance_(seed ^ 0xd1ce'5eedULL) {}
 
   /// Returns true once a period of the sensor.
   bool due(double now);
@@ -139,7 +150,9 @@ class HumanSensor {
   /// Takes a sample of people; to be called when due.
   void observe(double now, const Sight&);
   /// Moves what is due by `now` to `out`.
-  void collect(double now, std::vector<Delivery<HumanObservation>>& out) { stream_.collect(now, out); }
+  void collect(double now, std::vector<Delivery<HumanObservation>>& out) {
+    stream_.collect(now, out);
+  }
   const SensorSettings& settings() const { return settings_; }  ///< with the pose of now
 
  private:
@@ -164,7 +177,9 @@ class ObjectSensor {
   /// Takes a sample of objects by their origins; to be called when due.
   void observe(double now, const Sight&);
   /// Moves what is due by `now` to `out`.
-  void collect(double now, std::vector<Delivery<ObjectObservation>>& out) { stream_.collect(now, out); }
+  void collect(double now, std::vector<Delivery<ObjectObservation>>& out) {
+    stream_.collect(now, out);
+  }
   const SensorSettings& settings() const { return settings_; }  ///< with the pose of now
 
  private:

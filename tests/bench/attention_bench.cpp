@@ -1,5 +1,5 @@
-// What one step of the attentional system costs when every behaviour looks at once: the shipped settings, two people close by, an arm in
-// motion. Usage: bench_attention [rounds]
+// What one step of the attentional system costs when every behaviour looks at once: the shipped
+// settings, two people close by, an arm in motion. Usage: bench_attention [rounds]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -70,8 +70,11 @@ int run(int rounds) {
   std::sort(times.begin(), times.end());
   const AttentionState state = attention.state();
   for (const BehaviourState& b : state.behaviours)
-    if (b.activations < static_cast<std::uint64_t>(rounds)) return std::fprintf(stderr, "%s did not look each time\n", b.name.c_str()), 1;
-  const auto at = [&](double share) { return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))]; };
+    if (b.activations < static_cast<std::uint64_t>(rounds))
+      return std::fprintf(stderr, "%s did not look each time\n", b.name.c_str()), 1;
+  const auto at = [&](double share) {
+    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
+  };
   std::printf("%s\n", nlohmann::json{{"name", "attention/step"},
                                      {"behaviours", state.behaviours.size()},
                                      {"least_us", times.front()},
@@ -87,4 +90,6 @@ int run(int rounds) {
 }  // namespace
 }  // namespace handsel::attention
 
-int main(int argc, char** argv) { return handsel::attention::run(argc > 1 ? std::atoi(argv[1]) : 20000); }
+int main(int argc, char** argv) {
+  return handsel::attention::run(argc > 1 ? std::atoi(argv[1]) : 20000);
+}

@@ -1,5 +1,6 @@
-// What the bus costs on this machine: `bench_bus trip` measures DDS round trips between two processes, `bench_bus load` plays the traffic
-// of the table of topics with one process a component and prints the processor share of each.
+// What the bus costs on this machine: `bench_bus trip` measures DDS round trips between two
+// processes, `bench_bus load` plays the traffic of the table of topics with one process a component
+// and prints the processor share of each.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -84,10 +85,13 @@ void play(Bus& bus, const std::string& component) {
   const TopicRow& row = TopicOf<M>::row;
   const bool reads = named_in(row.readers, component) || component == "bridge";
   const bool slow = row.rate > 100 && component != "trajectory_controller" && component != "sim";
-  if (reads) bus.subscribe<M>([](const M&, const Receipt&) {}, {.period = slow ? Duration(std::chrono::milliseconds(20)) : Duration{}});
+  if (reads)
+    bus.subscribe<M>([](const M&, const Receipt&) {},
+                     {.period = slow ? Duration(std::chrono::milliseconds(20)) : Duration{}});
   if (!named_in(row.writers, component) || row.rate <= 0) return;
   std::shared_ptr<Publisher<M>> publisher = bus.advertise<M>();
-  bus.every(from_seconds(1.0 / row.rate), [publisher, m = example<M>()](TimePoint) { publisher->publish(m); });
+  bus.every(from_seconds(1.0 / row.rate),
+            [publisher, m = example<M>()](TimePoint) { publisher->publish(m); });
 }
 
 int node(const std::string& component, double seconds) {
@@ -116,12 +120,15 @@ int node(const std::string& component, double seconds) {
   bus.run_until([] { return false; }, from_seconds(seconds));
   getrusage(RUSAGE_SELF, &after);
   const auto cpu = [](const rusage& r) {
-    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
+    return static_cast<double>(r.ru_utime.tv_sec + r.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
   };
-  std::printf("%-22s %5.1f %% of a core, %3ld MB, %5.0f switches/s", component.c_str(), 100 * (cpu(after) - cpu(before)) / seconds,
-              after.ru_maxrss / 1024, static_cast<double>(after.ru_nvcsw - before.ru_nvcsw) / seconds);
+  std::printf("%-22s %5.1f %% of a core, %3ld MB, %5.0f switches/s", component.c_str(),
+              100 * (cpu(after) - cpu(before)) / seconds, after.ru_maxrss / 1024,
+              static_cast<double>(after.ru_nvcsw - before.ru_nvcsw) / seconds);
   if (component == "sim")
-    std::printf(", %llu set-points, longest gap %.1f ms", static_cast<unsigned long long>(commands), to_seconds(worst) * 1e3);
+    std::printf(", %llu set-points, longest gap %.1f ms", static_cast<unsigned long long>(commands),
+                to_seconds(worst) * 1e3);
   std::printf("\n");
   return 0;
 }
@@ -145,8 +152,11 @@ int trip() {
   auto publisher = bus.advertise<JointCommand>();
   JointCommand question = example<JointCommand>();
   std::uint64_t got = 0;
-  const auto& status = bus.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { got = m.sequence; });
-  if (!bus.run_until([&] { return publisher->readers() == 1 && status.writers == 1; }, std::chrono::seconds(10))) return 1;
+  const auto& status =
+      bus.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { got = m.sequence; });
+  if (!bus.run_until([&] { return publisher->readers() == 1 && status.writers == 1; },
+                     std::chrono::seconds(10)))
+    return 1;
   std::vector<double> micros;
   for (std::uint64_t i = 1; i <= 20000; ++i) {
     question.sequence = i;
@@ -158,9 +168,12 @@ int trip() {
   question.sequence = 0;
   publisher->publish(question);
   std::sort(micros.begin(), micros.end());
-  const auto at = [&](double share) { return micros[static_cast<std::size_t>(share * static_cast<double>(micros.size() - 1))]; };
+  const auto at = [&](double share) {
+    return micros[static_cast<std::size_t>(share * static_cast<double>(micros.size() - 1))];
+  };
   std::printf(
-      "round trip, 22 axes each way, conversions and executors included: median %.0f us, p99 %.0f us, p99.9 %.0f us, %zu of 20000\n",
+      "round trip, 22 axes each way, conversions and executors included: median %.0f us, p99 %.0f "
+      "us, p99.9 %.0f us, %zu of 20000\n",
       at(0.5), at(0.99), at(0.999), micros.size());
   return 0;
 }
@@ -193,7 +206,8 @@ int main(int argc, char** argv) {
   if (mode == "load") {
     const std::string seconds = argc > 2 ? argv[2] : "5";
     std::vector<pid_t> children;
-    for (const char* component : kComponents) children.push_back(spawn(argv[0], {"node", component, seconds}));
+    for (const char* component : kComponents)
+      children.push_back(spawn(argv[0], {"node", component, seconds}));
     for (const pid_t child : children) waitpid(child, nullptr, 0);
     return 0;
   }

@@ -1,6 +1,7 @@
-// Time of one control step of Jido (22 axes) while it works beside a person: p50, p99, p99.9 and the share of each part of the story; of
-// accepting a trajectory, which happens between two steps; and of judging all of the path still to come against a person just seen.
-// Prints; judges nothing (times are the machine's). Usage: bench_control_step [steps] [repeats]
+// Time of one control step of Jido (22 axes) while it works beside a person: p50, p99, p99.9 and
+// the share of each part of the story; of accepting a trajectory, which happens between two steps;
+// and of judging all of the path still to come against a person just seen. Prints; judges nothing
+// (times are the machine's). Usage: bench_control_step [steps] [repeats]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -20,23 +21,27 @@ using namespace handsel;
 using namespace handsel::trajectory_controller;
 
 struct Run {
-  std::vector<double> all, standing, full, changing, accepting;  // [us]: at rest, constant factor, factor that changes; accept()
+  std::vector<double> all, standing, full, changing,
+      accepting;  // [us]: at rest, constant factor, factor that changes; accept()
   std::uint64_t trajectories{};
 };
 
 double since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+      .count();
 }
 
 double at(const std::vector<double>& times, double share) {
   if (times.empty()) return 0.0;
-  return times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
+  return times[std::min(times.size() - 1,
+                        static_cast<std::size_t>(share * static_cast<double>(times.size())))];
 }
 
 void print(const char* what, std::vector<double>& times) {
   std::sort(times.begin(), times.end());
-  std::printf("  %-10s %7zu steps  p50 %6.2f  p99 %6.2f  p99.9 %6.2f  max %6.1f us\n", what, times.size(), at(times, 0.5), at(times, 0.99),
-              at(times, 0.999), times.empty() ? 0.0 : times.back());
+  std::printf("  %-10s %7zu steps  p50 %6.2f  p99 %6.2f  p99.9 %6.2f  max %6.1f us\n", what,
+              times.size(), at(times, 0.5), at(times, 0.99), at(times, 0.999),
+              times.empty() ? 0.0 : times.back());
 }
 
 Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
@@ -64,7 +69,8 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
   TrajectoryForecast forecast;
   const Group& arm = robot->require_group("arm");
   const auto of_arm = [&](const Vector& v) { return RobotModel::part(v, arm); };
-  const KinematicLimits comfort{of_arm(robot->comfort_limits().velocity), of_arm(robot->comfort_limits().acceleration),
+  const KinematicLimits comfort{of_arm(robot->comfort_limits().velocity),
+                                of_arm(robot->comfort_limits().acceleration),
                                 of_arm(robot->comfort_limits().jerk)};
   for (int k = 0; k < steps; ++k) {
     now += std::chrono::milliseconds(1);
@@ -86,11 +92,14 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
       c.id = ++out.trajectories;
       c.epoch = 1;
       Vector goal = of_arm(robot->rest_configuration());
-      for (Eigen::Index i = 0; i < goal.size(); ++i) goal[i] += (c.id % 2 ? 0.4 : -0.2) * (i % 2 ? 1 : -1);
+      for (Eigen::Index i = 0; i < goal.size(); ++i)
+        goal[i] += (c.id % 2 ? 0.4 : -0.2) * (i % 2 ? 1 : -1);
       for (int axis : arm.axes) c.axes.push_back(static_cast<std::uint32_t>(axis));
-      c.trajectory = solve(rest_state(of_arm(core.set_point().position)), rest_state(goal), comfort).trajectory;
+      c.trajectory = solve(rest_state(of_arm(core.set_point().position)), rest_state(goal), comfort)
+                         .trajectory;
       const auto begin = std::chrono::steady_clock::now();
-      if (const std::string why = core.accept(c, Duration(0), now); !why.empty()) std::printf("refused: %s\n", why.c_str());
+      if (const std::string why = core.accept(c, Duration(0), now); !why.empty())
+        std::printf("refused: %s\n", why.c_str());
       out.accepting.push_back(since(begin));
     }
     const double before = core.speed_factor();
@@ -99,7 +108,10 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
     const double us = since(begin);
     out.all.push_back(us);
     const bool moving = core.status_key().motion == MotionState::running;
-    (!moving ? out.standing : core.speed_factor() == before ? out.full : out.changing).push_back(us);
+    (!moving                         ? out.standing
+     : core.speed_factor() == before ? out.full
+                                     : out.changing)
+        .push_back(us);
   }
   return out;
 }
@@ -119,7 +131,8 @@ std::vector<double> judge_paths(const RobotModel& robot, int times) {
   const Vector from = of_arm(robot.rest_configuration());
   active.rest =
       solve(rest_state(from), rest_state(from + Vector::Constant(from.size(), 0.4)),
-            {of_arm(robot.comfort_limits().velocity), of_arm(robot.comfort_limits().acceleration), of_arm(robot.comfort_limits().jerk)})
+            {of_arm(robot.comfort_limits().velocity), of_arm(robot.comfort_limits().acceleration),
+             of_arm(robot.comfort_limits().jerk)})
           .trajectory;
   HumanState people;
   people.covered = true;
@@ -140,16 +153,20 @@ std::vector<double> judge_paths(const RobotModel& robot, int times) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int steps = argc > 1 ? std::atoi(argv[1]) : 60000, repeats = argc > 2 ? std::atoi(argv[2]) : 5;
-  const auto robot = std::make_shared<const RobotModel>(RobotModel::load(robot_description("jido")));
-  std::printf("%d axes, %zu robot capsules, %d capsules of a person\n", robot->dof(), robot_capsules(*robot).size(), kBodyCapsules);
+  const int steps = argc > 1 ? std::atoi(argv[1]) : 60000,
+            repeats = argc > 2 ? std::atoi(argv[2]) : 5;
+  const auto robot =
+      std::make_shared<const RobotModel>(RobotModel::load(robot_description("jido")));
+  std::printf("%d axes, %zu robot capsules, %d capsules of a person\n", robot->dof(),
+              robot_capsules(*robot).size(), kBodyCapsules);
   std::vector<double> least;
   for (int k = 0; k < repeats; ++k) {
     Run r = run(robot, steps);
     if (least.empty()) least = r.all;
     for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], r.all[i]);
     if (k + 1 < repeats) continue;
-    std::printf("last of %d runs, %llu trajectories:\n", repeats, static_cast<unsigned long long>(r.trajectories));
+    std::printf("last of %d runs, %llu trajectories:\n", repeats,
+                static_cast<unsigned long long>(r.trajectories));
     print("all", r.all);
     print("standing", r.standing);
     print("constant", r.full);

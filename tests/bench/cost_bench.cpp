@@ -1,5 +1,6 @@
-// The human-aware cost of a robot state against the distance part of it done with FCL, and how long a refresh of the cost map takes. One
-// run; medians and least of rounds that alternate. Usage: bench_cost [rounds]
+// The human-aware cost of a robot state against the distance part of it done with FCL, and how long
+// a refresh of the cost map takes. One run; medians and least of rounds that alternate. Usage:
+// bench_cost [rounds]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -41,7 +42,8 @@ struct Times {
 /// The robot's capsules against body cylinder and head, as the safety cost needs them.
 class FclDistance {
  public:
-  FclDistance(const RobotModel& robot, const std::vector<LinkCapsule>& capsules, const SimplifiedBody& body)
+  FclDistance(const RobotModel& robot, const std::vector<LinkCapsule>& capsules,
+              const SimplifiedBody& body)
       : robot_(robot),
         cylinder_(body.radius, body.height),
         head_(body.head_radius),
@@ -50,7 +52,8 @@ class FclDistance {
     for (const LinkCapsule& c : capsules) {
       const Vector3 along = c.b - c.a;
       links_.push_back({c.link, fcl::Capsuled(c.radius, along.norm()),
-                        make_pose(0.5 * (c.a + c.b), Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along))});
+                        make_pose(0.5 * (c.a + c.b),
+                                  Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along))});
     }
   }
   double operator()(const Vector& q) {
@@ -80,7 +83,8 @@ class FclDistance {
   std::vector<Pose> T_root_link_;
 };
 
-void cost_of_states(const char* name, const RobotModel& robot, const std::vector<int>& axes, int rounds) {
+void cost_of_states(const char* name, const RobotModel& robot, const std::vector<int>& axes,
+                    int rounds) {
   const HumanState people = test::person_at({1.2, 0, 0});
   HumanCost one_by_one(robot, {}), together(robot, {});
   costmap::MapMaker maker({});
@@ -98,14 +102,16 @@ void cost_of_states(const char* name, const RobotModel& robot, const std::vector
     Vector from = robot.rest_configuration(), to = from;
     for (int i : axes) {
       const Axis& axis = robot.axes()[static_cast<std::size_t>(i)];
-      std::uniform_real_distribution<double> inside(std::max(axis.lower, -3.0), std::min(axis.upper, 3.0));
+      std::uniform_real_distribution<double> inside(std::max(axis.lower, -3.0),
+                                                    std::min(axis.upper, 3.0));
       from[i] = inside(random);
       to[i] = from[i] + 0.1 * (inside(random) - from[i]);
     }
     lines.emplace_back(from, to);
   }
   std::vector<double> at(kStates), costs(kStates);
-  for (int i = 0; i < kStates; ++i) at[static_cast<std::size_t>(i)] = static_cast<double>(i) / (kStates - 1);
+  for (int i = 0; i < kStates; ++i)
+    at[static_cast<std::size_t>(i)] = static_cast<double>(i) / (kStates - 1);
   Times wide, scalar, peer;
   double sink = 0;
   for (int round = 0; round < rounds; ++round) {
@@ -126,22 +132,29 @@ void cost_of_states(const char* name, const RobotModel& robot, const std::vector
              kLines);
   }
   std::printf(
-      "%s, %zu capsules: cost of a state, 16 at once %.0f ns (least %.0f), one by one %.0f ns; FCL, distance alone %.1f us; ratio %.0f%s\n",
-      name, robot_capsules(robot).size(), 1e9 * wide.median(), 1e9 * wide.least(), 1e9 * scalar.median(), 1e6 * peer.median(),
-      peer.median() / wide.median(), sink == 0.5 ? " " : "");
+      "%s, %zu capsules: cost of a state, 16 at once %.0f ns (least %.0f), one by one %.0f ns; "
+      "FCL, distance alone %.1f us; ratio %.0f%s\n",
+      name, robot_capsules(robot).size(), 1e9 * wide.median(), 1e9 * wide.least(),
+      1e9 * scalar.median(), 1e6 * peer.median(), peer.median() / wide.median(),
+      sink == 0.5 ? " " : "");
 }
 
 void refresh(int rounds) {
   costmap::MapMaker maker({});
-  const std::vector<SceneBox> boxes = {{"table", make_pose({0.8, 0.2, 0.7}), {0.8, 1.2, 0.04}, true},
-                                       {"floor", make_pose({0, 0, -0.05}), {8, 8, 0.1}, true},
-                                       {"shelf", make_pose({2.5, 0, 1}), {0.4, 2, 2}, true}};
+  const std::vector<SceneBox> boxes = {
+      {"table", make_pose({0.8, 0.2, 0.7}), {0.8, 1.2, 0.04}, true},
+      {"floor", make_pose({0, 0, -0.05}), {8, 8, 0.1}, true},
+      {"shelf", make_pose({2.5, 0, 1}), {0.4, 2, 2}, true}};
   Times first, again;
   first.add(seconds([&] { maker.make(test::person_at({1.4, 0, 0}).people[0], boxes); }));
   for (int round = 0; round < 6 * rounds; ++round)
-    again.add(seconds([&] { maker.make(test::person_at({1.4 + 0.01 * round, 0, 0}).people[0], boxes); }));
-  std::printf("cost map, four layers of 81^3 points: refreshed in %.1f ms (least %.1f); with new volumes of the arms %.0f ms\n",
-              1e3 * again.median(), 1e3 * again.least(), 1e3 * first.median());
+    again.add(seconds([&] {
+      maker.make(test::person_at({1.4 + 0.01 * round, 0, 0}).people[0], boxes);
+    }));
+  std::printf(
+      "cost map, four layers of 81^3 points: refreshed in %.1f ms (least %.1f); with new volumes "
+      "of the arms %.0f ms\n",
+      1e3 * again.median(), 1e3 * again.least(), 1e3 * first.median());
 }
 
 }  // namespace
@@ -151,7 +164,8 @@ int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 15;
   using namespace handsel;
   refresh(rounds);
-  const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel jido =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   cost_of_states("jido", jido, jido.require_group("arm").axes, rounds);
   if (!test::reference_data("robots/franka_panda")) {
     std::printf("HANDSEL_DATA names no folder with robots/franka_panda: jido only\n");

@@ -1,5 +1,6 @@
-// Paths among things, nobody there: ours against OMPL's RRT-Connect whose states are judged by FCL, on the Panda problems of the reference
-// data. One run, problem by problem in turn. Usage: bench_feasible [problems]
+// Paths among things, nobody there: ours against OMPL's RRT-Connect whose states are judged by FCL,
+// on the Panda problems of the reference data. One run, problem by problem in turn. Usage:
+// bench_feasible [problems]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -37,7 +38,8 @@ int compare(std::size_t most) {
     problem.start = given.start;
     for (const Vector& goal : given.goals) {
       Vector part(problem.axes.size());
-      for (std::size_t i = 0; i < problem.axes.size(); ++i) part[static_cast<Eigen::Index>(i)] = goal[problem.axes[i]];
+      for (std::size_t i = 0; i < problem.axes.size(); ++i)
+        part[static_cast<Eigen::Index>(i)] = goal[problem.axes[i]];
       problem.goals.push_back(part);
     }
     problem.budget = UINT64_MAX / 2;
@@ -84,12 +86,14 @@ int compare(std::size_t most) {
     std::vector<Vector> goals;
     for (const Vector& goal : problem.goals)
       if (space.free(goal)) goals.push_back(goal);
-    peer_solved += !goals.empty() && !search(space, goals, PlannerKind::rrt_connect, false, 1).path.empty();
+    peer_solved +=
+        !goals.empty() && !search(space, goals, PlannerKind::rrt_connect, false, 1).path.empty();
     peer_times.push_back(test::thread_time() - begin);
   }
   std::printf("%zu problems; times of the thread, ours the least of %d\n", runs, kRepeats);
   const auto row = [](const char* name, const std::vector<double>& times) {
-    std::printf("%-32s p50 %8.3f ms  p95 %8.3f ms\n", name, test::quantile_ms(times, 0.5), test::quantile_ms(times, 0.95));
+    std::printf("%-32s p50 %8.3f ms  p95 %8.3f ms\n", name, test::quantile_ms(times, 0.5),
+                test::quantile_ms(times, 0.95));
   };
   row("ours: the ends are free", ends_times);
   row("ours: search", search_times);
@@ -97,7 +101,8 @@ int compare(std::size_t most) {
   row("ours: the last, fine check", verify_times);
   row("ours: all", all_times);
   row("OMPL RRT-Connect and FCL, search", peer_times);
-  std::printf("solved: ours %d, the peer %d; ratio of searches p50 %.1f x, p95 %.1f x\n", solved, peer_solved,
+  std::printf("solved: ours %d, the peer %d; ratio of searches p50 %.1f x, p95 %.1f x\n", solved,
+              peer_solved,
               test::quantile_ms(peer_times, 0.5) / test::quantile_ms(search_times, 0.5),
               test::quantile_ms(peer_times, 0.95) / test::quantile_ms(search_times, 0.95));
   return 0;
@@ -107,5 +112,6 @@ int compare(std::size_t most) {
 }  // namespace handsel::path_planner
 
 int main(int argc, char** argv) {
-  return handsel::path_planner::compare(argc > 1 ? static_cast<std::size_t>(std::max(1, std::atoi(argv[1]))) : 70);
+  return handsel::path_planner::compare(
+      argc > 1 ? static_cast<std::size_t>(std::max(1, std::atoi(argv[1]))) : 70);
 }

@@ -1,5 +1,5 @@
-// The grasp planner: stability against Qhull, lists of the Schunk hand on a mug of 10 000 triangles, the order of the tests, lists from
-// disk.
+// The grasp planner: stability against Qhull, lists of the Schunk hand on a mug of 10 000
+// triangles, the order of the tests, lists from disk.
 #include <benchmark/benchmark.h>
 
 #include <atomic>
@@ -29,7 +29,8 @@ const std::vector<WrenchMatrix>& sets() {
     while (out.size() < 200) {
       std::vector<PointContact> contacts;
       for (int k = 0; k < 4; ++k) {
-        const Vector3 p(normal(random), normal(random), normal(random)), any(normal(random), normal(random), normal(random));
+        const Vector3 p(normal(random), normal(random), normal(random)),
+            any(normal(random), normal(random), normal(random));
         contacts.push_back({p, (0.7 * any - p).normalized(), 0.6});
       }
       out.push_back(contact_wrenches(contacts, 8, Vector3::Zero(), 1.0));
@@ -71,11 +72,15 @@ ObjectModel fine_mug() {
   while (mug.mesh.triangles.size() < 9000) {
     TriangleMesh cut;
     for (const auto& t : mug.mesh.triangles) {
-      const auto at = [&](std::size_t k) -> const Vector3& { return mug.mesh.vertices[static_cast<std::size_t>(t[k])]; };
+      const auto at = [&](std::size_t k) -> const Vector3& {
+        return mug.mesh.vertices[static_cast<std::size_t>(t[k])];
+      };
       const int n = static_cast<int>(cut.vertices.size());
       for (std::size_t k = 0; k < 3; ++k) cut.vertices.push_back(at(k));
       for (std::size_t k = 0; k < 3; ++k) cut.vertices.push_back(0.5 * (at(k) + at((k + 1) % 3)));
-      cut.triangles.insert(cut.triangles.end(), {{n, n + 3, n + 5}, {n + 3, n + 1, n + 4}, {n + 5, n + 4, n + 2}, {n + 3, n + 4, n + 5}});
+      cut.triangles.insert(
+          cut.triangles.end(),
+          {{n, n + 3, n + 5}, {n + 3, n + 1, n + 4}, {n + 5, n + 4, n + 2}, {n + 3, n + 4, n + 5}});
     }
     mug.mesh = std::move(cut);
   }
@@ -86,14 +91,16 @@ ObjectModel fine_mug() {
 struct Setup {
   std::shared_ptr<const HandGeometry> hand_geometry =
       std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  std::shared_ptr<const FingerWorkspaces> workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
+  std::shared_ptr<const FingerWorkspaces> workspaces =
+      std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
   ObjectModel model = fine_mug();
   GraspListSettings settings = [] {
     GraspListSettings s;
     s.orientations = 2000;
     return s;
   }();
-  std::shared_ptr<const Graspable> mug = std::make_shared<const Graspable>(model, hand_geometry->tip_radius(), settings.step_fraction, 1);
+  std::shared_ptr<const Graspable> mug = std::make_shared<const Graspable>(
+      model, hand_geometry->tip_radius(), settings.step_fraction, 1);
 };
 const Setup& setup() {
   static const Setup made;
@@ -127,16 +134,24 @@ void BM_1000_grasps(benchmark::State& state) {
   state.counters["frames"] = static_cast<double>(frames);
   state.counters["triangles"] = static_cast<double>(s.mug->mesh().triangles.size());
 }
-BENCHMARK(BM_1000_grasps)->Arg(1)->Arg(2)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1)->Repetitions(3);
+BENCHMARK(BM_1000_grasps)
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(1)
+    ->Repetitions(3);
 
 Pose frame_of(std::uint64_t i) {
   static const auto positions = uniform_positions(setup().mug->box(), 60);
   static const auto orientations = so3_sequence(576);
-  return make_pose(positions[i * 7 % positions.size()], orientations[i * 13 % orientations.size()]) *
+  return make_pose(positions[i * 7 % positions.size()],
+                   orientations[i * 13 % orientations.size()]) *
          setup().hand_geometry->hand.T_hand_grasp().inverse();
 }
 
-/// Contacts of all fingers in a frame as the planner finds them: trees first, then inverse kinematics, then collision.
+/// Contacts of all fingers in a frame as the planner finds them: trees first, then inverse
+/// kinematics, then collision.
 void BM_frame_trees_first(benchmark::State& state) {
   const Setup& s = setup();
   FrameSearch search(*s.hand_geometry, *s.workspaces, *s.mug, s.settings);
@@ -151,8 +166,9 @@ void BM_frame_trees_first(benchmark::State& state) {
     }
   }
 }
-/// The same in the naive order: collision before the trees. Of every contact point the finger's posture is sought and tested for collision,
-/// and what is left is asked whether it lies in the finger's workspace.
+/// The same in the naive order: collision before the trees. Of every contact point the finger's
+/// posture is sought and tested for collision, and what is left is asked whether it lies in the
+/// finger's workspace.
 void BM_frame_collision_first(benchmark::State& state) {
   const Setup& s = setup();
   std::vector<Pose> T_step;
@@ -163,14 +179,20 @@ void BM_frame_collision_first(benchmark::State& state) {
     for (int f = 0; f < 4; ++f) {
       const FingerChain& chain = s.hand_geometry->chains[static_cast<std::size_t>(f)];
       std::size_t found = 0;
-      for (std::uint32_t i = 0; i < s.mug->points().size() && found < s.settings.contacts_per_finger; ++i) {
+      for (std::uint32_t i = 0;
+           i < s.mug->points().size() && found < s.settings.contacts_per_finger; ++i) {
         const Vector3 p = T_hand_object * s.mug->tip_centre(i);
         Vector q = s.hand_geometry->hand.pregrasp();
-        if (!chain.inverse(p, s.hand_geometry->hand.lower_contact(), s.hand_geometry->hand.upper_contact(), q)) continue;
+        if (!chain.inverse(p, s.hand_geometry->hand.lower_contact(),
+                           s.hand_geometry->hand.upper_contact(), q))
+          continue;
         chain.forward(q, T_step);
-        if (s.hand_geometry->shape.finger_touches(f, T_step, *s.mug, T, -s.settings.depth)) continue;
+        if (s.hand_geometry->shape.finger_touches(f, T_step, *s.mug, T, -s.settings.depth))
+          continue;
         const auto& spheres = (*s.workspaces)[static_cast<std::size_t>(f)].spheres();
-        found += std::any_of(spheres.begin(), spheres.end(), [&](const WorkspaceSphere& w) { return (w.centre - p).norm() <= w.radius; });
+        found += std::any_of(spheres.begin(), spheres.end(), [&](const WorkspaceSphere& w) {
+          return (w.centre - p).norm() <= w.radius;
+        });
       }
     }
   }
@@ -194,10 +216,12 @@ void BM_list_from_disk(benchmark::State& state) {
 }
 BENCHMARK(BM_list_from_disk)->Unit(benchmark::kMillisecond);
 
-/// Grasps of a list that serve on a table, the arm's posture and way in included; as many as asked for.
+/// Grasps of a list that serve on a table, the arm's posture and way in included; as many as asked
+/// for.
 void BM_choose_from_list(benchmark::State& state) {
   const Setup& s = setup();
-  static const auto robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
+  static const auto robot =
+      std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
   static const ObjectModel mug = ObjectModel::load(kDeploy / "objects/mug/mug.txtpb");
   GraspCache cache(s.hand_geometry, {}, GraspStore(""));
   static const auto page = cache.page(mug);
@@ -206,13 +230,15 @@ void BM_choose_from_list(benchmark::State& state) {
   scene.robot_known = true;
   scene.robot_position = robot->rest_configuration();
   scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
-  scene.objects.push_back({"cup", "mug", make_pose({0.7, -0.4, 0.72 + mug.height_above_support}), Holder::surface, "table", 0});
+  scene.objects.push_back({"cup", "mug", make_pose({0.7, -0.4, 0.72 + mug.height_above_support}),
+                           Holder::surface, "table", 0});
   GraspRequest request;
   request.object = "cup";
   request.start = robot->rest_configuration();
   request.max_grasps = static_cast<std::uint32_t>(state.range(0));
   std::size_t chosen = 0;
-  for (auto _ : state) chosen = chooser.choose(request, page->list, *page->object, scene, {}).grasps.size();
+  for (auto _ : state)
+    chosen = chooser.choose(request, page->list, *page->object, scene, {}).grasps.size();
   state.counters["list"] = static_cast<double>(page->list.grasps.size());
   state.counters["chosen"] = static_cast<double>(chosen);
 }
@@ -220,7 +246,9 @@ BENCHMARK(BM_choose_from_list)->Arg(1)->Arg(10)->Unit(benchmark::kMillisecond);
 
 void BM_object_made_ready(benchmark::State& state) {
   const Setup& s = setup();
-  for (auto _ : state) benchmark::DoNotOptimize(Graspable(s.model, s.hand_geometry->tip_radius(), s.settings.step_fraction, 1));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        Graspable(s.model, s.hand_geometry->tip_radius(), s.settings.step_fraction, 1));
 }
 BENCHMARK(BM_object_made_ready)->Unit(benchmark::kMillisecond);
 

@@ -1,6 +1,7 @@
-// A person moved: how long until the running path leads around them, or until it is cheaper for them, against planning anew from where the
-// arm is. Jido beside its table; the person comes so near that something of the path is blocked (repair) or only dear (improve). One
-// process, alternating. Time of the thread. Usage: bench_live [cases]
+// A person moved: how long until the running path leads around them, or until it is cheaper for
+// them, against planning anew from where the arm is. Jido beside its table; the person comes so
+// near that something of the path is blocked (repair) or only dear (improve). One process,
+// alternating. Time of the thread. Usage: bench_live [cases]
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +22,8 @@ constexpr unsigned kSeed = 20;
 constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
 
 int run(int cases) {
-  const RobotModel robot = RobotModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
   CollisionWorld world(robot, nullptr);
   HumanCost cost(robot, {});
@@ -38,7 +40,9 @@ int run(int cases) {
   const auto random_posture = [&] {
     Vector q = robot.rest_configuration();
     do {
-      for (int axis : arm.axes) q[axis] = robot.axes()[axis].lower + unit(engine) * (robot.axes()[axis].upper - robot.axes()[axis].lower);
+      for (int axis : arm.axes)
+        q[axis] = robot.axes()[axis].lower +
+                  unit(engine) * (robot.axes()[axis].upper - robot.axes()[axis].lower);
     } while (!world.check(q).free);
     return q;
   };
@@ -59,17 +63,25 @@ int run(int cases) {
     const Vector on_way = first.path[0] + 0.1 * (first.path[1] - first.path[0]);
     const std::size_t edge = first.path.size() / 2;
     const Vector middle = 0.5 * (first.path[edge - 1] + first.path[edge]);
-    const Vector3 tool = robot.link_pose(RobotModel::with(problem.start, arm, middle), robot.tool_link()).translation();
+    const Vector3 tool =
+        robot.link_pose(RobotModel::with(problem.start, arm, middle), robot.tool_link())
+            .translation();
     problem.start = RobotModel::with(problem.start, arm, on_way);
     problem.budget = kBudget;
     const double heading = 6.283185307179586 * unit(engine), off = 0.1 + 0.5 * unit(engine);
-    const HumanState people = test::person_at({tool.x() + off * std::cos(heading), tool.y() + off * std::sin(heading), 0});
+    const HumanState people = test::person_at(
+        {tool.x() + off * std::cos(heading), tool.y() + off * std::sin(heading), 0});
     put(people);
-    if (!world.check(problem.start).free || !world.check(RobotModel::with(problem.start, arm, problem.goals[0])).free) continue;
+    if (!world.check(problem.start).free ||
+        !world.check(RobotModel::with(problem.start, arm, problem.goals[0])).free)
+      continue;
     bool blocked = false;
     const std::vector<Vector> rest = remainder(first.path, on_way, 0.5);
     for (std::size_t i = 1; i < rest.size() && !blocked; ++i)
-      blocked = !world.check_motion(RobotModel::with(problem.start, arm, rest[i - 1]), RobotModel::with(problem.start, arm, rest[i])).free;
+      blocked = !world
+                     .check_motion(RobotModel::with(problem.start, arm, rest[i - 1]),
+                                   RobotModel::with(problem.start, arm, rest[i]))
+                     .free;
     ReplanResult live;
     Result anew;
     const double t_live = seconds([&] {
@@ -97,16 +109,18 @@ int run(int cases) {
   repair_anew.print("blocked: planned anew");
   improve.print("dear: live");
   improve_anew.print("dear: planned anew");
-  std::printf("blocked: repaired %d, replanned %d, no way %d; planned anew solves %d of %d\n", outcomes[2], outcomes[3], outcomes[4],
-              anew_solved, blocked_cases);
-  std::printf("dear: kept %d, improved %d, replanned %d, no way %d\n", outcomes_dear[0], outcomes_dear[1], outcomes_dear[3],
-              outcomes_dear[4]);
-  std::printf("ratio of medians, planned anew / live: blocked %.1f, dear %.1f\n", repair_anew.at(0.5) / repair.at(0.5),
-              improve_anew.at(0.5) / improve.at(0.5));
+  std::printf("blocked: repaired %d, replanned %d, no way %d; planned anew solves %d of %d\n",
+              outcomes[2], outcomes[3], outcomes[4], anew_solved, blocked_cases);
+  std::printf("dear: kept %d, improved %d, replanned %d, no way %d\n", outcomes_dear[0],
+              outcomes_dear[1], outcomes_dear[3], outcomes_dear[4]);
+  std::printf("ratio of medians, planned anew / live: blocked %.1f, dear %.1f\n",
+              repair_anew.at(0.5) / repair.at(0.5), improve_anew.at(0.5) / improve.at(0.5));
   return 0;
 }
 
 }  // namespace
 }  // namespace handsel::path_planner
 
-int main(int argc, char** argv) { return handsel::path_planner::run(argc > 1 ? std::atoi(argv[1]) : 400); }
+int main(int argc, char** argv) {
+  return handsel::path_planner::run(argc > 1 ? std::atoi(argv[1]) : 400);
+}

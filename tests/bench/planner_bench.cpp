@@ -1,5 +1,6 @@
-// Paths beside a person: ours (bidirectional T-RRT) against OMPL's BiT-RRT on the same costs, judged state by state by FCL; both searches
-// only, then ours with smoothing and the last check. One run, query by query in turn. Usage: bench_planner [queries]
+// Paths beside a person: ours (bidirectional T-RRT) against OMPL's BiT-RRT on the same costs,
+// judged state by state by FCL; both searches only, then ours with smoothing and the last check.
+// One run, query by query in turn. Usage: bench_planner [queries]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -55,16 +56,17 @@ void compare(int queries) {
     Hooks hooks;
     hooks.cancelled = [&] { return test::thread_time() - begin > kPatience; };
     SearchSpace space(table.robot, exact, one_by_one, problem, settings, hooks);
-    peer_solved += !search(space, problem.goals, PlannerKind::bitrrt, true, problem.seed).path.empty();
+    peer_solved +=
+        !search(space, problem.goals, PlannerKind::bitrrt, true, problem.seed).path.empty();
     peer_times.push_back(test::thread_time() - begin);
   }
   std::printf("%d queries, seed %u; times of the thread, ours the least of 3\n", queries, kSeed);
-  std::printf("ours, search              p50 %8.2f ms  p95 %8.2f ms  solved %d\n", test::quantile_ms(search_times, 0.5),
-              test::quantile_ms(search_times, 0.95), solved);
-  std::printf("ours, smoothed and judged p50 %8.2f ms  p95 %8.2f ms\n", test::quantile_ms(all_times, 0.5),
-              test::quantile_ms(all_times, 0.95));
-  std::printf("OMPL BiTRRT and FCL       p50 %8.2f ms  p95 %8.2f ms  solved %d\n", test::quantile_ms(peer_times, 0.5),
-              test::quantile_ms(peer_times, 0.95), peer_solved);
+  std::printf("ours, search              p50 %8.2f ms  p95 %8.2f ms  solved %d\n",
+              test::quantile_ms(search_times, 0.5), test::quantile_ms(search_times, 0.95), solved);
+  std::printf("ours, smoothed and judged p50 %8.2f ms  p95 %8.2f ms\n",
+              test::quantile_ms(all_times, 0.5), test::quantile_ms(all_times, 0.95));
+  std::printf("OMPL BiTRRT and FCL       p50 %8.2f ms  p95 %8.2f ms  solved %d\n",
+              test::quantile_ms(peer_times, 0.5), test::quantile_ms(peer_times, 0.95), peer_solved);
   std::printf("ratio of searches         p50 %8.1f x   p95 %8.1f x\n",
               test::quantile_ms(peer_times, 0.5) / test::quantile_ms(search_times, 0.5),
               test::quantile_ms(peer_times, 0.95) / test::quantile_ms(search_times, 0.95));

@@ -1,6 +1,7 @@
-// From a sample of a person put on the wire to the changed set-point on the wire, over DDS, with the controller as its own process; beside
-// it what the machine allows: a UDP round trip of as many bytes and the wait for the next control tick.
-// Usage: bench_reaction [reactions] [domain]. Prints; judges nothing.
+// From a sample of a person put on the wire to the changed set-point on the wire, over DDS, with
+// the controller as its own process; beside it what the machine allows: a UDP round trip of as many
+// bytes and the wait for the next control tick. Usage: bench_reaction [reactions] [domain]. Prints;
+// judges nothing.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -35,13 +36,15 @@ namespace handsel {
 namespace {
 
 double at(std::vector<double>& sorted, double share) {
-  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
+  return sorted[std::min(sorted.size() - 1,
+                         static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
 }
 
 void print(const char* what, std::vector<double> us) {
   if (us.empty()) return;
   std::sort(us.begin(), us.end());
-  std::printf("%-34s %5zu  p50 %7.0f  p99 %7.0f  longest %7.0f us\n", what, us.size(), at(us, 0.5), at(us, 0.99), us.back());
+  std::printf("%-34s %5zu  p50 %7.0f  p99 %7.0f  longest %7.0f us\n", what, us.size(), at(us, 0.5),
+              at(us, 0.99), us.back());
 }
 
 double since(TimePoint t) { return 1e6 * to_seconds(monotonic_now() - t); }
@@ -59,7 +62,9 @@ std::vector<double> udp_trips(int count) {
   to_a.sin_family = to_b.sin_family = AF_INET;
   to_a.sin_addr.s_addr = to_b.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof to_a;
-  if (bind(a, reinterpret_cast<sockaddr*>(&to_a), size) != 0 || bind(b, reinterpret_cast<sockaddr*>(&to_b), size) != 0) return {};
+  if (bind(a, reinterpret_cast<sockaddr*>(&to_a), size) != 0 ||
+      bind(b, reinterpret_cast<sockaddr*>(&to_b), size) != 0)
+    return {};
   getsockname(a, reinterpret_cast<sockaddr*>(&to_a), &size);
   getsockname(b, reinterpret_cast<sockaddr*>(&to_b), &size);
   std::vector<char> person(1600), set_point(640);
@@ -68,7 +73,8 @@ std::vector<double> udp_trips(int count) {
     std::vector<char> buffer(2000);
     for (int k = 0; k < count; ++k) {
       if (recv(b, buffer.data(), buffer.size(), 0) <= 0) return;
-      sendto(b, set_point.data(), set_point.size(), 0, reinterpret_cast<sockaddr*>(&to_a), sizeof to_a);
+      sendto(b, set_point.data(), set_point.size(), 0, reinterpret_cast<sockaddr*>(&to_a),
+             sizeof to_a);
     }
   });
   std::vector<double> out;
@@ -117,8 +123,10 @@ class Probe {
  public:
   Probe(std::uint32_t domain, int wanted)
       : robot_(RobotModel::load(robot_description("jido"))),
-        bus_(
-            {.component = "reaction_probe sim spark supervisor manipulation_planner", .domain = domain, .realtime = true, .health = false}),
+        bus_({.component = "reaction_probe sim spark supervisor manipulation_planner",
+              .domain = domain,
+              .realtime = true,
+              .health = false}),
         wanted_(wanted) {
     state_.robot = robot_.name();
     state_.position = robot_.rest_configuration();
@@ -138,8 +146,10 @@ class Probe {
     advice_out_ = bus_.advertise<AttentionAdvice>();
     forecast_out_ = bus_.advertise<TrajectoryForecast>();
     command_out_ = bus_.advertise<TrajectoryCommand>();
-    bus_.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) { on(m, r.arrival); });
-    bus_.subscribe<ExecutionStatus>([this](const ExecutionStatus& m, const Receipt&) { status_ = m; });
+    bus_.subscribe<JointCommand>(
+        [this](const JointCommand& m, const Receipt& r) { on(m, r.arrival); });
+    bus_.subscribe<ExecutionStatus>(
+        [this](const ExecutionStatus& m, const Receipt&) { status_ = m; });
     bus_.every(std::chrono::milliseconds(2), [this](TimePoint) {
       ++state_.sequence;
       state_out_->publish(state_);
@@ -149,10 +159,12 @@ class Probe {
     bus_.every(std::chrono::milliseconds(20), [this](TimePoint) {
       advice_out_->publish(advice_);
       forecast_out_->publish(forecast_);
-      if (status_.motion != MotionState::running && status_.mode < Mode::hold && ++idle_ > 5) send();
+      if (status_.motion != MotionState::running && status_.mode < Mode::hold && ++idle_ > 5)
+        send();
       if (status_.mode >= Mode::hold && ++held_ % 25 == 0) ++go_.epoch;
     });
-    return bus_.run_until([this] { return static_cast<int>(reactions_.size()) >= wanted_; }, std::chrono::seconds(20 + wanted_));
+    return bus_.run_until([this] { return static_cast<int>(reactions_.size()) >= wanted_; },
+                          std::chrono::seconds(20 + wanted_));
   }
 
   const std::vector<double>& reactions() const { return reactions_; }
@@ -160,16 +172,19 @@ class Probe {
   const ExecutionStatus& status() const { return status_; }
 
  private:
-  /// A slow sweep of the first axis: at cruise its acceleration is nothing, so that any change shows.
+  /// A slow sweep of the first axis: at cruise its acceleration is nothing, so that any change
+  /// shows.
   void send() {
     idle_ = 0;
     const Group& arm = robot_.require_group("arm");
-    Vector from = RobotModel::part(state_.position, arm), to = RobotModel::part(robot_.rest_configuration(), arm);
+    Vector from = RobotModel::part(state_.position, arm),
+           to = RobotModel::part(robot_.rest_configuration(), arm);
     to[0] += (++command_.id % 2) ? 0.6 : -0.3;
     command_.robot = robot_.name();
     command_.epoch = status_.epoch;
     command_.axes.assign(arm.axes.begin(), arm.axes.end());
-    KinematicLimits slow{Vector::Constant(from.size(), 0.15), Vector::Constant(from.size(), 1.0), Vector::Constant(from.size(), 5.0)};
+    KinematicLimits slow{Vector::Constant(from.size(), 0.15), Vector::Constant(from.size(), 1.0),
+                         Vector::Constant(from.size(), 5.0)};
     command_.trajectory = solve(rest_state(from), rest_state(to), slow).trajectory;
     command_out_->publish(command_);
   }
@@ -177,7 +192,8 @@ class Probe {
     state_.position = m.position;
     if (last_ != TimePoint{}) gaps_.push_back(1e6 * to_seconds(arrival - last_));
     last_ = arrival;
-    const double pushed = m.acceleration.head(7).cwiseAbs().maxCoeff(), speed = m.velocity.head(7).cwiseAbs().maxCoeff();
+    const double pushed = m.acceleration.head(7).cwiseAbs().maxCoeff(),
+                 speed = m.velocity.head(7).cwiseAbs().maxCoeff();
     if (waiting_ && pushed > 1e-9) {
       waiting_ = false;
       reactions_.push_back(1e6 * to_seconds(arrival - asked_));
@@ -187,13 +203,15 @@ class Probe {
     cruising_ = !waiting_ && pushed <= 1e-9 && speed > 0.14 ? cruising_ + 1 : 0;
     if (cruising_ < 60) return;
     cruising_ = 0;
-    bus_.after(Duration(std::uniform_int_distribution<int>(0, 2'000'000)(random_)), [this, v = Vector(m.velocity)](TimePoint) { dart(v); });
+    bus_.after(Duration(std::uniform_int_distribution<int>(0, 2'000'000)(random_)),
+               [this, v = Vector(m.velocity)](TimePoint) { dart(v); });
   }
   /// Somebody runs in against the way of the hand.
   void dart(const Vector& velocity) {
     if (waiting_ || state_.position.size() == 0) return;
     const Vector3 p = robot_.link_pose(state_.position, robot_.tool_link()).translation();
-    Vector3 way = robot_.link_pose(state_.position + 1e-3 * velocity, robot_.tool_link()).translation() - p;
+    Vector3 way =
+        robot_.link_pose(state_.position + 1e-3 * velocity, robot_.tool_link()).translation() - p;
     way.z() = 0;
     way.normalize();
     Person person;
@@ -233,7 +251,8 @@ int measure(int wanted, std::uint32_t domain) {
   const std::string number = std::to_string(domain);
   const pid_t child = fork();
   if (child == 0) {
-    execl(HANDSEL_CONTROLLER, HANDSEL_CONTROLLER, "--realtime", "--domain", number.c_str(), nullptr);
+    execl(HANDSEL_CONTROLLER, HANDSEL_CONTROLLER, "--realtime", "--domain", number.c_str(),
+          nullptr);
     std::_Exit(127);
   }
   Probe probe(domain, wanted);
@@ -247,10 +266,14 @@ int measure(int wanted, std::uint32_t domain) {
   print("floor: wait for a 1 kHz tick", tick_waits(wanted, random));
   print("between set-points", probe.gaps());
   std::vector<int> bins(12);
-  for (double us : probe.reactions()) ++bins[std::min<std::size_t>(11, static_cast<std::size_t>(us / 250.0))];
+  for (double us : probe.reactions())
+    ++bins[std::min<std::size_t>(11, static_cast<std::size_t>(us / 250.0))];
   for (std::size_t i = 0; i < bins.size(); ++i)
-    std::printf("  %s%5zu us %s\n", i + 1 < bins.size() ? " " : ">", i * 250, std::string(static_cast<std::size_t>(bins[i]), '#').c_str());
-  if (!all) std::printf("only %zu reactions: %s\n", probe.reactions().size(), probe.status().reason.c_str());
+    std::printf("  %s%5zu us %s\n", i + 1 < bins.size() ? " " : ">", i * 250,
+                std::string(static_cast<std::size_t>(bins[i]), '#').c_str());
+  if (!all)
+    std::printf("only %zu reactions: %s\n", probe.reactions().size(),
+                probe.status().reason.c_str());
   return all ? 0 : 1;
 }
 

@@ -1,6 +1,7 @@
-// The receiver steps aside while the object is carried to them: how long until a trajectory leads to the new exchange point from the motion
-// that runs - choosing the point, the path, the soft motion, and what joins them - against stopping and planning anew from there. Jido; one
-// process, alternating. Time of the thread. Usage: bench_retarget [cases]
+// The receiver steps aside while the object is carried to them: how long until a trajectory leads
+// to the new exchange point from the motion that runs - choosing the point, the path, the soft
+// motion, and what joins them - against stopping and planning anew from there. Jido; one process,
+// alternating. Time of the thread. Usage: bench_retarget [cases]
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -23,7 +24,7 @@ using test::Times;
 
 constexpr unsigned kSeed = 21;
 constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
-constexpr double kUnderWay = 0.4;         // share of the time of the carrying motion when it is left
+constexpr double kUnderWay = 0.4;  // share of the time of the carrying motion when it is left
 
 int run(int cases) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
@@ -31,7 +32,8 @@ int run(int cases) {
   const ObjectModel mug = ObjectModel::load(object_description("mug"));
   config::ManipulationPlannerSettings settings;
   load_text_proto(resource("config/manipulation_planner.txtpb"), settings);
-  CollisionWorld world(robot, [&mug](const std::string& name) { return name == "mug" ? &mug : nullptr; });
+  CollisionWorld world(robot,
+                       [&mug](const std::string& name) { return name == "mug" ? &mug : nullptr; });
   HumanCost cost(robot, {});
   Scene scene;
   scene.robot_known = true;
@@ -47,19 +49,24 @@ int run(int cases) {
     world.set_people(people);
     cost.set_people(people);
   };
-  const auto tool_at = [&](const Vector& q) { return Pose(robot.link_pose(q, robot.tool_link()) * attachment.T_tool_object); };
+  const auto tool_at = [&](const Vector& q) {
+    return Pose(robot.link_pose(q, robot.tool_link()) * attachment.T_tool_object);
+  };
   const auto choose = [&](const HumanState& people, const Vector& q) {
     const Pose T_world_object = tool_at(q);
-    const manipulation_planner::OtpQuery query{scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}};
+    const manipulation_planner::OtpQuery query{scene,          people.people[0],         {},
+                                               T_world_object, attachment.T_tool_object, {}};
     return manipulation_planner::find_otp(robot, query, q, settings);
   };
-  const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes, const Vector& start) {
+  const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes,
+                          const Vector& start) {
     TrajectoryRequest request;
     request.group = "arm";
     request.nodes = nodes;
     request.start = start;
     request.attachment = attachment;
-    return trajectory_planner::plan(robot, world, cost, {people, scene.T_world_base}, request, {}).reply;
+    return trajectory_planner::plan(robot, world, cost, {people, scene.T_world_base}, request, {})
+        .reply;
   };
 
   std::mt19937 engine(kSeed);
@@ -69,7 +76,9 @@ int run(int cases) {
   for (int k = 0; k < cases; ++k) {
     const Vector3 feet{1.35 + 0.3 * unit(engine), -0.4 + 0.8 * unit(engine), 0};
     const double way = 6.283185307179586 * unit(engine), step = 0.15 + 0.25 * unit(engine);
-    const HumanState before = test::person_at(feet), after = test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
+    const HumanState before = test::person_at(feet),
+                     after =
+                         test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
     const Vector rest = robot.rest_configuration();
     put(before);
     path_planner::Problem problem;
@@ -101,14 +110,17 @@ int run(int cases) {
     });
     goals_of_search();
     if (!problem.goals.empty()) {
-      const double t_path = seconds([&] { live = path_planner::continue_path({robot, world, cost}, problem, first.path, {}, {}); });
+      const double t_path = seconds([&] {
+        live = path_planner::continue_path({robot, world, cost}, problem, first.path, {}, {});
+      });
       const double t_motion = seconds([&] {
         if (live.result.solved) soft = smooth(after, live.result.path, problem.start);
       });
       const double t_join = seconds([&] {
         if (!soft.solved) return;
         KinematicLimits limits = robot.comfort_limits();
-        for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = 1.1 * RobotModel::part(*part, arm);
+        for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk})
+          *part = 1.1 * RobotModel::part(*part, arm);
         joined = switch_to(now, soft.trajectory, limits).ok();
       });
       led += joined;
@@ -127,7 +139,8 @@ int run(int cases) {
     led_anew += reached;
     anew.add(t_anew);
   }
-  std::printf("seed %u, %d cases: led to the new point %d, from rest %d\n", kSeed, tried, led, led_anew);
+  std::printf("seed %u, %d cases: led to the new point %d, from rest %d\n", kSeed, tried, led,
+              led_anew);
   point.print("exchange point");
   path.print("path");
   motion.print("soft motion");

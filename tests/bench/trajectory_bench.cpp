@@ -1,6 +1,7 @@
-// Soft motion: time of a solution, evaluation, smoothing, control tick, switch. The problems of 7 axes are those of Ruckig's own benchmark:
-// its generator and seeds, its test of what is valid. With -DHANDSEL_RUCKIG=<path> Ruckig runs in between on the same problems: counters
-// ours_ns and peer_ns are medians of interleaved passes [CPU ns], and every duration is compared.
+// Soft motion: time of a solution, evaluation, smoothing, control tick, switch. The problems of 7
+// axes are those of Ruckig's own benchmark: its generator and seeds, its test of what is valid.
+// With -DHANDSEL_RUCKIG=<path> Ruckig runs in between on the same problems: counters ours_ns and
+// peer_ns are medians of interleaved passes [CPU ns], and every duration is compared.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -44,7 +45,8 @@ class Source {
     for (double& x : out) x = chance_(random_) < share ? distribution_(random_) : 0.0;
   }
   void fill_beyond(Eigen::VectorXd& out, const Eigen::VectorXd& least) {
-    for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = distribution_(random_) + std::abs(least[i]);
+    for (Eigen::Index i = 0; i < out.size(); ++i)
+      out[i] = distribution_(random_) + std::abs(least[i]);
   }
 
  private:
@@ -56,14 +58,16 @@ class Source {
 bool ends_inside(const Case& c) {
   for (int i = 0; i < kAxes; ++i) {
     const double v = c.to.velocity[i], a = c.to.acceleration[i], V = c.limits.velocity[i];
-    if (std::abs(v) > V || std::abs(a) > c.limits.acceleration[i] || std::abs(v - a * std::abs(a) / (2 * c.limits.jerk[i])) > V)
+    if (std::abs(v) > V || std::abs(a) > c.limits.acceleration[i] ||
+        std::abs(v - a * std::abs(a) / (2 * c.limits.jerk[i])) > V)
       return false;
   }
   return true;
 }
 
 std::vector<Case> cases(Ends ends) {
-  Source position(std::normal_distribution<double>(0, 4), 42), rate(std::normal_distribution<double>(0, 0.8), 43);
+  Source position(std::normal_distribution<double>(0, 4), 42),
+      rate(std::normal_distribution<double>(0, 0.8), 43);
   Source limit(std::uniform_real_distribution<double>(0.1, 12), 44);
   std::vector<Case> out;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(kAxes);
@@ -86,8 +90,9 @@ std::vector<Case> cases(Ends ends) {
 }
 
 std::array<const Eigen::VectorXd*, 9> numbers_of(const Case& c) {
-  return {&c.from.position,   &c.from.velocity,   &c.from.acceleration,   &c.to.position, &c.to.velocity,
-          &c.to.acceleration, &c.limits.velocity, &c.limits.acceleration, &c.limits.jerk};
+  return {&c.from.position,   &c.from.velocity,       &c.from.acceleration,
+          &c.to.position,     &c.to.velocity,         &c.to.acceleration,
+          &c.limits.velocity, &c.limits.acceleration, &c.limits.jerk};
 }
 
 /// The same numbers, problem after problem, as a batch reads them.
@@ -95,7 +100,8 @@ struct Flat {
   explicit Flat(const std::vector<Case>& all) {
     for (const Case& c : all) {
       const auto numbers = numbers_of(c);
-      for (std::size_t k = 0; k < 9; ++k) parts[k].insert(parts[k].end(), numbers[k]->begin(), numbers[k]->end());
+      for (std::size_t k = 0; k < 9; ++k)
+        parts[k].insert(parts[k].end(), numbers[k]->begin(), numbers[k]->end());
     }
   }
   detail::AxisBatchInput from(std::size_t problem) const {
@@ -110,7 +116,8 @@ std::string hash_of(const std::vector<Case>& all) {
   std::uint64_t hash = 1469598103934665603ULL;
   for (const Case& c : all) {
     for (const Eigen::VectorXd* part : numbers_of(c)) {
-      for (const double x : *part) hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 1099511628211ULL;
+      for (const double x : *part)
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 1099511628211ULL;
     }
   }
   char text[32];
@@ -150,7 +157,10 @@ std::vector<test::PeerProblem> for_peer(const std::vector<Case>& all) {
     test::PeerProblem& p = out.emplace_back();
     const auto numbers = numbers_of(c);
     for (std::size_t k = 0; k < 9; ++k) {
-      std::copy(numbers[k]->begin(), numbers[k]->end(), k < 3 ? p.from[k] : k < 6 ? p.to[k - 3] : p.limits[k - 6]);
+      std::copy(numbers[k]->begin(), numbers[k]->end(),
+                k < 3   ? p.from[k]
+                : k < 6 ? p.to[k - 3]
+                        : p.limits[k - 6]);
     }
   }
   return out;
@@ -219,8 +229,10 @@ void one_axis(benchmark::State& state) {
   std::size_t k = 0;
   for (auto _ : state) {
     const Case& c = inputs[k++ % kCases];
-    benchmark::DoNotOptimize(solve_axis({c.from.position[0], c.from.velocity[0], c.from.acceleration[0]},
-                                        {c.to.position[0], c.to.velocity[0], c.to.acceleration[0]}, limits_of(c.limits, 0), profile));
+    benchmark::DoNotOptimize(
+        solve_axis({c.from.position[0], c.from.velocity[0], c.from.acceleration[0]},
+                   {c.to.position[0], c.to.velocity[0], c.to.acceleration[0]},
+                   limits_of(c.limits, 0), profile));
   }
 }
 BENCHMARK(one_axis);
@@ -258,28 +270,33 @@ BENCHMARK(evaluate);
 void smooth_ten_nodes(benchmark::State& state) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(-2, 2);
-  const KinematicLimits limits{Eigen::VectorXd::Constant(kAxes, 1), Eigen::VectorXd::Constant(kAxes, 2),
+  const KinematicLimits limits{Eigen::VectorXd::Constant(kAxes, 1),
+                               Eigen::VectorXd::Constant(kAxes, 2),
                                Eigen::VectorXd::Constant(kAxes, 8)};
-  std::vector<std::vector<Eigen::VectorXd>> lines(64, std::vector<Eigen::VectorXd>(10, Eigen::VectorXd(kAxes)));
+  std::vector<std::vector<Eigen::VectorXd>> lines(
+      64, std::vector<Eigen::VectorXd>(10, Eigen::VectorXd(kAxes)));
   for (auto& line : lines) {
     for (Eigen::VectorXd& q : line) {
       for (double& x : q) x = place(random);
     }
   }
   std::size_t k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(smooth(lines[k++ % lines.size()], limits).trajectory.axes.data());
+  for (auto _ : state)
+    benchmark::DoNotOptimize(smooth(lines[k++ % lines.size()], limits).trajectory.axes.data());
 }
 BENCHMARK(smooth_ten_nodes);
 
 struct Running {
   Eigen::VectorXd one = Eigen::VectorXd::Ones(kAxes);
   KinematicLimits guard{one, 2 * one, 8 * one}, comfort{one / 1.1, 2 * one / 1.1, 8 * one / 1.1};
-  Trajectory trajectory = straight_motion(Eigen::VectorXd::Zero(kAxes), Eigen::VectorXd::LinSpaced(kAxes, 1, 5), comfort);
+  Trajectory trajectory = straight_motion(Eigen::VectorXd::Zero(kAxes),
+                                          Eigen::VectorXd::LinSpaced(kAxes, 1, 5), comfort);
   TimeScaling law;
   Running() { law.init(trajectory, guard); }
 };
 
-/// A control tick while alpha stays as it is. The peer's: its update while its target stays as it is.
+/// A control tick while alpha stays as it is. The peer's: its update while its target stays as it
+/// is.
 void control_tick(benchmark::State& state) {
   Running running;
   TimeScaling fresh = running.law;
@@ -290,7 +307,8 @@ void control_tick(benchmark::State& state) {
   };
   for (auto _ : state) ours(0);
 #ifdef HANDSEL_RUCKIG
-  Case c{rest_state(Eigen::VectorXd::Zero(kAxes)), final_state(running.trajectory), running.comfort};
+  Case c{rest_state(Eigen::VectorXd::Zero(kAxes)), final_state(running.trajectory),
+         running.comfort};
   test::RuckigPeer peer(for_peer({c}));
   side_by_side(state, 100000, ours, [&](std::size_t) { peer.tick(0); });
 #endif
@@ -315,10 +333,12 @@ BENCHMARK(control_tick_while_alpha_changes);
 void switch_over(benchmark::State& state) {
   Running running;
   for (int k = 0; k < 1500; ++k) running.law.advance(0.001);
-  const SegmentTable next(
-      straight_motion(Eigen::VectorXd::LinSpaced(kAxes, 0.2, 0.8), Eigen::VectorXd::LinSpaced(kAxes, -1, 2), running.comfort));
+  const SegmentTable next(straight_motion(Eigen::VectorXd::LinSpaced(kAxes, 0.2, 0.8),
+                                          Eigen::VectorXd::LinSpaced(kAxes, -1, 2),
+                                          running.comfort));
   TrajectorySwitch planner(kAxes);
-  for (auto _ : state) benchmark::DoNotOptimize(planner.plan(running.law.state(), next, running.guard, {}));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(planner.plan(running.law.state(), next, running.guard, {}));
 }
 BENCHMARK(switch_over);
 

@@ -1,6 +1,7 @@
-// From ten nodes of Jido's arm among boxes to a smoothed trajectory, with and without the collision tests of corners; and motions of the
-// tool to TR_app, by 5 s of motion. The peer of the first is MoveIt's TOTG: 2.8 ms for ten nodes of seven axes on such a machine.
-// bench_trajectory_planner [lines]. Each is timed several times and the least counts; quantiles are over the inputs.
+// From ten nodes of Jido's arm among boxes to a smoothed trajectory, with and without the collision
+// tests of corners; and motions of the tool to TR_app, by 5 s of motion. The peer of the first is
+// MoveIt's TOTG: 2.8 ms for ten nodes of seven axes on such a machine. bench_trajectory_planner
+// [lines]. Each is timed several times and the least counts; quantiles are over the inputs.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -30,30 +31,36 @@ double least_time(Work&& work) {
 }
 
 void lines(int count) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
   CollisionWorld world(robot, nullptr), planning(robot, nullptr);
   const HumanCost nobody(robot, {});
   KinematicLimits limits = robot.comfort_limits();
-  limits = {RobotModel::part(limits.velocity, arm), RobotModel::part(limits.acceleration, arm), RobotModel::part(limits.jerk, arm)};
+  limits = {RobotModel::part(limits.velocity, arm), RobotModel::part(limits.acceleration, arm),
+            RobotModel::part(limits.jerk, arm)};
   std::mt19937 random(10);
   std::vector<double> with, without;
   for (int k = 0; k < count; ++k) {
     const test::BrokenLine line = test::broken_line(robot, world, 10, 10, random);
     planning.set_scene(line.scene);
-    with.push_back(least_time([&] { trajectory_planner::plan(robot, planning, nobody, {}, line.request, {}); }));
+    with.push_back(least_time(
+        [&] { trajectory_planner::plan(robot, planning, nobody, {}, line.request, {}); }));
     without.push_back(least_time([&] { smooth(line.request.nodes, limits); }));
   }
-  std::printf("ten nodes, %d lines of Jido among six boxes: without collision tests %.0f us (p95 %.0f), with them %.0f us (p95 %.0f)\n",
-              count, 1e3 * test::quantile_ms(without, 0.5), 1e3 * test::quantile_ms(without, 0.95), 1e3 * test::quantile_ms(with, 0.5),
-              1e3 * test::quantile_ms(with, 0.95));
-  std::printf("TOTG's 2.8 ms are %.0f and %.0f times that\n", 1e3 * kTotg / test::quantile_ms(without, 0.5),
+  std::printf(
+      "ten nodes, %d lines of Jido among six boxes: without collision tests %.0f us (p95 %.0f), "
+      "with them %.0f us (p95 %.0f)\n",
+      count, 1e3 * test::quantile_ms(without, 0.5), 1e3 * test::quantile_ms(without, 0.95),
+      1e3 * test::quantile_ms(with, 0.5), 1e3 * test::quantile_ms(with, 0.95));
+  std::printf("TOTG's 2.8 ms are %.0f and %.0f times that\n",
+              1e3 * kTotg / test::quantile_ms(without, 0.5),
               1e3 * kTotg / test::quantile_ms(with, 0.5));
 }
 
 /// `still`: hand and head are active, but stay where they are.
-void motions(const char* name, const RobotModel& robot, const Group& arm, const std::vector<int>& also, const Vector& home, int count,
-             bool still = false) {
+void motions(const char* name, const RobotModel& robot, const Group& arm,
+             const std::vector<int>& also, const Vector& home, int count, bool still = false) {
   CollisionWorld world(robot, nullptr);
   std::mt19937 random(5);
   std::vector<double> share;
@@ -63,11 +70,13 @@ void motions(const char* name, const RobotModel& robot, const Group& arm, const 
       for (auto& node : request.nodes) node.also = home(also);
     if (request.nodes.empty()) continue;
     trajectory_planner::CartesianMotion motion;
-    const double lasted = least_time([&] { motion = trajectory_planner::plan_cartesian(robot, arm, world, request); });
-    if (motion.solved && motion.path.duration() > 2) share.push_back(5 * lasted / motion.path.duration());
+    const double lasted = least_time(
+        [&] { motion = trajectory_planner::plan_cartesian(robot, arm, world, request); });
+    if (motion.solved && motion.path.duration() > 2)
+      share.push_back(5 * lasted / motion.path.duration());
   }
-  std::printf("%s, tool, %zu motions: 5 s of motion to TR_app in %.1f ms (p95 %.1f)\n", name, share.size(), test::quantile_ms(share, 0.5),
-              test::quantile_ms(share, 0.95));
+  std::printf("%s, tool, %zu motions: 5 s of motion to TR_app in %.1f ms (p95 %.1f)\n", name,
+              share.size(), test::quantile_ms(share, 0.5), test::quantile_ms(share, 0.95));
 }
 
 }  // namespace
@@ -77,9 +86,12 @@ int main(int argc, char** argv) {
   using namespace handsel;
   const int count = argc > 1 ? std::max(1, std::atoi(argv[1])) : 40;
   lines(count);
-  const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
-  motions("Jido, 22 axes", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_configuration(), count);
-  motions("Jido, hand and head still", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_configuration(), count, true);
+  const RobotModel jido =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  motions("Jido, 22 axes", jido, jido.require_group("arm"), test::hand_and_head(jido),
+          jido.rest_configuration(), count);
+  motions("Jido, hand and head still", jido, jido.require_group("arm"), test::hand_and_head(jido),
+          jido.rest_configuration(), count, true);
   if (const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf")) {
     const RobotModel iiwa = RobotModel::load_urdf(*file);
     Group arm = iiwa.require_group("all");

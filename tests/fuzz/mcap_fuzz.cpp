@@ -1,5 +1,6 @@
-// Recordings in MCAP come from other programs, too. For libFuzzer: clang++ -fsanitize=fuzzer,address with the sources of common/record;
-// here a corpus and its seeded mutations are replayed.
+// Recordings in MCAP come from other programs, too. For libFuzzer: clang++
+// -fsanitize=fuzzer,address with the sources of common/record; here a corpus and its seeded
+// mutations are replayed.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -11,10 +12,14 @@
 
 namespace handsel {
 
-/// True when the file was read to its end. Aborts when a message has more bytes than the file or a refusal is no sentence.
+/// True when the file was read to its end. Aborts when a message has more bytes than the file or a
+/// refusal is no sentence.
 bool read_mcap(const std::string& name, const std::string& content) {
-  const std::filesystem::path folder = std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
-  const std::filesystem::path file = folder / ("handsel-fuzz-" + std::to_string(getpid()) + "-" + name);
+  const std::filesystem::path folder = std::filesystem::is_directory("/dev/shm")
+                                           ? "/dev/shm"
+                                           : std::filesystem::temp_directory_path();
+  const std::filesystem::path file =
+      folder / ("handsel-fuzz-" + std::to_string(getpid()) + "-" + name);
   std::ofstream(file, std::ios::binary) << content;
   bool good = true;
   try {
@@ -24,7 +29,8 @@ bool read_mcap(const std::string& name, const std::string& content) {
       if (message.time < 0 || message.data.size() > content.size()) std::abort();
   } catch (const ConfigError& error) {
     const std::string what = error.what();
-    if (what.find(name) == std::string::npos || what.find('\n') != std::string::npos || what.size() > 400) {
+    if (what.find(name) == std::string::npos || what.find('\n') != std::string::npos ||
+        what.size() > 400) {
       std::fprintf(stderr, "no sentence: %s\n", what.c_str());
       std::abort();
     }
@@ -49,7 +55,9 @@ namespace {
 
 TEST(McapFuzz, no_recording_crashes_and_each_refusal_is_one_sentence) {
   fuzz::replay("mcap", read_mcap,
-               {std::string("\6\377\377\377\377\0\0\0\0", 9), std::string("\5\4\0\0\0\0\0\0\0", 9), "\x0f", "lz4", "\x89MCAP0\r\n"}, 200);
+               {std::string("\6\377\377\377\377\0\0\0\0", 9), std::string("\5\4\0\0\0\0\0\0\0", 9),
+                "\x0f", "lz4", "\x89MCAP0\r\n"},
+               200);
 }
 
 }  // namespace

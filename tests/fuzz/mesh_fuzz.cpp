@@ -1,5 +1,5 @@
-// Meshes are read from anybody's file. For libFuzzer: clang++ -fsanitize=fuzzer,address with the sources of common/geometry; here a corpus
-// and its seeded mutations are replayed.
+// Meshes are read from anybody's file. For libFuzzer: clang++ -fsanitize=fuzzer,address with the
+// sources of common/geometry; here a corpus and its seeded mutations are replayed.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -36,7 +36,8 @@ bool read_mesh(const std::string& name, const std::string& content) {
 #ifdef HANDSEL_LIBFUZZER
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const char* const kNames[] = {"a.obj", "a.stl", "a.ply", "a.dae"};
-  if (size > 0) handsel::read_mesh(kNames[data[0] % 4], {reinterpret_cast<const char*>(data) + 1, size - 1});
+  if (size > 0)
+    handsel::read_mesh(kNames[data[0] % 4], {reinterpret_cast<const char*>(data) + 1, size - 1});
   return 0;
 }
 #else

@@ -1,5 +1,6 @@
-// Recordings are read from anybody's file. For libFuzzer: clang++ -fsanitize=fuzzer,address with the sources of sim/recording and sim/bvh;
-// here a corpus and its seeded mutations are replayed: every input is read or refused in one sentence, none crashes.
+// Recordings are read from anybody's file. For libFuzzer: clang++ -fsanitize=fuzzer,address with
+// the sources of sim/recording and sim/bvh; here a corpus and its seeded mutations are replayed:
+// every input is read or refused in one sentence, none crashes.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -13,7 +14,8 @@ namespace handsel {
 /// True when it was read. Aborts when what was read is no recording, or the refusal is no sentence.
 bool read_fuzzed(bool bvh, std::string_view text) {
   try {
-    const sim::Recording recording = bvh ? sim::parse_bvh_recording(text, "input") : sim::parse_body_csv(text, "input");
+    const sim::Recording recording =
+        bvh ? sim::parse_bvh_recording(text, "input") : sim::parse_body_csv(text, "input");
     if (recording.frames.size() < 2 || !(recording.rate > 0)) std::abort();
     for (const sim::BodyPoints& frame : recording.frames)
       for (const Vector3& p : frame)
@@ -24,7 +26,8 @@ bool read_fuzzed(bool bvh, std::string_view text) {
     return true;
   } catch (const ConfigError& error) {
     const std::string what = error.what();
-    if (what.rfind("input:", 0) != 0 || what.find('\n') != std::string::npos || what.size() > 400) std::abort();
+    if (what.rfind("input:", 0) != 0 || what.find('\n') != std::string::npos || what.size() > 400)
+      std::abort();
     return false;
   }
 }
@@ -56,11 +59,29 @@ std::string contents(const std::filesystem::path& file) {
 }
 
 std::string mutated(std::string text, std::mt19937_64& random) {
-  const auto any = [&](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random() % n); };
-  static const char* const kPieces[] = {
-      "nan",    "-1e308", "0",  "{",   "}",         "JOINT",    "End Site", "CHANNELS 6",           "Frames: 99999999",
-      "\n",     ",",      ",,", "inf", "Xrotation", "\xff\xfe", "1e-320",   "99999999999999999999", "-",
-      "ROOT a", "MOTION"};
+  const auto any = [&](std::size_t n) {
+    return n == 0 ? 0 : static_cast<std::size_t>(random() % n);
+  };
+  static const char* const kPieces[] = {"nan",
+                                        "-1e308",
+                                        "0",
+                                        "{",
+                                        "}",
+                                        "JOINT",
+                                        "End Site",
+                                        "CHANNELS 6",
+                                        "Frames: 99999999",
+                                        "\n",
+                                        ",",
+                                        ",,",
+                                        "inf",
+                                        "Xrotation",
+                                        "\xff\xfe",
+                                        "1e-320",
+                                        "99999999999999999999",
+                                        "-",
+                                        "ROOT a",
+                                        "MOTION"};
   for (std::size_t i = 1 + any(4); i > 0; --i) {
     const std::size_t at = any(text.size() + 1);
     switch (any(5)) {
@@ -86,7 +107,8 @@ std::string mutated(std::string text, std::mt19937_64& random) {
 }
 
 void replay(bool bvh, const char* kind) {
-  const std::filesystem::path folder = std::filesystem::path(HANDSEL_SOURCE_DIR) / "tests/fuzz/corpus" / kind;
+  const std::filesystem::path folder =
+      std::filesystem::path(HANDSEL_SOURCE_DIR) / "tests/fuzz/corpus" / kind;
   const char* asked = std::getenv("HANDSEL_FUZZ_MUTATIONS");
   const int mutations = asked != nullptr ? std::atoi(asked) : 400;
   int files = 0, good = 0, read = 0, refused = 0;
@@ -97,7 +119,8 @@ void replay(bool bvh, const char* kind) {
     good += expected;
     EXPECT_EQ(read_fuzzed(bvh, text), expected) << name;
     std::mt19937_64 random(std::hash<std::string>{}(name));
-    for (int i = 0; i < mutations; ++i) (read_fuzzed(bvh, mutated(text, random)) ? read : refused)++;
+    for (int i = 0; i < mutations; ++i)
+      (read_fuzzed(bvh, mutated(text, random)) ? read : refused)++;
   }
   EXPECT_GE(files - good, 8);
   EXPECT_GE(good, 1);

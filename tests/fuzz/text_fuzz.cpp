@@ -1,5 +1,6 @@
-// Settings, scenarios and stories are texts that people write. For libFuzzer: clang++ -fsanitize=fuzzer,address with the sources of
-// common/config and deploy/handsel/story/story.cpp; here corpora and their seeded mutations are replayed.
+// Settings, scenarios and stories are texts that people write. For libFuzzer: clang++
+// -fsanitize=fuzzer,address with the sources of common/config and deploy/handsel/story/story.cpp;
+// here corpora and their seeded mutations are replayed.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -20,16 +21,19 @@ bool finite(const google::protobuf::Message& message) {
     const int count = field->is_repeated() ? get.FieldSize(message, field) : 1;
     for (int i = 0; i < count; ++i) {
       if (field->cpp_type() == field->CPPTYPE_MESSAGE &&
-          !finite(field->is_repeated() ? get.GetRepeatedMessage(message, field, i) : get.GetMessage(message, field)))
+          !finite(field->is_repeated() ? get.GetRepeatedMessage(message, field, i)
+                                       : get.GetMessage(message, field)))
         return false;
-      if (field->cpp_type() == field->CPPTYPE_DOUBLE && !field->is_repeated() && !std::isfinite(get.GetDouble(message, field)))
+      if (field->cpp_type() == field->CPPTYPE_DOUBLE && !field->is_repeated() &&
+          !std::isfinite(get.GetDouble(message, field)))
         return false;
     }
   }
   return true;
 }
 
-/// Calls `read`; true when it returns. Aborts when a refusal is no sentence that begins with the name.
+/// Calls `read`; true when it returns. Aborts when a refusal is no sentence that begins with the
+/// name.
 template <class Read>
 bool taken(const std::string& name, const Read& read) {
   try {
@@ -67,7 +71,8 @@ bool read_story_text(const std::string& name, const std::string& content) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string content(reinterpret_cast<const char*>(data) + 1, size - 1);
-  data[0] & 1 ? handsel::read_scenario("f.txtpb", content) : handsel::read_story_text("f.story", content);
+  data[0] & 1 ? handsel::read_scenario("f.txtpb", content)
+              : handsel::read_story_text("f.story", content);
   return 0;
 }
 #else
@@ -78,13 +83,15 @@ namespace {
 
 TEST(TextFuzz, no_scenario_crashes_and_each_refusal_is_one_sentence) {
   fuzz::replay("txtpb", read_scenario,
-               {"pose { xyz { x: ", "people {", "id: \"a\"", "start { key: \"j\" value: 1 }", "boxes <", "x: [1, 2]", "\"\\377\"", "# c\n",
-                "rate: nan"},
+               {"pose { xyz { x: ", "people {", "id: \"a\"", "start { key: \"j\" value: 1 }",
+                "boxes <", "x: [1, 2]", "\"\\377\"", "# c\n", "rate: nan"},
                200);
 }
 
 TEST(TextFuzz, no_story_crashes_and_each_refusal_is_one_sentence) {
-  fuzz::replay("story", read_story_text, {"start a\n", "within 1s", "at 1e9s ", "expect ", "speed below ", "for 2ms", "kill -9 ", "never "},
+  fuzz::replay("story", read_story_text,
+               {"start a\n", "within 1s", "at 1e9s ", "expect ", "speed below ", "for 2ms",
+                "kill -9 ", "never "},
                200);
 }
 

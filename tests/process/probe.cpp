@@ -6,8 +6,10 @@ namespace {
 
 class Node {
  public:
-  Node(handsel::Bus& bus, const handsel::NodeContext& context) : status_(bus.advertise<handsel::TaskStatus>()) {
-    bus.subscribe<handsel::TaskGoal>([this, robot = context.robot->name()](const handsel::TaskGoal& goal, const handsel::Receipt&) {
+  Node(handsel::Bus& bus, const handsel::NodeContext& context)
+      : status_(bus.advertise<handsel::TaskStatus>()) {
+    bus.subscribe<handsel::TaskGoal>([this, robot = context.robot->name()](
+                                         const handsel::TaskGoal& goal, const handsel::Receipt&) {
       handsel::TaskStatus status;
       status.id = goal.id;
       status.phase = robot;

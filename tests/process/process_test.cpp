@@ -1,4 +1,5 @@
-// A component as a process: ready line, clean end, refusals with their exit codes, one of a kind in a domain.
+// A component as a process: ready line, clean end, refusals with their exit codes, one of a kind in
+// a domain.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -85,15 +86,18 @@ TEST_F(Process, says_when_it_is_ready_answers_and_ends_cleanly_on_sigterm) {
   std::uint64_t answered = 0;
   HealthState state = HealthState::starting;
   bus.subscribe<TaskStatus>([&](const TaskStatus& m, const Receipt&) { answered = m.id; });
-  bus.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) { state = m.state; });
-  ASSERT_TRUE(bus.run_until([&] { return goals->readers() == 1 && state == HealthState::ok; }, std::chrono::seconds(5)));
+  bus.subscribe<ComponentHealth>(
+      [&](const ComponentHealth& m, const Receipt&) { state = m.state; });
+  ASSERT_TRUE(bus.run_until([&] { return goals->readers() == 1 && state == HealthState::ok; },
+                            std::chrono::seconds(5)));
   TaskGoal goal;
   goal.id = 42;
   goals->publish(goal);
   EXPECT_TRUE(bus.run_until([&] { return answered == 42; }, std::chrono::seconds(5)));
   const TimePoint asked = bus.now();
   probe.signal(SIGTERM);
-  EXPECT_TRUE(bus.run_until([&] { return state == HealthState::stopping; }, std::chrono::seconds(1)));
+  EXPECT_TRUE(
+      bus.run_until([&] { return state == HealthState::stopping; }, std::chrono::seconds(1)));
   EXPECT_EQ(probe.wait(), 0);
   EXPECT_LT(to_seconds(bus.now() - asked), 1.0);
 }
@@ -102,7 +106,8 @@ TEST_F(Process, second_of_its_kind_refuses_to_start) {
   Probe first({});
   ASSERT_NE(first.out_line().find("ready"), std::string::npos);
   Probe second({});
-  EXPECT_EQ(second.err_line(), "handsel_probe: domain " + std::to_string(kDomain) + " already has a probe; --standby starts one more");
+  EXPECT_EQ(second.err_line(), "handsel_probe: domain " + std::to_string(kDomain) +
+                                   " already has a probe; --standby starts one more");
   EXPECT_EQ(second.wait(), 2);
   Probe spare({"--standby"});
   EXPECT_NE(spare.out_line().find("ready"), std::string::npos);
@@ -131,10 +136,12 @@ TEST_F(Process, bad_input_is_one_sentence_and_an_exit_code) {
 
 TEST_F(Process, killed_process_is_seen_within_its_lease) {
   DdsBus bus({.component = "tester", .domain = kDomain, .health = false});
-  const auto& status = bus.subscribe<ComponentHealth>([](const ComponentHealth&, const Receipt&) {});
+  const auto& status =
+      bus.subscribe<ComponentHealth>([](const ComponentHealth&, const Receipt&) {});
   Probe probe({});
   ASSERT_NE(probe.out_line().find("ready"), std::string::npos);
-  ASSERT_TRUE(bus.run_until([&] { return status.writers == 1 && status.received > 2; }, std::chrono::seconds(5)));
+  ASSERT_TRUE(bus.run_until([&] { return status.writers == 1 && status.received > 2; },
+                            std::chrono::seconds(5)));
   const TimePoint killed = bus.now();
   probe.signal(SIGKILL);
   EXPECT_TRUE(bus.run_until([&] { return status.writers_lost == 1; }, std::chrono::seconds(2)));

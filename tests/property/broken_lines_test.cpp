@@ -1,7 +1,7 @@
-// Random broken lines of Jido's arm among random boxes: never longer than with a stop at each node, inside the limits, and free of contact
-// at every millimetre. States the spheres around the links clear are taken for free, the rest is FCL's; every kAlone-th line is FCL's
-// alone. HANDSEL_RUNS: how many lines (20); HANDSEL_FIRST: of those the
-// first that is looked at (1).
+// Random broken lines of Jido's arm among random boxes: never longer than with a stop at each node,
+// inside the limits, and free of contact at every millimetre. States the spheres around the links
+// clear are taken for free, the rest is FCL's; every kAlone-th line is FCL's alone. HANDSEL_RUNS:
+// how many lines (20); HANDSEL_FIRST: of those the first that is looked at (1).
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -26,7 +26,8 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
   const int runs = asked != nullptr ? std::max(1, std::atoi(asked)) : 20;
   const char* from = std::getenv("HANDSEL_FIRST");
   const int first = from != nullptr ? std::atoi(from) : 1;
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
   CollisionWorld planning(robot, nullptr), wide(robot, nullptr), exact(robot, nullptr);
   wide.set_moving_axes(arm.axes);
@@ -45,7 +46,8 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
     const Trajectory& found = result.reply.trajectory;
     EXPECT_LE(found.duration(), result.reply.duration_ptp + 1e-9) << "line " << run;
     KinematicLimits limits = robot.comfort_limits();
-    limits = {RobotModel::part(limits.velocity, arm), RobotModel::part(limits.acceleration, arm), RobotModel::part(limits.jerk, arm)};
+    limits = {RobotModel::part(limits.velocity, arm), RobotModel::part(limits.acceleration, arm),
+              RobotModel::part(limits.jerk, arm)};
     EXPECT_EQ(why_not_within(found, limits, 0.1 + 1e-9), "") << "line " << run;
     for (int i = 0; i < found.size(); ++i) {
       const AxisExtremes e = extremes(found.axes[i]);
@@ -55,7 +57,8 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
     }
     corners += static_cast<int>(request.nodes.size()) - 2;
     stops += static_cast<int>(result.reply.corners.size());
-    for (const Refusal& refusal : result.reply.corners) collided += refusal.reason.find("collides") != std::string::npos;
+    for (const Refusal& refusal : result.reply.corners)
+      collided += refusal.reason.find("collides") != std::string::npos;
     time += found.duration();
     with_stops += result.reply.duration_ptp;
     const SegmentTable table(found);
@@ -65,24 +68,29 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
     for (double t = 0; t <= table.duration();) {
       table.evaluate(t, cursor, state);
       ++states;
-      const CollisionVerdict verdict = judge.is_free(RobotModel::with(request.start, arm, state.position))
-                                           ? CollisionVerdict{}
-                                           : judge.check(RobotModel::with(request.start, arm, state.position));
+      const CollisionVerdict verdict =
+          judge.is_free(RobotModel::with(request.start, arm, state.position))
+              ? CollisionVerdict{}
+              : judge.check(RobotModel::with(request.start, arm, state.position));
       if (!verdict.free) {
         double off = 1e9;
         for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
           const Vector leg = request.nodes[k + 1] - request.nodes[k];
-          const double s = std::clamp((state.position - request.nodes[k]).dot(leg) / leg.squaredNorm(), 0.0, 1.0);
+          const double s = std::clamp(
+              (state.position - request.nodes[k]).dot(leg) / leg.squaredNorm(), 0.0, 1.0);
           off = std::min(off, (state.position - request.nodes[k] - s * leg).norm());
         }
-        FAIL() << "line " << run << " at " << t << " s, " << off << " rad off the legs: " << verdict.first << " touches " << verdict.second;
+        FAIL() << "line " << run << " at " << t << " s, " << off
+               << " rad off the legs: " << verdict.first << " touches " << verdict.second;
       }
       const double speed = kReach * state.velocity.cwiseAbs().sum();
       t += std::clamp(kMost / std::max(speed, 1e-3), 2e-4, 0.02);
     }
   }
-  std::printf("seed %u: %d lines, %d corners, %d keep their stop (%d of them would collide); %.0f s instead of %.0f s; %zu states free\n",
-              kSeed, runs, corners, stops, collided, time, with_stops, states);
+  std::printf(
+      "seed %u: %d lines, %d corners, %d keep their stop (%d of them would collide); %.0f s "
+      "instead of %.0f s; %zu states free\n",
+      kSeed, runs, corners, stops, collided, time, with_stops, states);
   EXPECT_GT(collided, first == 1 ? runs / 10 : -1);
   EXPECT_LT(time, with_stops);
 }

@@ -1,5 +1,5 @@
-// Cartesian motions of Jido's arm and of the iiwa from the reference data: where the tool is, what the joints do. HANDSEL_RUNS: how many of
-// each robot (12).
+// Cartesian motions of Jido's arm and of the iiwa from the reference data: where the tool is, what
+// the joints do. HANDSEL_RUNS: how many of each robot (12).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -25,7 +25,8 @@ struct Tally {
   std::vector<double> compression, share;  // share: time to compute / time of motion
 };
 
-void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& also, const Vector& home, int runs, Tally& tally) {
+void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& also,
+            const Vector& home, int runs, Tally& tally) {
   std::mt19937 random(kSeed);
   CollisionWorld world(robot, nullptr);
   const ik::Chain chain(robot, arm, home);
@@ -48,7 +49,8 @@ void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& a
     tally.slowest = std::min(tally.slowest, motion.executable.slowest);
     const Trajectory& run = motion.executable.approximation.trajectory;
     KinematicLimits limits = robot.comfort_limits();
-    limits = {limits.velocity(motion.axes), limits.acceleration(motion.axes), limits.jerk(motion.axes)};
+    limits = {limits.velocity(motion.axes), limits.acceleration(motion.axes),
+              limits.jerk(motion.axes)};
     EXPECT_EQ(why_not_within(run, limits, 1e-6), "");
     Vector last = motion.samples.front();
     for (std::size_t i = 0; i < motion.samples.size(); ++i) {
@@ -59,23 +61,30 @@ void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& a
         EXPECT_LE(at[static_cast<Eigen::Index>(axis)], a.upper + 1e-6);
       }
       const Pose tool = chain.forward(at.head(7), nullptr),
-                 wanted = motion.path.pose(std::min(motion.path.duration(), static_cast<double>(i) * CartesianSettings().period));
+                 wanted = motion.path.pose(std::min(
+                     motion.path.duration(), static_cast<double>(i) * CartesianSettings().period));
       tally.off = std::max(tally.off, (tool.translation() - wanted.translation()).norm());
-      tally.turned = std::max(tally.turned, Eigen::AngleAxisd(Eigen::Matrix3d(tool.linear().transpose() * wanted.linear())).angle());
+      tally.turned = std::max(
+          tally.turned,
+          Eigen::AngleAxisd(Eigen::Matrix3d(tool.linear().transpose() * wanted.linear())).angle());
       tally.step = std::max(tally.step, (motion.samples[i] - last).lpNorm<Eigen::Infinity>());
       last = motion.samples[i];
     }
     for (std::size_t k = 0; k < request.nodes.size(); ++k) {
       double least = 1;
       for (std::size_t i = 0; i < motion.samples.size(); i += 5)
-        least = std::min(least, (motion.path.pose(static_cast<double>(i) * CartesianSettings().period).translation() -
-                                 request.nodes[k].T_root_tool.translation())
-                                    .norm());
+        least = std::min(
+            least,
+            (motion.path.pose(static_cast<double>(i) * CartesianSettings().period).translation() -
+             request.nodes[k].T_root_tool.translation())
+                .norm());
       EXPECT_LT(least, 0.1) << "node " << k;
     }
     const Pose end = motion.path.pose(motion.path.duration());
     EXPECT_LT((end.translation() - request.nodes.back().T_root_tool.translation()).norm(), 1e-6);
-    EXPECT_LT(Eigen::Quaterniond(end.linear()).angularDistance(Eigen::Quaterniond(request.nodes.back().T_root_tool.linear())), 1e-6);
+    EXPECT_LT(Eigen::Quaterniond(end.linear())
+                  .angularDistance(Eigen::Quaterniond(request.nodes.back().T_root_tool.linear())),
+              1e-6);
   }
 }
 
@@ -83,9 +92,11 @@ void report(const char* name, Tally& tally) {
   std::sort(tally.compression.begin(), tally.compression.end());
   std::sort(tally.share.begin(), tally.share.end());
   std::printf(
-      "%s, seed %u: %d of %d motions solved; tool within %.3f mm and %.4f deg of TR, joints move at most %.4f rad a period, slowest alpha "
+      "%s, seed %u: %d of %d motions solved; tool within %.3f mm and %.4f deg of TR, joints move "
+      "at most %.4f rad a period, slowest alpha "
       "%.2f, compression %.0f (median), computed in %.2f ms a second of motion (median)\n",
-      name, kSeed, tally.solved, tally.wanted, 1e3 * tally.off, tally.turned * 180 / M_PI, tally.step, tally.slowest,
+      name, kSeed, tally.solved, tally.wanted, 1e3 * tally.off, tally.turned * 180 / M_PI,
+      tally.step, tally.slowest,
       tally.compression.empty() ? 0.0 : tally.compression[tally.compression.size() / 2],
       tally.share.empty() ? 0.0 : 1e3 * tally.share[tally.share.size() / 2]);
 }
@@ -96,7 +107,8 @@ int runs() {
 }
 
 TEST(CartesianMotion, of_jido_is_that_of_the_tool_with_22_active_axes) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
   const std::vector<int> also = test::hand_and_head(robot);
   Tally tally;

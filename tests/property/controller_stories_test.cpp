@@ -1,4 +1,5 @@
-// Random stories: whatever is said, forgotten or garbled, every set-point keeps the guard limits and follows from the one before.
+// Random stories: whatever is said, forgotten or garbled, every set-point keeps the guard limits
+// and follows from the one before.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -23,7 +24,11 @@ class Story {
         Vector goal(3);
         goal << real(-1.5, 1.5), real(-1.5, 1.5), real(-2.0, 2.0);
         const bool waits = integer(0, 2) == 0;
-        switches += bench.send(bench.command(goal, ++id_), 0.0, waits ? real(0.0, 5.0) : 0.0).empty() && !bench.at_rest() ? 1 : 0;
+        switches +=
+            bench.send(bench.command(goal, ++id_), 0.0, waits ? real(0.0, 5.0) : 0.0).empty() &&
+                    !bench.at_rest()
+                ? 1
+                : 0;
         break;
       }
       case 16:
@@ -58,7 +63,8 @@ class Story {
         bench.attention_speaks = integer(0, 3) > 0;
         break;
       case 11:
-        bench.drive = integer(0, 3) > 0 ? DriveMode::enabled : static_cast<DriveMode>(integer(0, 5));
+        bench.drive =
+            integer(0, 3) > 0 ? DriveMode::enabled : static_cast<DriveMode>(integer(0, 5));
         break;
       case 12:
         bench.people.people.clear();
@@ -111,7 +117,9 @@ class Story {
   int sent{}, switches{};
 
  private:
-  double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  double real(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
   int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
   void heal() {
     bench.robot_speaks = bench.human_speaks = bench.forecast_speaks = bench.attention_speaks = true;
@@ -122,7 +130,8 @@ class Story {
     ++bench.go.epoch;
   }
   void garbage() {
-    const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e308, -1e9, 5e-324};
+    const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
+                          std::numeric_limits<double>::infinity(), 1e308, -1e9, 5e-324};
     const double x = bad[integer(0, 4)];
     switch (integer(0, 6)) {
       case 0: {
@@ -202,7 +211,9 @@ TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous
     }
     const bool was_running = story.bench.core.status_key().motion == MotionState::running;
     story.bench.tick();
-    if (k % kChapter > kChapter - kCalm && was_running && story.bench.core.status_key().motion == MotionState::finished) ++calm_finished;
+    if (k % kChapter > kChapter - kCalm && was_running &&
+        story.bench.core.status_key().motion == MotionState::finished)
+      ++calm_finished;
     if (!story.bench.at_rest()) ++moved;
     if (story.bench.core.status().causes & bit(Cause::limit_violation)) ++last_check_stops;
     ASSERT_LE(story.bench.worst_velocity, 1 + 1e-6) << "step " << k;
@@ -213,18 +224,20 @@ TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous
     ASSERT_LE(story.bench.latest_hold, kStopSlack) << "step " << k;
   }
   std::printf(
-      "%d stops from motion, the latest %.0f ms after the fastest possible; %d holds along the path, the latest %.0f ms; %llu uses of "
+      "%d stops from motion, the latest %.0f ms after the fastest possible; %d holds along the "
+      "path, the latest %.0f ms; %llu uses of "
       "the heap\n",
-      story.bench.stops, 1e3 * story.bench.latest_stop, story.bench.holds, 1e3 * story.bench.latest_hold,
-      static_cast<unsigned long long>(story.bench.allocations));
+      story.bench.stops, 1e3 * story.bench.latest_stop, story.bench.holds,
+      1e3 * story.bench.latest_hold, static_cast<unsigned long long>(story.bench.allocations));
   EXPECT_EQ(story.bench.allocations, 0u);
   EXPECT_GT(story.bench.stops, steps_wanted() / 20000);
   EXPECT_GT(story.bench.holds, 0);
   std::printf(
-      "moving in %d of %d steps; %d times to another trajectory in motion; %d of %d calm trajectories finished; shares v %.6f a %.6f j "
+      "moving in %d of %d steps; %d times to another trajectory in motion; %d of %d calm "
+      "trajectories finished; shares v %.6f a %.6f j "
       "%.6f\n",
-      moved, steps_wanted(), story.switches, calm_finished, story.sent, story.bench.worst_velocity, story.bench.worst_acceleration,
-      story.bench.worst_jerk);
+      moved, steps_wanted(), story.switches, calm_finished, story.sent, story.bench.worst_velocity,
+      story.bench.worst_acceleration, story.bench.worst_jerk);
   EXPECT_EQ(last_check_stops, 0);
   EXPECT_GT(story.switches, steps_wanted() / 20000);
   EXPECT_GT(moved, steps_wanted() / 10);

@@ -1,4 +1,5 @@
-// The cost map against the analytic costs it stands for, on random people, furniture and points; the bounds are those of docs/costs.md.
+// The cost map against the analytic costs it stands for, on random people, furniture and points;
+// the bounds are those of docs/costs.md.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +27,9 @@ unsigned seed() {
 class Draw {
  public:
   explicit Draw(unsigned seed) : random_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
   Vector3 direction() {
     std::normal_distribution<double> normal;
     return Vector3(normal(random_), normal(random_), normal(random_)).normalized();
@@ -36,7 +39,8 @@ class Draw {
     person.id = "anna";
     const Vector3 feet(uniform(-2, 2), uniform(-2, 2), 0);
     const double yaw = uniform(-3.14, 3.14);
-    person.joints = uniform(0, 1) < 0.5 ? standing_body(feet, yaw, stature) : sitting_body(feet, yaw, stature);
+    person.joints =
+        uniform(0, 1) < 0.5 ? standing_body(feet, yaw, stature) : sitting_body(feet, yaw, stature);
     if (uniform(0, 1) < 0.7) {
       person.gaze_known = true;
       person.gaze_origin = find_joint(person, "head")->position;
@@ -80,11 +84,14 @@ TEST(CostGrid, safety_and_visibility_are_within_the_stated_error) {
     const std::optional<Sight> sight = sight_of(person);
     for (int i = 0; i < 4000; ++i) {
       const Vector3 p = draw.within(layers[0]);
-      const double exact = safety_cost(simplified_distance(body, p, p, 0), settings.cost.safety_radius);
+      const double exact =
+          safety_cost(simplified_distance(body, p, p, 0), settings.cost.safety_radius);
       safety_error = std::max(safety_error, std::abs(safety.value(p).cost - exact));
       if ((p - sight->eyes).norm() > kNearEyes)
         visibility_error =
-            std::max(visibility_error, std::abs(visibility.value(p).cost - visibility_cost(*sight, p, settings.cost.visibility_cutoff)));
+            std::max(visibility_error,
+                     std::abs(visibility.value(p).cost -
+                              visibility_cost(*sight, p, settings.cost.visibility_cutoff)));
     }
   }
   std::printf("largest error: safety %.4f, visibility %.4f\n", safety_error, visibility_error);
@@ -104,7 +111,8 @@ TEST(CostGrid, arm_comfort_is_within_the_stated_error) {
       const std::vector<PlacedArm> arms = placed_arms(person);
       const auto exact_at = [&](const Vector3& p) { return arm_comfort_cost(nullptr, arms, p); };
       for (int i = 0; i < 800; ++i) {
-        const Vector3 p = arms[static_cast<std::size_t>(i % 2)].shoulder + draw.uniform(0, 0.75) * draw.direction();
+        const Vector3 p = arms[static_cast<std::size_t>(i % 2)].shoulder +
+                          draw.uniform(0, 0.75) * draw.direction();
         const GridValue value = comfort.value(p);
         ASSERT_TRUE(value.inside);
         const double exact = exact_at(p);
@@ -125,7 +133,8 @@ TEST(CostGrid, arm_comfort_is_within_the_stated_error) {
     }
   }
   std::printf(
-      "arm comfort: mean error %.4f, above 0.05 at %.2f %%, beyond the values within a cell by %.4f; reach judged otherwise %.2f %%\n",
+      "arm comfort: mean error %.4f, above 0.05 at %.2f %%, beyond the values within a cell by "
+      "%.4f; reach judged otherwise %.2f %%\n",
       sum / reachable, 100.0 * rough / reachable, beyond, 100.0 * unlike / points);
   EXPECT_GT(reachable, 2000);
   EXPECT_LE(sum / reachable, 0.008);
@@ -140,16 +149,22 @@ TEST(CostGrid, what_furniture_blocks_is_out_of_reach_and_the_sum_is_the_weighted
   for (int k = 0; k < 4; ++k) {
     const Person person = draw.person(1.75);
     const Vector3 front = find_joint(person, "torso")->position + 0.45 * torso_axes(person).col(0);
-    const std::vector<SceneBox> boxes = {{"table", make_pose(front), {0.5, 0.7, 0.04}, true},
-                                         {"block", make_pose(front + Vector3(0, 0, 0.5), {0.9, 0.1, 0.3, 0.3}), {0.2, 0.2, 0.2}, false}};
+    const std::vector<SceneBox> boxes = {
+        {"table", make_pose(front), {0.5, 0.7, 0.04}, true},
+        {"block",
+         make_pose(front + Vector3(0, 0, 0.5), {0.9, 0.1, 0.3, 0.3}),
+         {0.2, 0.2, 0.2},
+         false}};
     const Layers& layers = maker.make(person, boxes);
     const ReachCheck furniture(person, boxes);
     int blocked = 0;
     for (std::size_t i = 0; i < layers[2].values.size(); i += 7) {
-      const double x = static_cast<double>(i % layers[2].nx), y = static_cast<double>(i / layers[2].nx % layers[2].ny),
+      const double x = static_cast<double>(i % layers[2].nx),
+                   y = static_cast<double>(i / layers[2].nx % layers[2].ny),
                    z = static_cast<double>(i / layers[2].nx / layers[2].ny);
       const std::uint8_t comfort = layers[2].values[i];
-      if (furniture.blocked_by(layers[2].origin + layers[2].resolution * Vector3(x, y, z)) != nullptr) {
+      if (furniture.blocked_by(layers[2].origin + layers[2].resolution * Vector3(x, y, z)) !=
+          nullptr) {
         ASSERT_EQ(comfort, 255);
         ++blocked;
       }
@@ -214,7 +229,8 @@ TEST(CostGrid, ends_at_its_edges_and_forbids_where_most_neighbours_are_forbidden
   EXPECT_NEAR(grid.at({1.25, 2, 3}).gradient.x(), 2.0, 1e-12);
   EXPECT_TRUE(grid.at({1.5, 2.5, 3.5}).forbidden);
   EXPECT_FALSE(grid.at({1.25, 2.25, 3.25}).forbidden);
-  for (const Vector3& outside : {Vector3(0.99, 2.2, 3.2), Vector3(1.51, 2.2, 3.2), Vector3(1.2, 2.2, NAN)}) {
+  for (const Vector3& outside :
+       {Vector3(0.99, 2.2, 3.2), Vector3(1.51, 2.2, 3.2), Vector3(1.2, 2.2, NAN)}) {
     EXPECT_FALSE(grid.at(outside).inside);
     EXPECT_EQ(grid.at(outside).cost, 0);
     EXPECT_FALSE(grid.at(outside).forbidden);

@@ -26,7 +26,8 @@ TEST(CostProperty, every_cost_is_in_the_unit_interval) {
     cost.set_base(make_pose({place(random), place(random), 1.0}));
     HumanState people;
     Person person;
-    person.joints = standing_body({place(random), place(random), 0}, angle(random), 1.5 + 0.3 * weight(random));
+    person.joints =
+        standing_body({place(random), place(random), 0}, angle(random), 1.5 + 0.3 * weight(random));
     people.people.push_back(person);
     cost.set_people(people);
     for (int i = 0; i < 5; ++i) {
@@ -46,7 +47,8 @@ TEST(CostProperty, every_cost_is_in_the_unit_interval) {
 std::vector<const detail::CostKernel*> kernels() {
   std::vector<const detail::CostKernel*> out = {&detail::kCostKernelBase, &detail::cost_kernel()};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) out.push_back(&detail::kCostKernelAvx2);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    out.push_back(&detail::kCostKernelAvx2);
 #endif
   return out;
 }
@@ -56,7 +58,8 @@ Person somebody(std::mt19937& random, const std::string& id) {
   Person person;
   person.id = id;
   const Vector3 feet(place(random), place(random), 0);
-  person.joints = angle(random) > 0 ? standing_body(feet, angle(random), 1.75) : sitting_body(feet, angle(random), 1.6);
+  person.joints = angle(random) > 0 ? standing_body(feet, angle(random), 1.75)
+                                    : sitting_body(feet, angle(random), 1.6);
   if (angle(random) > 0) {
     person.gaze_known = true;
     person.gaze_origin = find_joint(person, "head")->position;
@@ -71,17 +74,22 @@ TEST(CostProperty, many_states_at_once_cost_what_they_cost_one_by_one) {
   std::uniform_real_distribution<double> place(-1, 1), angle(-2.9, 2.9);
   double worst = 0;
   int points = 0, jumps = 0;
-  const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb"), planar = test::planar_arm();
+  const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) +
+                                           "/deploy/robots/jido/jido.txtpb"),
+                   planar = test::planar_arm();
   for (const RobotModel* robot : {&jido, &planar}) {
-    const std::vector<int> axes = robot == &jido ? jido.require_group("arm").axes : std::vector<int>{0, 1, 2};
+    const std::vector<int> axes =
+        robot == &jido ? jido.require_group("arm").axes : std::vector<int>{0, 1, 2};
     CostSettings settings;
     HumanCost cost(*robot, settings), exact(*robot, settings);
     for (int k = 0; k < 40; ++k) {
       HumanState people;
       people.people = {somebody(random, "anna")};
       if (k % 3 == 0) people.people.push_back(somebody(random, "ben"));
-      const Pose T_world_base = make_pose({50 * place(random), 5 * place(random), place(random)},
-                                          Eigen::Quaterniond(1, 0.1 * place(random), 0.1 * place(random), place(random)).normalized());
+      const Pose T_world_base =
+          make_pose({50 * place(random), 5 * place(random), place(random)},
+                    Eigen::Quaterniond(1, 0.1 * place(random), 0.1 * place(random), place(random))
+                        .normalized());
       for (Person& person : people.people) {
         for (BodyJoint& joint : person.joints) joint.position += T_world_base.translation();
         person.gaze_origin += T_world_base.translation();
@@ -93,7 +101,9 @@ TEST(CostProperty, many_states_at_once_cost_what_they_cost_one_by_one) {
       }
       if (k % 2 == 1) cost.set_moving_axes(axes);
       Vector from = robot->rest_configuration(), to = from;
-      if (k % 5 == 0) from[robot->dof() - 1] = to[robot->dof() - 1] += 0.1;  // another axis moved: the robot is folded anew
+      if (k % 5 == 0)
+        from[robot->dof() - 1] = to[robot->dof() - 1] +=
+            0.1;  // another axis moved: the robot is folded anew
       for (int axis : axes) from[axis] = angle(random), to[axis] = angle(random);
       std::vector<double> at, costs(40);
       for (int i = 0; i < 40; ++i) at.push_back(i / 39.0);
@@ -109,15 +119,18 @@ TEST(CostProperty, many_states_at_once_cost_what_they_cost_one_by_one) {
       }
     }
   }
-  std::printf("within %.1e but for %d of %d states, where the comfort of the arm jumps\n", worst, jumps, points);
+  std::printf("within %.1e but for %d of %d states, where the comfort of the arm jumps\n", worst,
+              jumps, points);
   EXPECT_LE(jumps, points / 500);
 }
 
 TEST(CostProperty, every_width_gives_the_same_bits) {
-  const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel jido =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   std::mt19937 random(kSeed + 4);
   std::uniform_real_distribution<double> angle(-2.9, 2.9);
-  BatchCost wide(jido, robot_capsules(jido), {{jido.tool_link(), Vector3::Zero()}, {jido.tool_link(), Vector3(0.1, 0, 0)}});
+  BatchCost wide(jido, robot_capsules(jido),
+                 {{jido.tool_link(), Vector3::Zero()}, {jido.tool_link(), Vector3(0.1, 0, 0)}});
   const std::vector<int>& axes = jido.require_group("arm").axes;
   wide.set_axes(axes);
   for (int k = 0; k < 30; ++k) {
@@ -133,7 +146,8 @@ TEST(CostProperty, every_width_gives_the_same_bits) {
       ASSERT_TRUE(wide.run(from, to, at, BatchCost::kStates, 2));
       std::vector<double> all;
       for (int lane = 0; lane < BatchCost::kStates; ++lane)
-        for (double x : {wide.safety(0, lane), wide.visibility(0, lane), wide.point(0, lane).x(), wide.point(1, lane).z()})
+        for (double x : {wide.safety(0, lane), wide.visibility(0, lane), wide.point(0, lane).x(),
+                         wide.point(1, lane).z()})
           all.push_back(x);
       if (first.empty()) first = all;
       ASSERT_EQ(all, first) << kernel->name;
@@ -173,14 +187,16 @@ TEST(CostProperty, simplified_distance_agrees_with_points_sampled_on_the_body) {
   body.head = {0.05, 0, 1.6};
   body.head_radius = 0.13;
   for (int k = 0; k < 200; ++k) {
-    const Vector3 a(place(random), place(random), 1 + place(random)), b(place(random), place(random), 1 + place(random));
+    const Vector3 a(place(random), place(random), 1 + place(random)),
+        b(place(random), place(random), 1 + place(random));
     const double exact = simplified_distance(body, a, b, 0.05);
     double sampled = 1e9;
     for (int i = 0; i < 4000; ++i) {
       const double turn = 2 * M_PI * unit(random), r = body.radius * std::sqrt(unit(random));
       const Vector3 p(r * std::cos(turn), r * std::sin(turn), body.height * unit(random));
       const Vector3 q = a + unit(random) * (b - a);
-      sampled = std::min({sampled, (p - q).norm() - 0.05, (body.head - q).norm() - body.head_radius - 0.05});
+      sampled = std::min(
+          {sampled, (p - q).norm() - 0.05, (body.head - q).norm() - body.head_radius - 0.05});
     }
     if (exact <= 0) continue;
     ASSERT_LE(exact, sampled + 1e-9) << "case " << k;

@@ -1,5 +1,6 @@
-// What each example driver does of its own, in one virtual time with the real controller and a fake of the maker's side: lost messages,
-// wires that jitter, jumps, reflexes, limits toward the joints' ends, the gripper, the load; and hostile datagrams.
+// What each example driver does of its own, in one virtual time with the real controller and a fake
+// of the maker's side: lost messages, wires that jitter, jumps, reflexes, limits toward the joints'
+// ends, the gripper, the load; and hostile datagrams.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,7 +64,9 @@ class Stage {
     run(0.5);
     ASSERT_EQ(bench.core.mode(), Mode::normal) << driver().trouble();
   }
-  void go_to(double a, double b, double c) { ASSERT_EQ(bench.go_to(ControllerBench::arm(a, b, c), ++id_), ""); }
+  void go_to(double a, double b, double c) {
+    ASSERT_EQ(bench.go_to(ControllerBench::arm(a, b, c), ++id_), "");
+  }
   double now() const { return to_seconds(bench.now.time_since_epoch()); }
 
   virtual drivers::FakeArm& fake() = 0;
@@ -85,7 +88,10 @@ class Stage {
 
 class CyclicStage : public Stage {
  public:
-  CyclicStage() : Stage(5), fake_(*bench.robot, kArm, 0.005), arm_(*bench.robot, kArm, 0.005, fake_, checked()) {}
+  CyclicStage()
+      : Stage(5),
+        fake_(*bench.robot, kArm, 0.005),
+        arm_(*bench.robot, kArm, 0.005, fake_, checked()) {}
   drivers::FakeArm& fake() override { return fake_; }
   drivers::Driver& driver() override { return arm_; }
 
@@ -96,7 +102,10 @@ class CyclicStage : public Stage {
 
 class ReflexStage : public Stage {
  public:
-  ReflexStage() : Stage(1), fake_(*bench.robot, kArm, kDeceleration), arm_(*bench.robot, kArm, fake_, settings()) {}
+  ReflexStage()
+      : Stage(1),
+        fake_(*bench.robot, kArm, kDeceleration),
+        arm_(*bench.robot, kArm, fake_, settings()) {}
   FakeReflexArm& fake() override { return fake_; }
   drivers::Driver& driver() override { return arm_; }
 
@@ -157,7 +166,8 @@ TYPED_TEST(AnyDriver, a_wire_and_a_maker_that_jitter_never_make_the_references_j
     }
     s.late = s.fake().events.drop = 0;
     s.run(1.0);
-    ASSERT_EQ(s.bench.core.status().motion, MotionState::finished) << s.bench.core.status().reason << "; " << s.driver().trouble();
+    ASSERT_EQ(s.bench.core.status().motion, MotionState::finished)
+        << s.bench.core.status().reason << "; " << s.driver().trouble();
   }
   EXPECT_NEAR(s.fake().position()[0], 0.0, 1e-3);
   EXPECT_EQ(s.fake().account.violations, 0) << s.fake().account.last_violation;
@@ -207,7 +217,8 @@ TYPED_TEST(AnyDriver, what_the_hand_holds_is_told_to_the_maker_with_the_set_poin
   jumps.position[1] += 0.2;
   EXPECT_FALSE(s.driver().command(jumps, s.now()));
   EXPECT_EQ(s.fake().account.load, 0.4) << "nothing of a set-point that is refused";
-  s.run(0.1);  // the refused one stops the robot, which follows again once set-points rest where it is
+  s.run(0.1);  // the refused one stops the robot, which follows again once set-points rest where it
+               // is
   EXPECT_EQ(s.fake().account.load, 0.0) << "the controller says that nothing is held";
 }
 
@@ -218,11 +229,14 @@ TYPED_TEST(AnyDriver, a_silent_maker_stops_the_robot_and_it_goes_on_with_a_new_p
   s.run(1.0);
   s.fake().events.drop = 60;
   s.run(0.1);
-  // The reflex arm's own controller answers lost messages with a reflex, which a person ends; the position arm just waits.
+  // The reflex arm's own controller answers lost messages with a reflex, which a person ends; the
+  // position arm just waits.
   constexpr bool kReflex = std::is_same_v<TypeParam, ReflexStage>;
   EXPECT_EQ(s.state.mode, kReflex ? DriveMode::protective_stop : DriveMode::braked);
   const std::string why = s.driver().trouble();
-  EXPECT_TRUE(why.find("silent") != std::string::npos || why.find("no command") != std::string::npos) << why;
+  EXPECT_TRUE(why.find("silent") != std::string::npos ||
+              why.find("no command") != std::string::npos)
+      << why;
   EXPECT_EQ(s.bench.core.mode(), Mode::stop);
   s.run(5.0);
   if (s.driver().core().waits_for_person()) s.driver().acknowledge();
@@ -252,7 +266,8 @@ TEST(ReflexArm, a_reflex_ends_by_a_person_and_a_new_permission_only) {
   s.fake().events.push = 30.0;
   s.run(0.05);
   EXPECT_EQ(s.state.mode, DriveMode::protective_stop);
-  EXPECT_NE(s.driver().trouble().find("reflex: push on shoulder_turn"), std::string::npos) << s.driver().trouble();
+  EXPECT_NE(s.driver().trouble().find("reflex: push on shoulder_turn"), std::string::npos)
+      << s.driver().trouble();
   s.driver().acknowledge();
   s.run(0.5);
   EXPECT_EQ(s.fake().account.sessions, 0) << "somebody still pushes";
@@ -288,7 +303,8 @@ TEST(ReflexArm, velocity_limits_shrink_toward_the_ends_and_are_kept_by_stopping_
   c.velocity = c.acceleration = Vector::Zero(7);
   c.velocity[1] = 0.5;
   EXPECT_FALSE(s.driver().command(c, s.now()));
-  EXPECT_NE(s.driver().trouble().find("shoulder at 1.99"), std::string::npos) << s.driver().trouble();
+  EXPECT_NE(s.driver().trouble().find("shoulder at 1.99"), std::string::npos)
+      << s.driver().trouble();
   s.run(0.2);
   EXPECT_EQ(s.fake().account.violations, 0) << s.fake().account.last_violation;
 }
@@ -326,7 +342,8 @@ TEST(MakerUdp, what_is_sent_is_read_and_nothing_malformed_is) {
   drivers::ReflexState state, read;
   state.cycle = 77;
   state.mode = drivers::ArmMode::reflex;
-  state.position = state.velocity = state.torque = state.external_torque = Vector::LinSpaced(7, -1.0, 1.0);
+  state.position = state.velocity = state.torque = state.external_torque =
+      Vector::LinSpaced(7, -1.0, 1.0);
   state.wrist_wrench.force = Vector3(1, 2, 3);
   state.gripper_width = 0.04;
   state.error = "velocity";
@@ -337,7 +354,8 @@ TEST(MakerUdp, what_is_sent_is_read_and_nothing_malformed_is) {
   drivers::Order order;
   EXPECT_FALSE(drivers::decode(good, cyclic)) << "another kind";
   EXPECT_FALSE(drivers::decode(good, order));
-  for (std::size_t n = 0; n < good.size(); ++n) EXPECT_FALSE(drivers::decode(good.substr(0, n), read)) << n;
+  for (std::size_t n = 0; n < good.size(); ++n)
+    EXPECT_FALSE(drivers::decode(good.substr(0, n), read)) << n;
   EXPECT_FALSE(drivers::decode(good + "x", read));
   int taken = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -355,10 +373,17 @@ TEST(MakerUdp, what_is_sent_is_read_and_nothing_malformed_is) {
 TEST(FakeScript, a_line_that_cannot_be_read_is_named) {
   const test::TemporaryFolder folder;
   const auto refusal = [&](const std::string& text) {
-    return test::message_of<ConfigError>([&] { drivers::load_fake_script(folder.write("s.txt", text)); });
+    return test::message_of<ConfigError>(
+        [&] { drivers::load_fake_script(folder.write("s.txt", text)); });
   };
-  EXPECT_EQ(drivers::load_fake_script(folder.write("s.txt", "# quiet\nmoving 0.2 brake on # now\n\nstanding 1 brake off\n")).size(), 2u);
-  EXPECT_NE(refusal("moving 0.2 brake on\nlater 1 brake off\n").find("s.txt:2: \"later\" is no moment"), std::string::npos);
+  EXPECT_EQ(
+      drivers::load_fake_script(
+          folder.write("s.txt", "# quiet\nmoving 0.2 brake on # now\n\nstanding 1 brake off\n"))
+          .size(),
+      2u);
+  EXPECT_NE(
+      refusal("moving 0.2 brake on\nlater 1 brake off\n").find("s.txt:2: \"later\" is no moment"),
+      std::string::npos);
   EXPECT_NE(refusal("after x brake on\n").find("wants a number"), std::string::npos);
   EXPECT_NE(refusal("after 1 brake maybe\n").find("on or off"), std::string::npos);
   EXPECT_NE(refusal("after 1 explode\n").find("\"explode\" does not happen"), std::string::npos);

@@ -1,5 +1,5 @@
-// Random contact sets: the strict test of force closure against an independent linear program (GLPK) on every one, epsilon against an
-// independent hull (Qhull). HANDSEL_RUNS: how many (400).
+// Random contact sets: the strict test of force closure against an independent linear program
+// (GLPK) on every one, epsilon against an independent hull (Qhull). HANDSEL_RUNS: how many (400).
 #include <gtest/gtest.h>
 
 #include <glpk.h>
@@ -52,18 +52,21 @@ std::vector<PointContact> random_contacts(std::mt19937_64& random, int count) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> friction(0.1, 1.0);
   const double mu = friction(random);
-  // From any set of points and normals to contacts that face each other on a body, of which more are closed.
+  // From any set of points and normals to contacts that face each other on a body, of which more
+  // are closed.
   const double facing = std::uniform_real_distribution<double>(0, 3)(random);
   std::vector<PointContact> contacts;
   while (static_cast<int>(contacts.size()) < count) {
-    const Vector3 p(normal(random), normal(random), normal(random)), any(normal(random), normal(random), normal(random));
+    const Vector3 p(normal(random), normal(random), normal(random)),
+        any(normal(random), normal(random), normal(random));
     const Vector3 n = any - facing * p;
     if (n.norm() > 0.1) contacts.push_back({p, n.normalized(), mu});
   }
   return contacts;
 }
 
-TEST(GraspOracles, strict_closure_agrees_with_a_linear_program_and_epsilon_with_a_hull_on_all_sets) {
+TEST(GraspOracles,
+     strict_closure_agrees_with_a_linear_program_and_epsilon_with_a_hull_on_all_sets) {
   const std::uint64_t seed = 20260301;
   std::mt19937_64 random(seed);
   glp_term_out(GLP_OFF);
@@ -72,24 +75,29 @@ TEST(GraspOracles, strict_closure_agrees_with_a_linear_program_and_epsilon_with_
   double largest = 0;
   for (int trial = 0; trial < runs; ++trial) {
     const int count = 2 + trial % 5, edges = 6 + 2 * (trial / 5 % 4);
-    const WrenchMatrix w = contact_wrenches(random_contacts(random, count), edges, Vector3::Zero(), 1.0);
+    const WrenchMatrix w =
+        contact_wrenches(random_contacts(random, count), edges, Vector3::Zero(), 1.0);
     const double t = closure_oracle(w);
-    // Two opposed contacts balance; a third that can turn the object about their line one way only leaves t at 0: not closed, and not rare.
+    // Two opposed contacts balance; a third that can turn the object about their line one way only
+    // leaves t at 0: not closed, and not rare.
     const bool expected = t > 1e-9 && wrench_rank(w) == 6;
     at_border += std::abs(t) <= 1e-9;
     ASSERT_EQ(force_closure(w), expected) << "trial " << trial << " seed " << seed << " t " << t;
     closed += expected;
     const double hull = test::hull_oracle(w), e = epsilon(w);
     if (std::isnan(hull)) {
-      EXPECT_EQ(e, 0.0) << "trial " << trial << " seed " << seed << ": a set that does not span the space";
+      EXPECT_EQ(e, 0.0) << "trial " << trial << " seed " << seed
+                        << ": a set that does not span the space";
       continue;
     }
     ++hulls;
     largest = std::max(largest, std::abs(e - std::max(0.0, hull)));
     ASSERT_NEAR(e, std::max(0.0, hull), 1e-9) << "trial " << trial << " seed " << seed;
   }
-  std::printf("%d sets, %d closed, %d at the border: closure as the linear program on all; %d hulls, largest difference of epsilon %.1e\n",
-              runs, closed, at_border, hulls, largest);
+  std::printf(
+      "%d sets, %d closed, %d at the border: closure as the linear program on all; %d hulls, "
+      "largest difference of epsilon %.1e\n",
+      runs, closed, at_border, hulls, largest);
   EXPECT_GT(closed, runs / 10);
   EXPECT_GT(hulls, runs / 2);
 }

@@ -1,4 +1,5 @@
-// Force closure and epsilon against an independent hull (Qhull) on random contact sets, and where the answer has a closed form.
+// Force closure and epsilon against an independent hull (Qhull) on random contact sets, and where
+// the answer has a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,12 +37,14 @@ TEST(GraspStability, agrees_with_an_independent_hull_on_random_contacts) {
   int closed = 0, compared = 0;
   for (int trial = 0; trial < 600; ++trial) {
     const int count = 2 + trial % 4;
-    const WrenchMatrix w = contact_wrenches(random_contacts(random, count, false), 8, Vector3::Zero(), 1.0);
+    const WrenchMatrix w =
+        contact_wrenches(random_contacts(random, count, false), 8, Vector3::Zero(), 1.0);
     const double hull = hull_oracle(w), oracle = std::isnan(hull) ? -1 : hull;  // flat: not closed
     if (std::abs(oracle) < 1e-7) continue;
     ++compared;
     closed += oracle > 0;
-    ASSERT_EQ(force_closure(w), oracle > 0) << "trial " << trial << " seed " << seed << " oracle " << oracle;
+    ASSERT_EQ(force_closure(w), oracle > 0)
+        << "trial " << trial << " seed " << seed << " oracle " << oracle;
     ASSERT_NEAR(epsilon(w), std::max(0.0, oracle), 1e-9) << "trial " << trial << " seed " << seed;
   }
   EXPECT_GT(closed, 40);
@@ -52,7 +55,8 @@ TEST(GraspStability, survives_contacts_on_a_coarse_grid) {
   const std::uint64_t seed = 7;
   std::mt19937_64 random(seed);
   for (int trial = 0; trial < 400; ++trial) {
-    const WrenchMatrix w = contact_wrenches(random_contacts(random, 2 + trial % 4, true), 8, Vector3::Zero(), 1.0);
+    const WrenchMatrix w =
+        contact_wrenches(random_contacts(random, 2 + trial % 4, true), 8, Vector3::Zero(), 1.0);
     const double e = epsilon(w);
     ASSERT_EQ(force_closure(w), e > 0) << "trial " << trial << " seed " << seed << " epsilon " << e;
     const double oracle = hull_oracle(w);
@@ -78,7 +82,8 @@ TEST(GraspStability, epsilon_of_regular_sets_is_their_inner_radius) {
 }
 
 TEST(GraspStability, two_hard_contacts_are_never_closed) {
-  const std::vector<PointContact> pinch = {{{0.03, 0, 0}, {-1, 0, 0}, 0.8}, {{-0.03, 0, 0}, {1, 0, 0}, 0.8}};
+  const std::vector<PointContact> pinch = {{{0.03, 0, 0}, {-1, 0, 0}, 0.8},
+                                           {{-0.03, 0, 0}, {1, 0, 0}, 0.8}};
   const WrenchMatrix w = contact_wrenches(pinch, 8, Vector3::Zero(), 30);
   EXPECT_EQ(wrench_rank(w), 5);
   EXPECT_FALSE(force_closure(w));

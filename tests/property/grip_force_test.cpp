@@ -1,5 +1,5 @@
-// The squeeze of random grasps against oracles that share no code with it: balance, cones, caps, the margin by sampled loads, and that no
-// other squeeze is better.
+// The squeeze of random grasps against oracles that share no code with it: balance, cones, caps,
+// the margin by sampled loads, and that no other squeeze is better.
 #include "common/grasp/grip_force.hpp"
 
 #include <gtest/gtest.h>
@@ -42,10 +42,13 @@ Eigen::MatrixXd grasp_matrix(const std::vector<PointContact>& contacts, const Ve
   return G;
 }
 
-/// What of the friction share is left at the worst contact under the worst of the sampled loads [N].
-double sampled_margin(const std::vector<PointContact>& contacts, const Vector3& com, const Eigen::VectorXd& squeeze, double load,
-                      double share, const std::vector<Vector3>& ways) {
-  const Eigen::MatrixXd bear = -grasp_matrix(contacts, com).completeOrthogonalDecomposition().pseudoInverse().leftCols(3);
+/// What of the friction share is left at the worst contact under the worst of the sampled loads
+/// [N].
+double sampled_margin(const std::vector<PointContact>& contacts, const Vector3& com,
+                      const Eigen::VectorXd& squeeze, double load, double share,
+                      const std::vector<Vector3>& ways) {
+  const Eigen::MatrixXd bear =
+      -grasp_matrix(contacts, com).completeOrthogonalDecomposition().pseudoInverse().leftCols(3);
   double least = 1e9;
   for (const Vector3& way : ways) {
     const Eigen::VectorXd f = squeeze + load * bear * way;
@@ -66,7 +69,8 @@ class GripForce : public testing::TestWithParam<int> {
 
 TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
   const GripForceSettings settings;
-  const double mass = 0.3, load = mass * settings.acceleration, polygon = 1 / std::cos(M_PI / settings.edges);
+  const double mass = 0.3, load = mass * settings.acceleration,
+               polygon = 1 / std::cos(M_PI / settings.edges);
   std::vector<Vector3> ways;
   for (int k = 0; k < 400; ++k) ways.push_back(random_unit(random_));
   int held = 0;
@@ -81,28 +85,39 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
       EXPECT_LE(grip.forces[i].dot(contacts[i].inward_normal), settings.max_normal + 1e-6);
     }
     const Eigen::MatrixXd G = grasp_matrix(contacts, com);
-    EXPECT_LT((G * f).norm(), 1e-6 * std::max(1.0, f.norm())) << "seed " << GetParam() << " trial " << trial;
-    // The cone is linearised from outside: the true margin is at most the force by which the polygon is larger away from it.
-    const double true_margin = sampled_margin(contacts, com, f, load, settings.friction_fraction, ways);
-    const double rough = (polygon - 1) * settings.friction_fraction * 0.6 * settings.max_normal + 0.05 * load;
-    EXPECT_GT(true_margin, grip.margin - rough - 0.05 * std::abs(grip.margin)) << "seed " << GetParam() << " trial " << trial;
+    EXPECT_LT((G * f).norm(), 1e-6 * std::max(1.0, f.norm()))
+        << "seed " << GetParam() << " trial " << trial;
+    // The cone is linearised from outside: the true margin is at most the force by which the
+    // polygon is larger away from it.
+    const double true_margin =
+        sampled_margin(contacts, com, f, load, settings.friction_fraction, ways);
+    const double rough =
+        (polygon - 1) * settings.friction_fraction * 0.6 * settings.max_normal + 0.05 * load;
+    EXPECT_GT(true_margin, grip.margin - rough - 0.05 * std::abs(grip.margin))
+        << "seed " << GetParam() << " trial " << trial;
     EXPECT_LT(grip.margin, true_margin + rough + 0.05 * std::abs(grip.margin));
     held += grip.margin > 0;
     // Another squeeze: the margin is concave, so a better one would show near this one.
     const Eigen::MatrixXd free = Eigen::FullPivLU<Eigen::MatrixXd>(G).kernel();
     for (int k = 0; k < 200; ++k) {
-      const Eigen::VectorXd step =
-          free * Eigen::VectorXd::NullaryExpr(free.cols(), [&] { return std::normal_distribution<double>()(random_); });
+      const Eigen::VectorXd step = free * Eigen::VectorXd::NullaryExpr(free.cols(), [&] {
+                                     return std::normal_distribution<double>()(random_);
+                                   });
       const Eigen::VectorXd other = f + (0.02 + 0.2 * (k % 5)) * step / step.norm();
       bool allowed = true;
       for (std::size_t i = 0; i < contacts.size(); ++i)
-        allowed = allowed && other.segment<3>(static_cast<Eigen::Index>(3 * i)).dot(contacts[i].inward_normal) <= settings.max_normal;
+        allowed =
+            allowed &&
+            other.segment<3>(static_cast<Eigen::Index>(3 * i)).dot(contacts[i].inward_normal) <=
+                settings.max_normal;
       if (allowed) {
-        EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_fraction, ways), grip.margin + rough);
+        EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_fraction, ways),
+                  grip.margin + rough);
       }
     }
   }
-  std::printf("seed %d: %d of 60 random grasps bear %.1f N in any direction\n", GetParam(), held, load);
+  std::printf("seed %d: %d of 60 random grasps bear %.1f N in any direction\n", GetParam(), held,
+              load);
 }
 
 TEST_P(GripForce, without_load_there_is_a_squeeze_exactly_when_the_grasp_is_force_closed) {
@@ -112,9 +127,11 @@ TEST_P(GripForce, without_load_there_is_a_squeeze_exactly_when_the_grasp_is_forc
     auto contacts = random_contacts(random_, 3 + trial % 3);
     const bool squeezes = grip_forces(contacts, Vector3::Zero(), 0.0, settings).margin > 1e-6;
     for (PointContact& c : contacts) c.friction *= 0.98 * settings.friction_fraction;
-    const bool inside = force_closure(contact_wrenches(contacts, settings.edges, Vector3::Zero(), 25));
+    const bool inside =
+        force_closure(contact_wrenches(contacts, settings.edges, Vector3::Zero(), 25));
     for (PointContact& c : contacts) c.friction /= 0.98 * std::cos(M_PI / settings.edges);
-    const bool outside = force_closure(contact_wrenches(contacts, 2 * settings.edges, Vector3::Zero(), 25));
+    const bool outside =
+        force_closure(contact_wrenches(contacts, 2 * settings.edges, Vector3::Zero(), 25));
     if (inside) {
       EXPECT_TRUE(squeezes) << "seed " << GetParam() << " trial " << trial;
     }
@@ -135,14 +152,19 @@ TEST(GripForces, opposed_pads_press_with_all_they_may_and_what_cannot_be_held_sa
     return PointContact{0.04 * out, -out, 0.6};
   };
   GripForceSettings settings;
-  const GripForces grip = grip_forces({at(0), at(2 * M_PI / 3), at(4 * M_PI / 3)}, Vector3::Zero(), 0.1, settings);
+  const GripForces grip =
+      grip_forces({at(0), at(2 * M_PI / 3), at(4 * M_PI / 3)}, Vector3::Zero(), 0.1, settings);
   ASSERT_EQ(grip.forces.size(), 3U);
-  for (const Vector3& f : grip.forces) EXPECT_NEAR(f.norm(), settings.max_normal, 0.02) << "three equal pads share the load equally";
-  // Straight down each pad bears a third; sideways the equal springs of opposed pads leave no more than that.
+  for (const Vector3& f : grip.forces)
+    EXPECT_NEAR(f.norm(), settings.max_normal, 0.02) << "three equal pads share the load equally";
+  // Straight down each pad bears a third; sideways the equal springs of opposed pads leave no more
+  // than that.
   EXPECT_GT(grip.margin, 0.8 * 0.6 * settings.max_normal - 0.1 * settings.acceleration);
   EXPECT_LT(grip.margin, 0.8 * 0.6 * settings.max_normal);
-  EXPECT_LT(grip_forces({at(0), at(0.3), at(-0.3)}, Vector3::Zero(), 0.1, settings).margin, 0.0) << "all from one side";
-  EXPECT_TRUE(grip_forces({at(0), at(M_PI)}, Vector3::Zero(), 0.1, settings).forces.empty()) << "two points";
+  EXPECT_LT(grip_forces({at(0), at(0.3), at(-0.3)}, Vector3::Zero(), 0.1, settings).margin, 0.0)
+      << "all from one side";
+  EXPECT_TRUE(grip_forces({at(0), at(M_PI)}, Vector3::Zero(), 0.1, settings).forces.empty())
+      << "two points";
 }
 
 TEST(SharedGripForces, one_hand_without_a_known_weight_is_the_single_grip) {
@@ -150,8 +172,10 @@ TEST(SharedGripForces, one_hand_without_a_known_weight_is_the_single_grip) {
   for (int trial = 0; trial < 40; ++trial) {
     const auto contacts = random_contacts(random, 3 + trial % 3);
     const GripForces alone = grip_forces(contacts, Vector3::Zero(), 0.3),
-                     shared =
-                         shared_grip_forces({contacts}, Vector3::Zero(), {Vector3::Zero(), 0.3 * GripForceSettings{}.acceleration}).front();
+                     shared = shared_grip_forces(
+                                  {contacts}, Vector3::Zero(),
+                                  {Vector3::Zero(), 0.3 * GripForceSettings{}.acceleration})
+                                  .front();
     EXPECT_NEAR(shared.margin, alone.margin, 1e-6) << "trial " << trial;
   }
 }
@@ -162,7 +186,8 @@ TEST(SharedGripForces, each_hand_balances_itself_and_the_margin_is_that_of_the_s
   const GripLoad load{Vector3(0, 0, -5), 1.0};
   int held = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    std::vector<std::vector<PointContact>> hands{random_contacts(random, 3 + trial % 2), random_contacts(random, 4)};
+    std::vector<std::vector<PointContact>> hands{random_contacts(random, 3 + trial % 2),
+                                                 random_contacts(random, 4)};
     std::vector<PointContact> all;
     for (std::size_t h = 0; h < 2; ++h)
       for (PointContact& c : hands[h]) {
@@ -171,26 +196,33 @@ TEST(SharedGripForces, each_hand_balances_itself_and_the_margin_is_that_of_the_s
       }
     const Vector3 com = 0.02 * random_unit(random);
     const std::vector<GripForces> grips = shared_grip_forces(hands, com, load, settings);
-    const Eigen::MatrixXd bear = -grasp_matrix(all, com).completeOrthogonalDecomposition().pseudoInverse().leftCols(3);
+    const Eigen::MatrixXd bear =
+        -grasp_matrix(all, com).completeOrthogonalDecomposition().pseudoInverse().leftCols(3);
     Eigen::Index row = 0;
     for (std::size_t h = 0; h < 2; ++h) {
       const auto m = static_cast<Eigen::Index>(hands[h].size());
       ASSERT_EQ(grips[h].forces.size(), hands[h].size());
       Eigen::VectorXd f(3 * m);
-      for (Eigen::Index i = 0; i < m; ++i) f.segment<3>(3 * i) = grips[h].forces[static_cast<std::size_t>(i)];
-      EXPECT_LT((grasp_matrix(hands[h], com) * f).norm(), 1e-6 * std::max(1.0, f.norm())) << "trial " << trial;
+      for (Eigen::Index i = 0; i < m; ++i)
+        f.segment<3>(3 * i) = grips[h].forces[static_cast<std::size_t>(i)];
+      EXPECT_LT((grasp_matrix(hands[h], com) * f).norm(), 1e-6 * std::max(1.0, f.norm()))
+          << "trial " << trial;
       double least = 1e9;
       for (int k = 0; k < 400; ++k) {
-        const Eigen::VectorXd total = f + bear.middleRows(row, 3 * m) * (load.weight + load.shake * random_unit(random));
+        const Eigen::VectorXd total =
+            f + bear.middleRows(row, 3 * m) * (load.weight + load.shake * random_unit(random));
         for (Eigen::Index i = 0; i < m; ++i) {
           const PointContact& c = hands[h][static_cast<std::size_t>(i)];
           const Vector3 force = total.segment<3>(3 * i);
           const double normal = force.dot(c.inward_normal);
-          least = std::min(least, settings.friction_fraction * c.friction * normal - (force - normal * c.inward_normal).norm());
+          least = std::min(least, settings.friction_fraction * c.friction * normal -
+                                      (force - normal * c.inward_normal).norm());
         }
       }
       // The cone is linearised from outside.
-      const double rough = (1 / std::cos(M_PI / settings.edges) - 1) * settings.friction_fraction * 0.6 * (settings.max_normal + 6) + 0.1;
+      const double rough = (1 / std::cos(M_PI / settings.edges) - 1) * settings.friction_fraction *
+                               0.6 * (settings.max_normal + 6) +
+                           0.1;
       EXPECT_NEAR(grips[h].margin, least, rough + 0.05 * std::abs(least)) << "trial " << trial;
       held += grips[h].margin > 0;
       row += 3 * m;
@@ -209,9 +241,12 @@ TEST(SharedGripForces, two_hands_bear_what_turns_out_of_one) {
     return contacts;
   };
   const GripLoad load{Vector3(0, 0, -12), 1};
-  EXPECT_LT(shared_grip_forces({ring(0.25)}, Vector3::Zero(), load).front().margin, 0) << "at its end alone";
-  for (const GripForces& g : shared_grip_forces({ring(-0.25), ring(0.25)}, Vector3::Zero(), load)) EXPECT_GT(g.margin, 0);
-  for (const GripForces& g : shared_grip_forces({ring(-0.25), ring(0.25)}, Vector3::Zero(), {Vector3(0, 0, -60), 1}))
+  EXPECT_LT(shared_grip_forces({ring(0.25)}, Vector3::Zero(), load).front().margin, 0)
+      << "at its end alone";
+  for (const GripForces& g : shared_grip_forces({ring(-0.25), ring(0.25)}, Vector3::Zero(), load))
+    EXPECT_GT(g.margin, 0);
+  for (const GripForces& g :
+       shared_grip_forces({ring(-0.25), ring(0.25)}, Vector3::Zero(), {Vector3(0, 0, -60), 1}))
     EXPECT_LT(g.margin, 0);
 }
 

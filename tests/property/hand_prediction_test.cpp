@@ -1,5 +1,5 @@
-// Hands expected by SPARK beside where they went: recorded motions, seen at 30 Hz with noise. The baselines are the hand that stays and the
-// hand that goes on as fast as SPARK says it moves.
+// Hands expected by SPARK beside where they went: recorded motions, seen at 30 Hz with noise. The
+// baselines are the hand that stays and the hand that goes on as fast as SPARK says it moves.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -40,18 +40,25 @@ struct Errors {
   std::array<int, kAheads> inside{}, count{};
   void add(const Errors& o) {
     for (std::size_t k = 0; k < kAheads; ++k) {
-      ours[k] += o.ours[k], stays[k] += o.stays[k], goes_on[k] += o.goes_on[k], radius[k] += o.radius[k];
+      ours[k] += o.ours[k], stays[k] += o.stays[k], goes_on[k] += o.goes_on[k],
+          radius[k] += o.radius[k];
       inside[k] += o.inside[k], count[k] += o.count[k];
     }
   }
-  double rms(const std::array<double, kAheads>& squares, std::size_t k) const { return std::sqrt(squares[k] / std::max(1, count[k])); }
-  double share(std::size_t k) const { return static_cast<double>(inside[k]) / std::max(1, count[k]); }
+  double rms(const std::array<double, kAheads>& squares, std::size_t k) const {
+    return std::sqrt(squares[k] / std::max(1, count[k]));
+  }
+  double share(std::size_t k) const {
+    return static_cast<double>(inside[k]) / std::max(1, count[k]);
+  }
   void print(const std::string& name) const {
     for (std::size_t k = 0; k < kAheads; ++k)
       if (count[k] > 0)
-        std::printf("%-16s %.1f s: %3.0f mm, stays %3.0f, goes on %3.0f; inside %5.1f %% of balls of %3.0f mm (%d)\n", name.c_str(),
-                    0.1 * static_cast<double>(k + 1), 1e3 * rms(ours, k), 1e3 * rms(stays, k), 1e3 * rms(goes_on, k), 100 * share(k),
-                    1e3 * radius[k] / count[k], count[k]);
+        std::printf(
+            "%-16s %.1f s: %3.0f mm, stays %3.0f, goes on %3.0f; inside %5.1f %% of balls of %3.0f "
+            "mm (%d)\n",
+            name.c_str(), 0.1 * static_cast<double>(k + 1), 1e3 * rms(ours, k), 1e3 * rms(stays, k),
+            1e3 * rms(goes_on, k), 100 * share(k), 1e3 * radius[k] / count[k], count[k]);
   }
 };
 
@@ -69,12 +76,15 @@ Errors follow(const Motion& motion, unsigned seed) {
     observation.coverage = {{-9, -9, -9}, {9, 9, 9}};
     observation.people.push_back({"1", {}, false});
     for (const auto& [joint, unused] : motion.frames.front())
-      observation.people[0].joints.push_back({joint, motion.where(joint, t) + Vector3(noise(random), noise(random), noise(random)), 1.0});
+      observation.people[0].joints.push_back(
+          {joint, motion.where(joint, t) + Vector3(noise(random), noise(random), noise(random)),
+           1.0});
     tracker.observe(observation, at(t));
     if (look < 8) continue;
     const HumanState state = tracker.state(at(t), {});
     for (const HandPrediction& hand : state.people.at(0).hands) {
-      const BodyJoint& now = state.people[0].joints.at(static_cast<std::size_t>(body_joint_index(hand.joint)));
+      const BodyJoint& now =
+          state.people[0].joints.at(static_cast<std::size_t>(body_joint_index(hand.joint)));
       for (std::size_t k = 0; k < hand.ahead.size(); ++k) {
         const HandAhead& ahead = hand.ahead[k];
         if (t + ahead.time > motion.duration()) continue;
@@ -97,7 +107,8 @@ std::vector<Motion> both_of(const test::RecordedHandover& recorded) {
   for (const auto& [who, joints] : recorded.bodies) {
     Motion motion{who, 120, std::vector<std::map<std::string, Vector3>>(recorded.baton.size())};
     for (const auto& [joint, rows] : joints)
-      for (std::size_t i = 0; i < motion.frames.size(); ++i) motion.frames[i][joint] = test::place(rows[i]);
+      for (std::size_t i = 0; i < motion.frames.size(); ++i)
+        motion.frames[i][joint] = test::place(rows[i]);
     out.push_back(std::move(motion));
   }
   return out;
@@ -113,7 +124,8 @@ std::vector<Motion> other_motions(const fs::path& folder) {
       Motion motion{file.path().stem(), recording.rate, {}};
       for (const sim::BodyPoints& points : recording.frames) {
         motion.frames.emplace_back();
-        for (std::size_t i = 0; i < points.size(); ++i) motion.frames.back()[kBodyJoints[i]] = points[i];
+        for (std::size_t i = 0; i < points.size(); ++i)
+          motion.frames.back()[kBodyJoints[i]] = points[i];
       }
       out.push_back(std::move(motion));
     } catch (const std::exception&) {  // one of them is a posture
@@ -163,13 +175,17 @@ TEST(HandPrediction, on_random_reaches_it_beats_both_baselines_and_grows_with_ti
   std::uniform_real_distribution<double> unit(0, 1);
   Errors all;
   for (int run = 0; run < 20; ++run) {
-    const double length = 0.2 + 0.4 * unit(random), time = 0.5 + 0.7 * unit(random), start = 0.6 + unit(random);
-    const Vector3 way = length * Vector3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5).normalized();
+    const double length = 0.2 + 0.4 * unit(random), time = 0.5 + 0.7 * unit(random),
+                 start = 0.6 + unit(random);
+    const Vector3 way =
+        length * Vector3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5).normalized();
     Motion motion{"reach", 120, {}};
     for (int i = 0; i < 360; ++i) {
-      const double s = std::clamp((i / 120.0 - start) / time, 0.0, 1.0), bell = s * s * s * (10 - 15 * s + 6 * s * s);
+      const double s = std::clamp((i / 120.0 - start) / time, 0.0, 1.0),
+                   bell = s * s * s * (10 - 15 * s + 6 * s * s);
       motion.frames.emplace_back();
-      for (const BodyJoint& joint : standing_body({1, 0, 0}, 3, 1.75)) motion.frames.back()[joint.name] = joint.position;
+      for (const BodyJoint& joint : standing_body({1, 0, 0}, 3, 1.75))
+        motion.frames.back()[joint.name] = joint.position;
       motion.frames.back()["r_hand"] += bell * way;
       motion.frames.back()["r_wrist"] += bell * way;
     }
@@ -197,7 +213,8 @@ TEST(HandPrediction, a_hand_out_of_sight_grows_and_a_lost_person_has_none) {
     observation.people.push_back({"1", {}, false});
     for (const BodyJoint& joint : standing_body({1, 0, 0}, 3, 1.75))
       if (look < 30 || joint.name.substr(0, 2) != "r_")
-        observation.people[0].joints.push_back({joint.name, joint.position + Vector3(0, 0, 1e-4 * (look % 2)), 1.0});
+        observation.people[0].joints.push_back(
+            {joint.name, joint.position + Vector3(0, 0, 1e-4 * (look % 2)), 1.0});
     tracker.observe(observation, at(look / kRate));
     const HumanState state = tracker.state(at(look / kRate), {});
     ASSERT_EQ(state.people.at(0).hands.size(), 2u) << look;

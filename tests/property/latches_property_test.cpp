@@ -1,5 +1,5 @@
-// Supervisor core and controller core over random events and restarts of either: nothing may move while a latch of a person stands, and
-// once no latch stands it may again.
+// Supervisor core and controller core over random events and restarts of either: nothing may move
+// while a latch of a person stands, and once no latch stands it may again.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -28,10 +28,13 @@ struct Truth {
   bool stands() const { return paused || fault || stopped; }
 };
 
-/// The supervisor's part, with a disk that takes a while and loses what was on its way when the process is killed.
+/// The supervisor's part, with a disk that takes a while and loses what was on its way when the
+/// process is killed.
 class SupervisorPart {
  public:
-  explicit SupervisorPart(const config::SupervisorSettings& settings) : settings_(settings) { start(); }
+  explicit SupervisorPart(const config::SupervisorSettings& settings) : settings_(settings) {
+    start();
+  }
 
   void start() {
     DurableState restored = supervisor::fresh_state(++clock_ * 1000, 1.0);
@@ -57,10 +60,12 @@ class SupervisorPart {
       writing_.reset();
     }
     const DurableState& state = latches_->state();
-    if (!writing_ && stored_ != state.safety.revision) writing_.emplace(state.safety.revision, supervisor::write_state(state, 1));
-    return permission_->step({state.permission_revision, latches_->permits(), stored_ >= state.permission_revision,
-                              state.safety.override_factor, state.safety.reason},
-                             now);
+    if (!writing_ && stored_ != state.safety.revision)
+      writing_.emplace(state.safety.revision, supervisor::write_state(state, 1));
+    return permission_->step(
+        {state.permission_revision, latches_->permits(), stored_ >= state.permission_revision,
+         state.safety.override_factor, state.safety.reason},
+        now);
   }
   /// Has the disk everything that was decided?
   bool settled() const { return !writing_ && stored_ == latches_->safety().revision; }
@@ -79,7 +84,8 @@ class ControllerPart {
  public:
   void start() {
     gate_ = {};
-    modes_ = std::make_unique<trajectory_controller::ModeMachine>(trajectory_controller::TimeoutSettings{});
+    modes_ = std::make_unique<trajectory_controller::ModeMachine>(
+        trajectory_controller::TimeoutSettings{});
     go_.reset();
   }
   void hear(const Go& go, TimePoint now) {
@@ -119,7 +125,9 @@ class ControllerPart {
 
 class Latches {
  public:
-  explicit Latches(std::uint64_t seed) : random_(seed), supervisor_(settings()) { controller_.start(); }
+  explicit Latches(std::uint64_t seed) : random_(seed), supervisor_(settings()) {
+    controller_.start();
+  }
 
   void cycle() {
     now_ += kStep;
@@ -150,8 +158,9 @@ class Latches {
       cycle();
     }
     calm_ = false;
-    ASSERT_LT(status_.mode, Mode::hold) << "nothing stands, and yet it does not move: "
-                                        << (supervisor_.alive() ? supervisor_.latches().safety().reason : "no supervisor");
+    ASSERT_LT(status_.mode, Mode::hold)
+        << "nothing stands, and yet it does not move: "
+        << (supervisor_.alive() ? supervisor_.latches().safety().reason : "no supervisor");
     ASSERT_EQ(controller_.factor(), truth_.override_factor);
   }
 
@@ -183,7 +192,8 @@ class Latches {
     }
   }
   void settle() {
-    for (int k = 0; k < 50 && !supervisor_.settled(); ++k) controller_.hear(supervisor_.step(status_, now_, true), now_);
+    for (int k = 0; k < 50 && !supervisor_.settled(); ++k)
+      controller_.hear(supervisor_.step(status_, now_, true), now_);
   }
   void act() {
     if (calm_) return;
@@ -204,12 +214,15 @@ class Latches {
     if (chance(100)) fault_ = true;
     const DriveMode before = drive_;
     if (drive_ == DriveMode::enabled && chance(80))
-      drive_ = static_cast<DriveMode>(static_cast<int>(DriveMode::protective_stop) + static_cast<int>(random_() % 3));
+      drive_ = static_cast<DriveMode>(static_cast<int>(DriveMode::protective_stop) +
+                                      static_cast<int>(random_() % 3));
     else if (drive_ != DriveMode::enabled && chance(10))
       drive_ = DriveMode::enabled;
     if (drive_ != before && drive_ != DriveMode::enabled) truth_.stopped = true;
-    // The controller restarts once the supervisor has heard of what has happened: who else should know, when both died with it?
-    const bool told = supervisor_.alive() && supervisor_.settled() && supervisor_.latches().safety().fault == truth_.fault &&
+    // The controller restarts once the supervisor has heard of what has happened: who else should
+    // know, when both died with it?
+    const bool told = supervisor_.alive() && supervisor_.settled() &&
+                      supervisor_.latches().safety().fault == truth_.fault &&
                       supervisor_.latches().safety().awaits_person == truth_.stopped;
     if (drive_ == DriveMode::enabled && !fault_ && told && chance(70)) {
       controller_.start();
@@ -221,7 +234,8 @@ class Latches {
     const bool moves = status_.mode < Mode::hold;
     moved_ += moves;
     blocked_ += truth_.stands();
-    ASSERT_FALSE(moves && truth_.stands()) << "paused " << truth_.paused << " fault " << truth_.fault << " stopped " << truth_.stopped;
+    ASSERT_FALSE(moves && truth_.stands())
+        << "paused " << truth_.paused << " fault " << truth_.fault << " stopped " << truth_.stopped;
     ASSERT_FALSE(moves && controller_.factor() > truth_.override_factor + 1e-9);
   }
 

@@ -1,5 +1,6 @@
-// The Panda problems of the reference data: how many are solved in five seconds, and that FCL alone finds every path free at every
-// millimetre and half degree. HANDSEL_RUNS: how many problems (14, spread over the scenes; 0: all).
+// The Panda problems of the reference data: how many are solved in five seconds, and that FCL alone
+// finds every path free at every millimetre and half degree. HANDSEL_RUNS: how many problems (14,
+// spread over the scenes; 0: all).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -14,17 +15,20 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kTimeLimit = 5.0;                          // [s]
-constexpr double kReach = 1.4;                              // no point of arm and hand is farther from an axis [m]
-constexpr double kMost = 0.001;                             // a point of the robot moves between two states [m]
-constexpr double kMostTurn = 0.5 * std::numbers::pi / 180;  // an axis turns between two states [rad]
+constexpr double kTimeLimit = 5.0;  // [s]
+constexpr double kReach = 1.4;      // no point of arm and hand is farther from an axis [m]
+constexpr double kMost = 0.001;     // a point of the robot moves between two states [m]
+constexpr double kMostTurn =
+    0.5 * std::numbers::pi / 180;  // an axis turns between two states [rad]
 
 TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
   if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const char* asked = std::getenv("HANDSEL_RUNS");
   const RobotModel robot = test::load_panda();
   const std::vector<test::PandaProblem> problems = test::panda_problems(robot);
-  const std::size_t runs = asked == nullptr ? 14 : std::atoi(asked) > 0 ? std::atoi(asked) : problems.size();
+  const std::size_t runs = asked == nullptr       ? 14
+                           : std::atoi(asked) > 0 ? std::atoi(asked)
+                                                  : problems.size();
   CollisionWorld world(robot, nullptr), exact(robot, nullptr);
   HumanCost nobody(robot, {});
   std::vector<double> times;
@@ -40,7 +44,8 @@ TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
     problem.start = problems[k].start;
     const auto part = [&](const Vector& q) {
       Vector out(problem.axes.size());
-      for (std::size_t i = 0; i < problem.axes.size(); ++i) out[static_cast<Eigen::Index>(i)] = q[problem.axes[i]];
+      for (std::size_t i = 0; i < problem.axes.size(); ++i)
+        out[static_cast<Eigen::Index>(i)] = q[problem.axes[i]];
       return out;
     };
     for (const Vector& goal : problems[k].goals) problem.goals.push_back(part(goal));
@@ -63,11 +68,13 @@ TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
         to[problem.axes[axis]] = result.path[i][static_cast<Eigen::Index>(axis)];
       }
       const Vector along = (to - from).cwiseAbs();
-      const int pieces = std::max(1, static_cast<int>(std::ceil(std::max(along.sum() * kReach / kMost, along.maxCoeff() / kMostTurn))));
+      const int pieces = std::max(
+          1, static_cast<int>(
+                 std::ceil(std::max(along.sum() * kReach / kMost, along.maxCoeff() / kMostTurn))));
       for (int piece = 0; piece <= pieces; ++piece, ++states) {
         const Vector q = from + (static_cast<double>(piece) / pieces) * (to - from);
-        ASSERT_TRUE(exact.is_free(q)) << "problem " << k << " (" << problems[k].set << "), edge " << i << " at " << piece << " of "
-                                      << pieces;
+        ASSERT_TRUE(exact.is_free(q)) << "problem " << k << " (" << problems[k].set << "), edge "
+                                      << i << " at " << piece << " of " << pieces;
         for (int axis : problem.axes) {
           ASSERT_GE(q[axis], robot.axes()[axis].lower - 1e-9) << "problem " << k;
           ASSERT_LE(q[axis], robot.axes()[axis].upper + 1e-9) << "problem " << k;
@@ -77,8 +84,11 @@ TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
   }
   EXPECT_EQ(exact.checks(), exact.exact_checks());
   std::sort(times.begin(), times.end());
-  std::printf("%zu of %zu problems solved, median %.2f ms, longest %.0f ms; %zu states of their paths judged by FCL, all free\n",
-              times.size(), tried, 1e3 * (times.empty() ? 0 : times[times.size() / 2]), 1e3 * (times.empty() ? 0 : times.back()), states);
+  std::printf(
+      "%zu of %zu problems solved, median %.2f ms, longest %.0f ms; %zu states of their paths "
+      "judged by FCL, all free\n",
+      times.size(), tried, 1e3 * (times.empty() ? 0 : times[times.size() / 2]),
+      1e3 * (times.empty() ? 0 : times.back()), states);
   EXPECT_GE(static_cast<double>(times.size()), 0.99 * static_cast<double>(tried));
 }
 

@@ -1,5 +1,6 @@
-// What the transition test is for: with a person beside the table, bidirectional T-RRT against RRT-Connect, all smoothed for the same
-// time. Random queries in whose way the person is: the straight line comes nearer to them than its ends. HANDSEL_RUNS: how many (60).
+// What the transition test is for: with a person beside the table, bidirectional T-RRT against
+// RRT-Connect, all smoothed for the same time. Random queries in whose way the person is: the
+// straight line comes nearer to them than its ends. HANDSEL_RUNS: how many (60).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -29,7 +30,8 @@ double wilcoxon_p(const std::vector<double>& a, const std::vector<double>& b) {
   double plus = 0;
   for (std::size_t i = 0; i < d.size(); ++i)
     if (d[i] > 0) plus += static_cast<double>(i + 1);
-  const double n = static_cast<double>(d.size()), mean = n * (n + 1) / 4, deviation = std::sqrt(n * (n + 1) * (2 * n + 1) / 24);
+  const double n = static_cast<double>(d.size()), mean = n * (n + 1) / 4,
+               deviation = std::sqrt(n * (n + 1) * (2 * n + 1) / 24);
   return d.empty() ? 1.0 : std::erfc(std::abs(plus - mean) / deviation / std::sqrt(2.0));
 }
 
@@ -63,8 +65,8 @@ class PathCost : public ::testing::Test, protected test::BesideTheTable {
     EXPECT_TRUE(result.solved) << result.reason;
     if (!result.solved) return false;
     const CostSettings weights;
-    const double ends =
-        std::max(weighted_cost(cost.parts(problem.start), weights), weighted_cost(cost.parts(whole(problem.goals[0])), weights));
+    const double ends = std::max(weighted_cost(cost.parts(problem.start), weights),
+                                 weighted_cost(cost.parts(whole(problem.goals[0])), weights));
     double integral = 0, excess = 0, least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < result.path.size(); ++i) {
       const Vector along = result.path[i] - result.path[i - 1];
@@ -96,10 +98,12 @@ class PathCost : public ::testing::Test, protected test::BesideTheTable {
     Comparison c{sum(careful.excess) / sum(other.excess), wilcoxon_p(careful.excess, other.excess),
                  static_cast<double>(larger) / std::max(1, larger + smaller)};
     std::printf(
-        "T-RRT to %s: cost above the ends' %.3f (Wilcoxon p %.1e), whole integral %.3f; least distance larger in %d, smaller in %d of %zu; "
+        "T-RRT to %s: cost above the ends' %.3f (Wilcoxon p %.1e), whole integral %.3f; least "
+        "distance larger in %d, smaller in %d of %zu; "
         "search %.2f and %.2f ms, smoothing %.2f and %.2f ms (medians)\n",
-        name, c.ratio, c.p, sum(careful.integral) / sum(other.integral), larger, smaller, careful.least.size(),
-        1e3 * median(careful.search), 1e3 * median(other.search), 1e3 * median(careful.smoothing), 1e3 * median(other.smoothing));
+        name, c.ratio, c.p, sum(careful.integral) / sum(other.integral), larger, smaller,
+        careful.least.size(), 1e3 * median(careful.search), 1e3 * median(other.search),
+        1e3 * median(careful.smoothing), 1e3 * median(other.smoothing));
     return c;
   }
 
@@ -114,13 +118,15 @@ TEST_F(PathCost, paths_of_t_rrt_cost_less_and_keep_farther_off_than_those_of_rrt
   for (int i = 0; i < runs; ++i) {
     next_query();
     problem.seed = kSeed + static_cast<unsigned>(i);
-    ASSERT_TRUE(run(PlannerKind::bitrrt, false, careful) && run(PlannerKind::rrt_connect, true, blind) &&
+    ASSERT_TRUE(run(PlannerKind::bitrrt, false, careful) &&
+                run(PlannerKind::rrt_connect, true, blind) &&
                 run(PlannerKind::rrt_connect, false, smoothed))
         << "query " << i;
   }
   std::printf("seed %u, %d queries\n", kSeed, runs);
   const Comparison to_blind = compare(careful, blind, "RRT-Connect with shortcuts");
-  const Comparison to_smoothed = compare(careful, smoothed, "RRT-Connect smoothed for the same cost");
+  const Comparison to_smoothed =
+      compare(careful, smoothed, "RRT-Connect smoothed for the same cost");
   EXPECT_LE(to_blind.ratio, 0.7);
   EXPECT_LT(to_blind.p, 0.001);
   EXPECT_GE(to_blind.larger, 0.8);

@@ -21,8 +21,10 @@ TEST(PathPlannerProperty, paths_in_random_scenes_are_free_within_limits_and_repe
     HumanCost cost(robot, {});
     Scene scene;
     for (int i = 0; i < 5; ++i)
-      scene.boxes.push_back(
-          {"box" + std::to_string(i), make_pose({place(random), place(random), 0}), {size(random), size(random), 0.2}, false});
+      scene.boxes.push_back({"box" + std::to_string(i),
+                             make_pose({place(random), place(random), 0}),
+                             {size(random), size(random), 0.2},
+                             false});
     world.set_scene(scene);
     if (k % 2 == 1) {
       HumanState people;
@@ -52,8 +54,10 @@ TEST(PathPlannerProperty, paths_in_random_scenes_are_free_within_limits_and_repe
     CollisionWorld inner(robot, nullptr);
     inner.set_scene(shrunk);
     for (std::size_t i = 1; i < result.path.size(); ++i) {
-      ASSERT_TRUE(world.check_motion(result.path[i - 1], result.path[i], 0.002).free) << "case " << k;
-      ASSERT_TRUE(inner.check_motion(result.path[i - 1], result.path[i], 0.0003).free) << "deeper than 2 mm, case " << k;
+      ASSERT_TRUE(world.check_motion(result.path[i - 1], result.path[i], 0.002).free)
+          << "case " << k;
+      ASSERT_TRUE(inner.check_motion(result.path[i - 1], result.path[i], 0.0003).free)
+          << "deeper than 2 mm, case " << k;
       for (int axis = 0; axis < 3; ++axis) ASSERT_LE(std::abs(result.path[i][axis]), 2.9 + 1e-9);
     }
     EXPECT_EQ(plan(robot, world, cost, problem, {}).path, result.path) << "case " << k;

@@ -1,5 +1,6 @@
-// People through bad sources. The oracle knows the true bodies and the raw observations only: nobody who is there may be missing from what
-// SPARK holds occupied, and no place where a source saw somebody may be given up while it is not ruled out. Seeds are printed.
+// People through bad sources. The oracle knows the true bodies and the raw observations only:
+// nobody who is there may be missing from what SPARK holds occupied, and no place where a source
+// saw somebody may be given up while it is not ruled out. Seeds are printed.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -31,10 +32,12 @@ struct TruePerson {
   void walk(double dt, std::mt19937& random, const Coverage& room) {
     std::uniform_real_distribution<double> unit(0, 1);
     if ((goal - feet).norm() < 0.1)
-      goal = room.low + (room.high - room.low).cwiseProduct(Vector3(unit(random), unit(random), 0)), goal.z() = 0;
+      goal = room.low + (room.high - room.low).cwiseProduct(Vector3(unit(random), unit(random), 0)),
+      goal.z() = 0;
     const Vector3 way = (goal - feet).normalized();
     feet += std::min(1.2 * dt, (goal - feet).norm()) * way;
-    yaw += std::clamp(std::remainder(std::atan2(way.y(), way.x()) - yaw, 2 * M_PI), -2.5 * dt, 2.5 * dt);
+    yaw += std::clamp(std::remainder(std::atan2(way.y(), way.x()) - yaw, 2 * M_PI), -2.5 * dt,
+                      2.5 * dt);
     swing += dt;
     body = standing_body(feet, yaw, 1.7);
     const Vector3 forth = 0.15 * std::sin(4 * swing) * way;
@@ -51,12 +54,15 @@ struct Trouble {
   std::vector<std::pair<double, double>> gaps{};
 };
 
-/// Horizontal distance of a torso to what is held, less how far that may have gone; the age of what is held counts with the guard.
+/// Horizontal distance of a torso to what is held, less how far that may have gone; the age of what
+/// is held counts with the guard.
 double missing(const HumanState& state, const Vector3& torso, double moved) {
   double least = 1e9;
   for (const Person& person : state.people) {
-    const Vector3 there = person.joints.at(static_cast<std::size_t>(body_joint_index("torso"))).position - torso;
-    least = std::min(least, std::hypot(there.x(), there.y()) - person.inflation - (person.inflation > 0 ? 0 : kWalk * person.age));
+    const Vector3 there =
+        person.joints.at(static_cast<std::size_t>(body_joint_index("torso"))).position - torso;
+    least = std::min(least, std::hypot(there.x(), there.y()) - person.inflation -
+                                (person.inflation > 0 ? 0 : kWalk * person.age));
   }
   return least - moved;
 }
@@ -64,7 +70,10 @@ double missing(const HumanState& state, const Vector3& torso, double moved) {
 double missing_joint(const HumanState& state, const BodyJoint& joint) {
   double least = 1e9;
   for (const Person& person : state.people) {
-    const double d = (person.joints.at(static_cast<std::size_t>(body_joint_index(joint.name))).position - joint.position).norm();
+    const double d =
+        (person.joints.at(static_cast<std::size_t>(body_joint_index(joint.name))).position -
+         joint.position)
+            .norm();
     least = std::min(least, d - person.inflation - 2.5 * person.age);
   }
   return least;
@@ -86,14 +95,24 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
   std::normal_distribution<double> noise(0, kNoise);
   const auto happens = [&](double share) { return unit(random) < share; };
   config::SparkSettings settings;
-  load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
+  load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
+                  settings);
   PeopleTracker tracker(settings);
 
-  const Coverage room{{-3, -3, -0.5}, {3, 3, 2.6}}, walked{{-2.3, -2.3, 0}, {2.3, 2.3, 0}}, reach{{-1, -1, 0.1}, {1, 1, 1.9}};
+  const Coverage room{{-3, -3, -0.5}, {3, 3, 2.6}}, walked{{-2.3, -2.3, 0}, {2.3, 2.3, 0}},
+      reach{{-1, -1, 0.1}, {1, 1, 1.9}};
   std::vector<Source> looks;
   for (int i = 0; i < sources; ++i) {  // of two, each sees half of the room and a strip more
-    Source source{"source" + std::to_string(i), room, 15 + 15 * unit(random), 0.01 + 0.04 * unit(random), 0.03 * unit(random), {}, 0, 0};
-    if (sources == 2) (i == 0 ? source.coverage.high : source.coverage.low).x() = i == 0 ? 0.4 : -0.4;
+    Source source{"source" + std::to_string(i),
+                  room,
+                  15 + 15 * unit(random),
+                  0.01 + 0.04 * unit(random),
+                  0.03 * unit(random),
+                  {},
+                  0,
+                  0};
+    if (sources == 2)
+      (i == 0 ? source.coverage.high : source.coverage.low).x() = i == 0 ? 0.4 : -0.4;
     source.next = source.phase;
     looks.push_back(source);
   }
@@ -115,13 +134,15 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
       const Vector3 before = person.feet;
       person.walk(dt, random, walked);
       for (const TruePerson& other : people)  // they give each other room
-        if (&other != &person && (other.feet - person.feet).head<2>().norm() < 0.9) person.feet = before;
+        if (&other != &person && (other.feet - person.feet).head<2>().norm() < 0.9)
+          person.feet = before;
       person.body = standing_body(person.feet, person.yaw, 1.7);
     }
     for (Source& source : looks) {
       if (t < source.next) continue;
       source.next += 1 / source.rate;
-      const bool gap = std::any_of(trouble.gaps.begin(), trouble.gaps.end(), [&](const auto& g) { return t > g.first && t < g.second; });
+      const bool gap = std::any_of(trouble.gaps.begin(), trouble.gaps.end(),
+                                   [&](const auto& g) { return t > g.first && t < g.second; });
       if (gap || happens(trouble.dropped)) continue;
       HumanObservation observation;
       observation.source = source.name;
@@ -131,27 +152,34 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
       for (std::size_t i = 0; i < people.size(); ++i) {
         if (!contains(source.coverage, people[i].feet, 0)) continue;
         const std::size_t called = source.swap_until > 0 ? people.size() - 1 - i : i;
-        ObservedPerson body{"b" + std::to_string(happens(trouble.renamed) ? 50 + random() % 50 : called), {}, false};
+        ObservedPerson body{
+            "b" + std::to_string(happens(trouble.renamed) ? 50 + random() % 50 : called),
+            {},
+            false};
         const bool jumps = t > 1 && happens(trouble.jumped);
         const double angle = 2 * M_PI * unit(random), far = jumps ? 0.2 + 2 * unit(random) : 0;
         for (const BodyJoint& joint : people[i].body) {
           if (!whole_bodies && happens(trouble.missed_joint) && joint.name != "torso") continue;
-          body.joints.push_back(
-              {joint.name,
-               joint.position + Vector3(noise(random), noise(random), noise(random)) + far * Vector3(std::cos(angle), std::sin(angle), 0),
-               0.3 + 0.7 * unit(random)});
+          body.joints.push_back({joint.name,
+                                 joint.position +
+                                     Vector3(noise(random), noise(random), noise(random)) +
+                                     far * Vector3(std::cos(angle), std::sin(angle), 0),
+                                 0.3 + 0.7 * unit(random)});
         }
         observation.people.push_back(std::move(body));
       }
       const double late = source.latency + (happens(trouble.late) ? 0.1 * unit(random) : 0);
       source.on_the_way.emplace_back(t + late, observation);
       if (happens(trouble.repeated)) source.on_the_way.emplace_back(t + late + 0.005, observation);
-      std::sort(source.on_the_way.begin(), source.on_the_way.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+      std::sort(source.on_the_way.begin(), source.on_the_way.end(),
+                [](const auto& a, const auto& b) { return a.first < b.first; });
     }
     for (Source& source : looks)
-      for (; !source.on_the_way.empty() && source.on_the_way.front().first <= t; source.on_the_way.pop_front()) {
+      for (; !source.on_the_way.empty() && source.on_the_way.front().first <= t;
+           source.on_the_way.pop_front()) {
         const HumanObservation& observation = source.on_the_way.front().second;
-        const double was = source.on_the_way.front().first - source.latency;  // a late one is taken for as old as the others
+        const double was = source.on_the_way.front().first -
+                           source.latency;  // a late one is taken for as old as the others
         tracker.observe(observation, at(was));
         if (happens(trouble.old)) {
           HumanObservation past = observation;
@@ -161,20 +189,24 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
         }
         for (const ObservedPerson& person : observation.people)
           for (const ObservedJoint& joint : person.joints)
-            if (joint.name == "torso") raw.push_back({t, 1e-9 * static_cast<double>(observation.stamp), joint.position});
+            if (joint.name == "torso")
+              raw.push_back({t, 1e-9 * static_cast<double>(observation.stamp), joint.position});
         seen_once = seen_once || !observation.people.empty();
       }
     while (!raw.empty() && raw.front().arrival < t - kHold) raw.pop_front();
     if (!seen_once || t < 0.5) continue;
     const HumanState state = tracker.state(at(t), reach);
     for (std::size_t i = 0; i < people.size(); ++i) {
-      const Vector3 torso = people[i].body[static_cast<std::size_t>(body_joint_index("torso"))].position;
+      const Vector3 torso =
+          people[i].body[static_cast<std::size_t>(body_joint_index("torso"))].position;
       // A lie no longer than a person walks between two looks cannot be told from the truth.
       const double believed = trouble.jumped > 0 ? 0.15 * kRun : 0;
-      ASSERT_LE(missing(state, torso, 0.1 * kWalk + believed), kSlack) << "person " << i << " is missing at " << t << " s";
+      ASSERT_LE(missing(state, torso, 0.1 * kWalk + believed), kSlack)
+          << "person " << i << " is missing at " << t << " s";
       if (!whole_bodies || trouble.jumped > 0) continue;
       for (const BodyJoint& joint : people[i].body)
-        ASSERT_LE(missing_joint(state, joint), 3 * kSlack) << joint.name << " of person " << i << " at " << t << " s";
+        ASSERT_LE(missing_joint(state, joint), 3 * kSlack)
+            << joint.name << " of person " << i << " at " << t << " s";
     }
     for (const Raw& place : raw)
       ASSERT_LE(missing(state, place.torso, kRun * (t - place.measured)), kSlack)
@@ -188,7 +220,8 @@ class Sources : public ::testing::Test {
     const char* asked = std::getenv("HANDSEL_RUNS");
     const unsigned runs = asked ? static_cast<unsigned>(std::atoi(asked)) : 6;
     std::printf("seeds 1 to %u\n", runs);
-    for (unsigned seed = 1; seed <= runs && !HasFatalFailure(); ++seed) play(seed, trouble, sources, whole_bodies);
+    for (unsigned seed = 1; seed <= runs && !HasFatalFailure(); ++seed)
+      play(seed, trouble, sources, whole_bodies);
   }
 };
 

@@ -1,5 +1,6 @@
-// Two hundred exchanges: pulls of 2 to 20 N, bumps, tremor, false starts, and people who lift without pulling. The object never falls, and
-// the hand never opens unless a person's hand carries the object at that moment.
+// Two hundred exchanges: pulls of 2 to 20 N, bumps, tremor, false starts, and people who lift
+// without pulling. The object never falls, and the hand never opens unless a person's hand carries
+// the object at that moment.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,12 +26,13 @@ struct Touch {
   double lift{};                   // share of the weight borne, [0, 1]
   double tremor{}, frequency{};    // [N], [Hz] sideways
   bool carrying{};                 // the person's hand holds the object meanwhile
-  bool on_hand{};                  // what is hit is the robot's hand: felt, but the object is not pushed out of it
+  bool on_hand{};  // what is hit is the robot's hand: felt, but the object is not pushed out of it
 };
 
-/// Fingers that press in proportion to how far they are told beyond the surface, as fast as the hand's axes are; friction that holds the
-/// object; a person. While friction does not bear what pulls at the object, it slides; after the length of a fingertip it is out: with the
-/// person who carries it, or it falls. Once the fingers are off, it is out too.
+/// Fingers that press in proportion to how far they are told beyond the surface, as fast as the
+/// hand's axes are; friction that holds the object; a person. While friction does not bear what
+/// pulls at the object, it slides; after the length of a fingertip it is out: with the person who
+/// carries it, or it falls. Once the fingers are off, it is out too.
 class Exchange {
  public:
   Exchange(const PullSettings& settings, std::uint64_t seed, double mass, double bears)
@@ -47,12 +49,14 @@ class Exchange {
     for (const Touch& t : touches) {
       if (time_ < t.from || time_ >= t.until) continue;
       const double rise = t.ramp > 0.0 ? std::min(1.0, (time_ - t.from) / t.ramp) : 1.0;
-      const Vector3 force = rise * (t.force + t.lift * mass_ * kGravity * Vector3::UnitZ()) +
-                            t.tremor * std::sin(2.0 * M_PI * t.frequency * (time_ - t.from)) * Vector3::UnitY();
+      const Vector3 force =
+          rise * (t.force + t.lift * mass_ * kGravity * Vector3::UnitZ()) +
+          t.tremor * std::sin(2.0 * M_PI * t.frequency * (time_ - t.from)) * Vector3::UnitY();
       (t.on_hand ? on_hand : on_object) += force;
       carrying = carrying || t.carrying;
     }
-    const double squeeze = std::max(0.0, finger_.state().position) / kSqueeze, bears = bears_ * squeeze;
+    const double squeeze = std::max(0.0, finger_.state().position) / kSqueeze,
+                 bears = bears_ * squeeze;
     const Vector3 load = on_object - mass_ * kGravity * Vector3::UnitZ();
     const double wants = load.norm();
     if (with_robot_) {
@@ -82,14 +86,16 @@ class Exchange {
   std::uint64_t regrips() const { return watch_.regrips(); }
 
  private:
-  static constexpr double kSqueeze = 0.15, kOpen = -0.5;     // of the finger's set-point beyond the surface [rad]
-  static constexpr double kPad = 0.02;                       // [m]
+  static constexpr double kSqueeze = 0.15,
+                          kOpen = -0.5;  // of the finger's set-point beyond the surface [rad]
+  static constexpr double kPad = 0.02;   // [m]
   static constexpr AxisLimits kComfort{2.85, 14.2, 107.0};   // of the hand's axes
   static constexpr AxisLimits kLoosening{0.5, 14.2, 107.0};  // as slowly as the efforts fade
   static constexpr AxisLimits kStop{3.14, 15.7, 118.0};
 
   void act(const Vector3& felt, double squeeze, bool carrying) {
-    const Grip before = watch_.grip(), grip = watch_.update({felt, Vector3::UnitX(), true, squeeze > 0.2}, now_);
+    const Grip before = watch_.grip(),
+               grip = watch_.update({felt, Vector3::UnitX(), true, squeeze > 0.2}, now_);
     if (grip == before) return;
     if (grip == Grip::loosen) {
       loosened_ = true;
@@ -124,7 +130,9 @@ struct Trials {
 /// 200 trials; each ends with a pull that goes on.
 Trials run_trials(const PullSettings& settings, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  const auto real = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto real = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   Trials out;
   for (int trial = 0; trial < 200; ++trial) {
     const int kind = trial % 5;
@@ -135,18 +143,22 @@ Trials run_trials(const PullSettings& settings, std::uint64_t seed) {
     if (kind == 1) {
       for (int k = 0; k < 3; ++k) {
         const double lasts = real(0.01, 0.08);
-        touches.push_back({t, t + lasts, 0.0, real(5, 12) * Vector3(real(-1, 1), real(-1, 1), real(-1, 1)).normalized(), 0.0, 0.0, 0.0,
-                           false, mass < 0.2 || k == 0});
+        touches.push_back(
+            {t, t + lasts, 0.0,
+             real(5, 12) * Vector3(real(-1, 1), real(-1, 1), real(-1, 1)).normalized(), 0.0, 0.0,
+             0.0, false, mass < 0.2 || k == 0});
         t += lasts + real(0.15, 0.5);
       }
     } else if (kind == 2) {
-      touches.push_back({t, t + 1.5, 0.0, Vector3::Zero(), 0.0, real(1.0, 2.5) * kThreshold, real(4.0, 9.0), true, false});
+      touches.push_back({t, t + 1.5, 0.0, Vector3::Zero(), 0.0, real(1.0, 2.5) * kThreshold,
+                         real(4.0, 9.0), true, false});
       t += 1.5;
     } else if (kind == 3) {
       for (int k = 0; k < 3; ++k) {
         const double lasts = real(0.02, 0.45);
-        touches.push_back({t, t + lasts, real(0.0, 0.1), real(2, 10) * Vector3(1, real(-0.2, 0.2), real(-0.2, 0.4)).normalized(), 0.0, 0.0,
-                           0.0, true, false});
+        touches.push_back({t, t + lasts, real(0.0, 0.1),
+                           real(2, 10) * Vector3(1, real(-0.2, 0.2), real(-0.2, 0.4)).normalized(),
+                           0.0, 0.0, 0.0, true, false});
         t += lasts + real(0.2, 0.6);
       }
     }
@@ -155,7 +167,8 @@ Trials run_trials(const PullSettings& settings, std::uint64_t seed) {
     out.loosened_early += (kind == 1 || kind == 2) && exchange.loosened() ? 1 : 0;
     const bool early = exchange.over();
     // Who lifts takes the weight and pulls with the least there is.
-    const double pull = kind == 4 ? 2.0 : real(2.0, 20.0), ramp = real(0.02, 0.3), lift = kind == 4 ? real(0.7, 1.0) : real(0.0, 1.0);
+    const double pull = kind == 4 ? 2.0 : real(2.0, 20.0), ramp = real(0.02, 0.3),
+                 lift = kind == 4 ? real(0.7, 1.0) : real(0.0, 1.0);
     const Vector3 way = Vector3(1.0, real(-0.3, 0.3), real(-0.2, 0.6)).normalized();
     touches.push_back({t, t + 10.0, ramp, pull * way, lift, 0.0, 0.0, true, false});
     while (exchange.time() < quiet_until + 3.0 && !exchange.over()) exchange.step(touches);
@@ -165,12 +178,14 @@ Trials run_trials(const PullSettings& settings, std::uint64_t seed) {
     out.in_vain += in_vain ? 1 : 0;
     out.regrips += exchange.regrips();
     if ((exchange.dropped() || in_vain) && out.first_bad.empty())
-      out.first_bad = "trial " + std::to_string(trial) + " (" + kKinds[kind] + "), " + std::to_string(mass) + " kg, pull " +
-                      std::to_string(pull) + " N, lift " + std::to_string(lift) +
-                      (in_vain ? ": in vain" : ": fell at " + std::to_string(exchange.free_at() - quiet_until));
+      out.first_bad =
+          "trial " + std::to_string(trial) + " (" + kKinds[kind] + "), " + std::to_string(mass) +
+          " kg, pull " + std::to_string(pull) + " N, lift " + std::to_string(lift) +
+          (in_vain ? ": in vain" : ": fell at " + std::to_string(exchange.free_at() - quiet_until));
     if (early || !exchange.handed_over()) continue;
     ++out.pulls;
-    out.latencies.push_back(exchange.free_at() - quiet_until - ramp * std::min(1.0, kThreshold / pull));
+    out.latencies.push_back(exchange.free_at() - quiet_until -
+                            ramp * std::min(1.0, kThreshold / pull));
   }
   std::sort(out.latencies.begin(), out.latencies.end());
   return out;
@@ -186,21 +201,28 @@ TEST(Release, two_hundred_exchanges_without_a_drop) {
   EXPECT_EQ(t.loosened_early, 0) << "bumps and tremor are no pulls";
   EXPECT_GT(t.regrips, 20u) << "no false start came as far as loosening: the trials test nothing";
   ASSERT_GT(t.latencies.size(), 190u);
-  const auto at = [&](double share) { return t.latencies[static_cast<std::size_t>(share * static_cast<double>(t.latencies.size() - 1))]; };
+  const auto at = [&](double share) {
+    return t
+        .latencies[static_cast<std::size_t>(share * static_cast<double>(t.latencies.size() - 1))];
+  };
   std::printf(
-      "%zu pulls; from the threshold passed to the object free: p50 %.0f ms, p99 %.0f ms, longest %.0f ms; taken hold again %llu times\n",
-      t.latencies.size(), 1e3 * at(0.5), 1e3 * at(0.99), 1e3 * t.latencies.back(), static_cast<unsigned long long>(t.regrips));
+      "%zu pulls; from the threshold passed to the object free: p50 %.0f ms, p99 %.0f ms, longest "
+      "%.0f ms; taken hold again %llu times\n",
+      t.latencies.size(), 1e3 * at(0.5), 1e3 * at(0.99), 1e3 * t.latencies.back(),
+      static_cast<unsigned long long>(t.regrips));
   std::map<int, int> histogram;
   for (double latency : t.latencies) ++histogram[static_cast<int>(latency / 0.05)];
   for (const auto& [bin, count] : histogram)
-    std::printf("  %4d ms %s\n", bin * 50, std::string(static_cast<std::size_t>(count), '#').c_str());
+    std::printf("  %4d ms %s\n", bin * 50,
+                std::string(static_cast<std::size_t>(count), '#').c_str());
   EXPECT_LT(at(0.99), 1.2);
 }
 
 TEST(Release, a_thousand_more_of_other_seeds) {
   for (std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const Trials t = run_trials(PullSettings{}, 100000 * seed);
-    EXPECT_EQ(t.drops + t.to_nobody + t.in_vain, 0) << "seed " << 100000 * seed << ": " << t.first_bad;
+    EXPECT_EQ(t.drops + t.to_nobody + t.in_vain, 0)
+        << "seed " << 100000 * seed << ": " << t.first_bad;
   }
 }
 
@@ -218,7 +240,9 @@ TEST(Release, opens_to_no_pull_while_nobody_is_near_and_to_none_away_from_the_pe
     watch.arm(kThreshold);
     const Vector3 load(0, 0, -3.0), pull = near ? Vector3(-8, 0, 0) : Vector3(8, 0, 0);
     for (int k = 0; k < 2000; ++k)
-      EXPECT_EQ(watch.update({k < 300 ? load : load + pull, Vector3::UnitX(), near, true}, TimePoint(from_seconds(0.002 * k))), Grip::hold);
+      EXPECT_EQ(watch.update({k < 300 ? load : load + pull, Vector3::UnitX(), near, true},
+                             TimePoint(from_seconds(0.002 * k))),
+                Grip::hold);
     EXPECT_NEAR(watch.pull(), 8.0, 0.01);
   }
 }
@@ -229,7 +253,8 @@ TEST(Release, the_load_s_share_falls_as_the_person_s_rises) {
   double share = 2.0;
   for (int k = 0; k < 1000; ++k) {
     const double borne = std::clamp((k - 300) / 300.0, 0.0, 1.0);
-    watch.update({Vector3(0, 0, -3.0 * (1.0 - borne)), Vector3::UnitX(), true, true}, TimePoint(from_seconds(0.002 * k)));
+    watch.update({Vector3(0, 0, -3.0 * (1.0 - borne)), Vector3::UnitX(), true, true},
+                 TimePoint(from_seconds(0.002 * k)));
     EXPECT_LE(watch.load_ratio(), share + 1e-9);
     share = watch.load_ratio();
   }

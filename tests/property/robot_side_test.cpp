@@ -1,5 +1,5 @@
-// Whatever set-points come, the reference that the robot side gives its servos stays within the limits: judged by finite differences of the
-// positions alone.
+// Whatever set-points come, the reference that the robot side gives its servos stays within the
+// limits: judged by finite differences of the positions alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,14 +30,16 @@ RobotSideSettings checked() {
   return settings;
 }
 
-/// Finite differences of the last four positions, of the axes below `axes` against `room` times the guard limits. Positions, velocities and
-/// accelerations of set-points may each use up their bounds without belonging to one motion: of three such steps the third difference is at
-/// most 8/3 J h^3, and the second A h^2 + 4/3 J h^3.
+/// Finite differences of the last four positions, of the axes below `axes` against `room` times the
+/// guard limits. Positions, velocities and accelerations of set-points may each use up their bounds
+/// without belonging to one motion: of three such steps the third difference is at most 8/3 J h^3,
+/// and the second A h^2 + 4/3 J h^3.
 class Oracle {
  public:
   explicit Oracle(double room = 1.0, double jerk_room = 8.0 / 3, Eigen::Index axes = 100)
       : room_(room), jerk_room_(jerk_room), axes_(axes) {}
-  /// `slack`: a set-point puts right what was extrapolated for so long [s]; the differences begin anew.
+  /// `slack`: a set-point puts right what was extrapolated for so long [s]; the differences begin
+  /// anew.
   void see(const Vector& position, double slack = 0) {
     for (int k = 3; k > 0; --k) last_[k] = last_[k - 1];
     last_[0] = position;
@@ -47,12 +49,14 @@ class Oracle {
     const double room = room_ * (1 + 1e-5), bound = room_ > 1 ? 1e-2 : 1e-5;
     for (Eigen::Index i = 0; i < std::min(axes_, position.size()); ++i) {
       const Axis& axis = robot().axes()[static_cast<std::size_t>(i)];
-      const double V = guard.velocity[i] * room, A = guard.acceleration[i] * room, J = guard.jerk[i] * room;
+      const double V = guard.velocity[i] * room, A = guard.acceleration[i] * room,
+                   J = guard.jerk[i] * room;
       EXPECT_GE(position[i], axis.lower - bound) << axis.name;
       EXPECT_LE(position[i], axis.upper + bound) << axis.name;
       const auto p = [&](int k) { return last_[k][i]; };
       if (count_ > 1) {
-        EXPECT_LE(std::abs(p(0) - p(1)), V * (h + slack) + kRounding) << axis.name << " is too fast";
+        EXPECT_LE(std::abs(p(0) - p(1)), V * (h + slack) + kRounding)
+            << axis.name << " is too fast";
       }
       if (slack > 0) continue;
       if (count_ > 2) {
@@ -60,7 +64,9 @@ class Oracle {
             << axis.name << " accelerates too fast";
       }
       if (count_ > 3) {
-        EXPECT_LE(std::abs(p(0) - 3 * p(1) + 3 * p(2) - p(3)), jerk_room_ * J * h * h * h + 10 * kRounding) << axis.name << " jerks";
+        EXPECT_LE(std::abs(p(0) - 3 * p(1) + 3 * p(2) - p(3)),
+                  jerk_room_ * J * h * h * h + 10 * kRounding)
+            << axis.name << " jerks";
       }
     }
     if (slack > 0) count_ = 1;
@@ -73,8 +79,8 @@ class Oracle {
   int count_{0};
 };
 
-/// A controller that moves between random postures with the guard limits nearly used, as long as it is followed; else it stands where the
-/// robot was measured.
+/// A controller that moves between random postures with the guard limits nearly used, as long as it
+/// is followed; else it stands where the robot was measured.
 class Rightful {
  public:
   Rightful(std::mt19937_64& random, const Vector& start) : random_(random) {
@@ -112,11 +118,12 @@ class Rightful {
     to_ = command_.position;
     for (Eigen::Index i = 0; i < to_.size(); ++i) {
       const Axis& axis = robot().axes()[static_cast<std::size_t>(i)];
-      to_[i] =
-          random_() % 4 == 0 ? (random_() % 2 ? axis.lower : axis.upper) : std::uniform_real_distribution(axis.lower, axis.upper)(random_);
+      to_[i] = random_() % 4 == 0 ? (random_() % 2 ? axis.lower : axis.upper)
+                                  : std::uniform_real_distribution(axis.lower, axis.upper)(random_);
     }
     const KinematicLimits& guard = robot().guard_limits();
-    motion_ = solve(rest_state(command_.position), rest_state(to_), {0.98 * guard.velocity, 0.98 * guard.acceleration, 0.98 * guard.jerk})
+    motion_ = solve(rest_state(command_.position), rest_state(to_),
+                    {0.98 * guard.velocity, 0.98 * guard.acceleration, 0.98 * guard.jerk})
                   .trajectory;
     time_ = 0;
   }
@@ -130,9 +137,12 @@ class Rightful {
 
 /// One of many kinds of wrong set-points, made of the rightful one.
 JointCommand garbage(const JointCommand& rightful, std::mt19937_64& random) {
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
   JointCommand c = rightful;
-  const auto axis = static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(c.position.size()));
+  const auto axis =
+      static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(c.position.size()));
   const double sizes[] = {1e-9, 1e-6, 1e-4, 1e-2, 1.0, 1e3, 1e300};
   const double size = sizes[random() % std::size(sizes)] * (random() % 2 ? 1 : -1);
   switch (random() % 12) {
@@ -188,12 +198,15 @@ struct Outcome {
 /// A rightful stream with garbage between its set-points.
 Outcome play(std::uint64_t seed, double garbage_rate, double loss, int steps) {
   std::mt19937_64 random(seed);
-  const auto chance = [&](double p) { return std::uniform_real_distribution(0.0, 1.0)(random) < p; };
+  const auto chance = [&](double p) {
+    return std::uniform_real_distribution(0.0, 1.0)(random) < p;
+  };
   const Vector start = Vector::Zero(robot().dof());
   RobotSide side(robot(), start, checked());
   Rightful rightful(random, start);
-  // Nothing but garbage: each followed set-point may use up its bounds against the one before by itself, which makes 11/3 J h^3 of three
-  // steps; one that follows a missing one is off by up to 4/3 J h^3 more, which the third difference counts three times.
+  // Nothing but garbage: each followed set-point may use up its bounds against the one before by
+  // itself, which makes 11/3 J h^3 of three steps; one that follows a missing one is off by up to
+  // 4/3 J h^3 more, which the third difference counts three times.
   Oracle oracle(1.0, garbage_rate < 1 ? 8.0 / 3 : 23.0 / 3);
   Outcome out;
   int accepted_before = 1;
@@ -216,8 +229,10 @@ Outcome play(std::uint64_t seed, double garbage_rate, double loss, int steps) {
     if (chance(garbage_rate)) give(garbage(c, random));
     side.step(now, kStep);
     out.resumed += side.follows() && !followed;
-    // Numbers that jump, and set-points after steps without one, may use up the bounds of several periods at once.
-    const bool regular = accepted == 0 || (accepted == 1 && accepted_before == 1 && in_turn) || (accepted == 1 && !followed);
+    // Numbers that jump, and set-points after steps without one, may use up the bounds of several
+    // periods at once.
+    const bool regular = accepted == 0 || (accepted == 1 && accepted_before == 1 && in_turn) ||
+                         (accepted == 1 && !followed);
     oracle.see(side.position(), regular ? 0.0 : 0.04);
     accepted_before = accepted;
   }
@@ -230,7 +245,8 @@ TEST(RobotSideGate, a_rightful_stream_is_followed_without_a_refusal) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   const Outcome out = play(seed, 0, 0, 60000);
   EXPECT_EQ(out.refused, 0u);
-  EXPECT_GE(out.followed, 59900u) << "all but the first ones, which must rest at the robot's posture";
+  EXPECT_GE(out.followed, 59900u)
+      << "all but the first ones, which must rest at the robot's posture";
 }
 
 TEST(RobotSideGate, no_garbage_between_set_points_makes_a_motion_outside_the_limits) {
@@ -264,23 +280,28 @@ TEST(RobotSideGate, lost_set_points_are_ridden_out_within_the_limits) {
   }
 }
 
-/// What a driver sends to the arm is smooth also where set-points come late or early: differences fade with a tenth of the limits.
+/// What a driver sends to the arm is smooth also where set-points come late or early: differences
+/// fade with a tenth of the limits.
 TEST(DriverGate, no_garbage_makes_references_outside_the_limits) {
   constexpr double kFade = 0.1;
   for (int round = 0; round < 30; ++round) {
     const std::uint64_t seed = std::random_device{}();
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
-    const auto chance = [&](double p) { return std::uniform_real_distribution(0.0, 1.0)(random) < p; };
+    const auto chance = [&](double p) {
+      return std::uniform_real_distribution(0.0, 1.0)(random) < p;
+    };
     drivers::DriverSettings settings;
     settings.watch = checked();
     settings.fade_fraction = kFade;
     drivers::DriverCore core(robot(), {0, 1, 2}, settings);
     drivers::Measured measured;
-    measured.position = measured.velocity = measured.effort = measured.external_torque = Vector::Zero(robot().dof());
+    measured.position = measured.velocity = measured.effort = measured.external_torque =
+        Vector::Zero(robot().dof());
     measured.mode = DriveMode::enabled;
     Rightful rightful(random, measured.position);
-    // After missing set-points, 20 at most, the acceleration changes at once by what the jerk changes it meanwhile.
+    // After missing set-points, 20 at most, the acceleration changes at once by what the jerk
+    // changes it meanwhile.
     Oracle oracle(1 + kFade, 20 + 8.0 / 3, 3);
     std::uint64_t followed = 0;
     for (int k = 0; k < 20000 && !HasFailure(); ++k) {
@@ -322,7 +343,9 @@ TEST_F(Refusals, name_the_axis_and_the_limit_and_count) {
   command_.velocity[1] = 1.1 * robot().guard_limits().velocity[1];
   EXPECT_FALSE(tick());
   EXPECT_EQ(side_.refused(), 1u);
-  EXPECT_NE(side_.refusal().find("refused a set-point: velocity of axis shoulder is"), std::string::npos) << side_.refusal();
+  EXPECT_NE(side_.refusal().find("refused a set-point: velocity of axis shoulder is"),
+            std::string::npos)
+      << side_.refusal();
   EXPECT_EQ(side_.mode(), DriveMode::enabled);
   EXPECT_FALSE(side_.follows());
   command_.velocity[1] = 0;
@@ -335,7 +358,8 @@ TEST_F(Refusals, name_the_axis_and_the_limit_and_count) {
 TEST_F(Refusals, a_jump_that_no_jerk_explains_is_refused) {
   command_.position[0] += 1e-6;
   EXPECT_FALSE(tick());
-  EXPECT_NE(side_.refusal().find("position step of axis shoulder_turn"), std::string::npos) << side_.refusal();
+  EXPECT_NE(side_.refusal().find("position step of axis shoulder_turn"), std::string::npos)
+      << side_.refusal();
 }
 
 TEST_F(Refusals, a_set_point_with_an_old_number_is_refused_without_a_stop) {
@@ -358,7 +382,8 @@ TEST_F(Refusals, set_points_that_run_ahead_of_their_time_are_refused) {
 }
 
 TEST_F(Refusals, a_motion_too_fast_to_stop_before_a_bound_is_refused_before_it) {
-  const double A = 0.5 * robot().guard_limits().acceleration[2], J = 0.5 * robot().guard_limits().jerk[2];
+  const double A = 0.5 * robot().guard_limits().acceleration[2],
+               J = 0.5 * robot().guard_limits().jerk[2];
   const double V = 0.99 * robot().guard_limits().velocity[2], upper = robot().axes()[2].upper;
   AxisProfile profile;
   critical_movement(0, 0, V, 0, A, J, profile);

@@ -1,4 +1,5 @@
-// A person darts in from anywhere at up to 2.2 m/s while the arm works: the arm stands or moves away before they meet.
+// A person darts in from anywhere at up to 2.2 m/s while the arm works: the arm stands or moves
+// away before they meet.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -16,7 +17,8 @@ constexpr double kRounding = 1e-9;  // [m/s] of a difference of positions
 
 class Watch {
  public:
-  explicit Watch(const test::ControllerBench& bench) : bench_(bench), capsules_(robot_capsules(*bench.robot)) {}
+  explicit Watch(const test::ControllerBench& bench)
+      : bench_(bench), capsules_(robot_capsules(*bench.robot)) {}
   Separation separation_now() {
     bench_.robot->forward(bench_.core.set_point().position, links_);
     return separation(capsules_, links_, Pose::Identity(), bench_.people);
@@ -26,7 +28,8 @@ class Watch {
     constexpr double kStep = 1e-4;
     if (s.link < 0) return 0.0;
     const Pose T = links_[static_cast<std::size_t>(s.link)];
-    bench_.robot->forward(bench_.core.set_point().position + kStep * bench_.core.set_point().velocity, links_);
+    bench_.robot->forward(
+        bench_.core.set_point().position + kStep * bench_.core.set_point().velocity, links_);
     const Vector3 p = links_[static_cast<std::size_t>(s.link)] * (T.inverse() * s.on_robot);
     const Vector3 way = (s.distance < 0 ? -1.0 : 1.0) * (s.on_person - s.on_robot);
     return way.norm() < 1e-9 ? 0.0 : (p - s.on_robot).dot(way.normalized()) / kStep;
@@ -44,26 +47,33 @@ int number(const char* variable, int otherwise) {
 }
 
 /// Over the nodes without a stop.
-TrajectoryCommand round_corners(const test::ControllerBench& b, std::vector<Eigen::VectorXd> nodes, std::uint64_t id) {
+TrajectoryCommand round_corners(const test::ControllerBench& b, std::vector<Eigen::VectorXd> nodes,
+                                std::uint64_t id) {
   TrajectoryCommand c = b.command(nodes.back(), id);
   nodes.insert(nodes.begin(), b.core.set_point().position.head(3));
   const KinematicLimits& l = b.robot->comfort_limits();
-  c.trajectory = smooth(nodes, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
+  c.trajectory =
+      smooth(nodes, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
   return c;
 }
 
-/// The separation the rule asks for between a person at `v_h` and an arm whose axes and hand move as fast as they ever do [m].
+/// The separation the rule asks for between a person at `v_h` and an arm whose axes and hand move
+/// as fast as they ever do [m].
 double separation_needed(const test::ControllerBench& b, double v_h, double age) {
   const KinematicLimits &fastest = b.robot->comfort_limits(), &stop = b.robot->stop_limits();
   double longest = 0.0;
   for (Eigen::Index i = 0; i < 3; ++i)
-    longest = std::max(longest, measure_stop(fastest.velocity[i], 0.0, stop.acceleration[i], stop.jerk[i]).duration);
+    longest = std::max(
+        longest,
+        measure_stop(fastest.velocity[i], 0.0, stop.acceleration[i], stop.jerk[i]).duration);
   const GuardSettings& g = b.settings.guard;
   const double v_r = 0.9 * 2 * fastest.velocity[0], reaction = g.reaction + age;
-  return v_h * (reaction + longest) + v_r * reaction + v_r * longest / 2 + g.intrusion + g.uncertainty_human + g.uncertainty_robot;
+  return v_h * (reaction + longest) + v_r * reaction + v_r * longest / 2 + g.intrusion +
+         g.uncertainty_human + g.uncertainty_robot;
 }
 
-// Starting from at least the separation the rule asks for, what the controller knows of them up to 100 ms old.
+// Starting from at least the separation the rule asks for, what the controller knows of them up to
+// 100 ms old.
 TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) {
   const auto seed = static_cast<std::uint64_t>(number("HANDSEL_SEPARATION_SEED", 77));
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
@@ -79,7 +89,8 @@ TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) 
     Watch watch(b);
     const double angle = 2.0 * M_PI * unit(random), speed = 0.3 + 1.9 * unit(random);
     constexpr double kReach = 1.0, kBody = 0.35;
-    const double from = kReach + kBody + separation_needed(b, speed + 0.05, b.human_age + 0.033) + 0.5 * unit(random);
+    const double from = kReach + kBody + separation_needed(b, speed + 0.05, b.human_age + 0.033) +
+                        0.5 * unit(random);
     const Vector3 away(std::cos(angle), std::sin(angle), 0.0), velocity = -speed * away;
     const double begin = 0.2 + 2.0 * unit(random);
     Person person = b.standing(from * away.x(), from * away.y());
@@ -95,7 +106,10 @@ TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) 
         if (trial % 2 == 0)
           b.go_to(goal, id);
         else
-          b.send(round_corners(b, {test::ControllerBench::arm(-0.4, 0.5, -0.6), test::ControllerBench::arm(0.3, 0.0, 0.2), goal}, id));
+          b.send(round_corners(b,
+                               {test::ControllerBench::arm(-0.4, 0.5, -0.6),
+                                test::ControllerBench::arm(0.3, 0.0, 0.2), goal},
+                               id));
       }
       if (k * 0.001 >= begin)
         for (BodyJoint& j : b.people.people[0].joints) {
@@ -109,13 +123,15 @@ TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) 
       ++met;
       const double toward = watch.speed_toward(s);
       worst = std::max(worst, toward);
-      EXPECT_LE(toward, kRounding) << "trial " << trial << ", person at " << speed << " m/s, data " << b.human_age << " s old";
+      EXPECT_LE(toward, kRounding) << "trial " << trial << ", person at " << speed << " m/s, data "
+                                   << b.human_age << " s old";
       break;
     }
     was_moving += moved ? 1 : 0;
   }
   std::printf(
-      "%d of %d reached the robot, from %.2f m or more; the arm had been moving in %d; its largest speed toward them when they met: %g "
+      "%d of %d reached the robot, from %.2f m or more; the arm had been moving in %d; its largest "
+      "speed toward them when they met: %g "
       "m/s\n",
       met, runs, nearest_start, was_moving, worst);
   EXPECT_GT(met, 0.6 * runs);
@@ -136,7 +152,8 @@ TEST(SeparationStories, a_person_standing_still_leaves_most_of_the_time_producti
     b.tick();
     productive += b.core.speed_factor() > 0.5 ? 1 : 0;
   }
-  std::printf("productive %.1f %% of the time with a person standing at 1.5 m\n", 100.0 * productive / steps);
+  std::printf("productive %.1f %% of the time with a person standing at 1.5 m\n",
+              100.0 * productive / steps);
   EXPECT_GT(productive, 0.6 * steps);
 }
 

@@ -1,5 +1,5 @@
-// Closed-form inverse kinematics of the LWR and the iiwa: every branch leads back to the pose it was asked for.
-// HANDSEL_POSES sets how many random poses; the label full runs 100 000.
+// Closed-form inverse kinematics of the LWR and the iiwa: every branch leads back to the pose it
+// was asked for. HANDSEL_POSES sets how many random poses; the label full runs 100 000.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -32,7 +32,8 @@ void every_branch_returns(const RobotModel& robot, const Group& group) {
   std::size_t branches = 0, inside = 0;
   for (int k = 0; k < poses(); ++k) {
     Axes q(7);
-    for (int i = 0; i < 7; ++i) q[i] = chain.lower()[i] + unit(random) * (chain.upper()[i] - chain.lower()[i]);
+    for (int i = 0; i < 7; ++i)
+      q[i] = chain.lower()[i] + unit(random) * (chain.upper()[i] - chain.lower()[i]);
     const Pose T = chain.forward(q, nullptr);
     double nearest = 10;
     for (const Axes& branch : arm->branches(T, arm->elbow_angle(q))) {
@@ -40,24 +41,30 @@ void every_branch_returns(const RobotModel& robot, const Group& group) {
       for (int i = 0; i < 7; ++i) apart = std::max(apart, turn_between(branch[i], q[i]));
       nearest = std::min(nearest, apart);
     }
-    ASSERT_LT(nearest, 1e-4) << "pose " << k << ": the posture it came from is none of the branches";
+    ASSERT_LT(nearest, 1e-4) << "pose " << k
+                             << ": the posture it came from is none of the branches";
     const double elbow = circle(random);
     const std::vector<Axes> found = arm->branches(T, elbow);
     ASSERT_EQ(found.size(), 8u);
     for (const Axes& branch : found) {
-      worst = std::max(worst, (chain.forward(branch, nullptr).matrix() - T.matrix()).cwiseAbs().maxCoeff());
+      worst = std::max(
+          worst, (chain.forward(branch, nullptr).matrix() - T.matrix()).cwiseAbs().maxCoeff());
       ASSERT_LT(turn_between(arm->elbow_angle(branch), elbow), 1e-6) << "pose " << k;
-      inside += (branch.array() >= chain.lower().array()).all() && (branch.array() <= chain.upper().array()).all();
+      inside += (branch.array() >= chain.lower().array()).all() &&
+                (branch.array() <= chain.upper().array()).all();
     }
     branches += found.size();
   }
-  std::printf("%s, seed %u: %d poses, %zu branches, %zu inside the limits, all back at the pose within %.1e\n", robot.name().c_str(), kSeed,
-              poses(), branches, inside, worst);
+  std::printf(
+      "%s, seed %u: %d poses, %zu branches, %zu inside the limits, all back at the pose within "
+      "%.1e\n",
+      robot.name().c_str(), kSeed, poses(), branches, inside, worst);
   EXPECT_LT(worst, 1e-9);
 }
 
 TEST(SrsArm, every_branch_of_the_lwr_returns_to_the_pose) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   every_branch_returns(robot, robot.require_group("arm"));
 }
 
@@ -71,7 +78,8 @@ TEST(SrsArm, every_branch_of_the_iiwa_returns_to_the_pose) {
 }
 
 TEST(SrsArm, there_is_no_branch_out_of_reach) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Chain chain(robot, robot.require_group("arm"), robot.rest_configuration());
   const auto arm = SrsArm::recognise(chain);
   ASSERT_TRUE(arm);

@@ -1,5 +1,6 @@
-// Random worlds: a plan reaches its goal when it is carried out, costs as little as the best of all sequences of actions, and a supervised
-// task ends whatever happens. HANDSEL_RUNS worlds of each kind.
+// Random worlds: a plan reaches its goal when it is carried out, costs as little as the best of all
+// sequences of actions, and a supervised task ends whatever happens. HANDSEL_RUNS worlds of each
+// kind.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -23,9 +24,12 @@ const Domain& shipped() {
   return domain;
 }
 
-int between(std::mt19937& random, int low, int high) { return std::uniform_int_distribution(low, high)(random); }
+int between(std::mt19937& random, int low, int high) {
+  return std::uniform_int_distribution(low, high)(random);
+}
 
-const std::map<std::string, int> kPlaces{{"stool", 1}, {"tray", 2}, {"shelf", 9}, {"table", 9}};  // by their sizes below
+const std::map<std::string, int> kPlaces{
+    {"stool", 1}, {"tray", 2}, {"shelf", 9}, {"table", 9}};  // by their sizes below
 
 TaskWorld random_world(std::mt19937& random, int most_objects) {
   TaskWorld world;
@@ -36,7 +40,8 @@ TaskWorld random_world(std::mt19937& random, int most_objects) {
   const int n = between(random, 1, most_objects);
   for (int i = 0; i < n; ++i) {
     const std::string object = "thing" + std::to_string(i);
-    world.on[object] = world.surfaces.contains("shelf") && between(random, 0, 3) == 0 ? "shelf" : "table";
+    world.on[object] =
+        world.surfaces.contains("shelf") && between(random, 0, 3) == 0 ? "shelf" : "table";
     world.distance[object] = between(random, 0, 9) == 0 ? 1.5 : 0.3 + 0.05 * between(random, 0, 10);
   }
   if (between(random, 0, 3) == 0) {
@@ -51,12 +56,14 @@ struct Wanted {
   TaskKind kind;
   std::string object, human, surface;
   bool reached(const TaskWorld& world) const {
-    if (kind == TaskKind::give) return world.held_by.contains(object) && world.held_by.at(object) == human;
+    if (kind == TaskKind::give)
+      return world.held_by.contains(object) && world.held_by.at(object) == human;
     if (kind == TaskKind::place) return world.on.contains(object) && world.on.at(object) == surface;
     return world.in_hand().empty() && clear(world);
   }
   bool clear(const TaskWorld& world) const {
-    return std::none_of(world.on.begin(), world.on.end(), [&](const auto& entry) { return entry.second == surface; });
+    return std::none_of(world.on.begin(), world.on.end(),
+                        [&](const auto& entry) { return entry.second == surface; });
   }
   TaskGoal goal() const {
     TaskGoal out;
@@ -85,7 +92,8 @@ Wanted random_goal(std::mt19937& random, const TaskWorld& world) {
   }
 }
 
-/// Least cost of any sequence of actions that reaches the goal, by Dijkstra's search over where everything is; negative: none.
+/// Least cost of any sequence of actions that reaches the goal, by Dijkstra's search over where
+/// everything is; negative: none.
 double least_cost(const TaskWorld& start, const Wanted& wanted) {
   using Where = std::map<std::string, std::string>;  // "@robot", "@anna" or a surface
   Where from;
@@ -110,7 +118,8 @@ double least_cost(const TaskWorld& start, const Wanted& wanted) {
         now.on[object] = where, ++many[where];
     }
     if (wanted.reached(now)) return cost;
-    const auto go = [&, c = cost](const std::string& object, const std::string& where, double more) {
+    const auto go = [&, c = cost](const std::string& object, const std::string& where,
+                                  double more) {
       Where next = here;
       next[object] = where;
       const auto [at, fresh] = best.try_emplace(next, c + more);
@@ -120,7 +129,8 @@ double least_cost(const TaskWorld& start, const Wanted& wanted) {
     };
     if (hand.empty()) {
       for (const auto& [object, where] : here)
-        if (where[0] != '@' && start.away(object) < 1) go(object, "@robot", 8 + 2 * start.away(object));
+        if (where[0] != '@' && start.away(object) < 1)
+          go(object, "@robot", 8 + 2 * start.away(object));
       continue;
     }
     for (const auto& [surface, size] : start.surfaces)
@@ -142,12 +152,14 @@ TEST(TaskPlans, reach_their_goal_at_the_least_cost) {
     ASSERT_EQ(query.reason, "");
     const Plan plan = make_plan(shipped(), world, query.task, query.args, {}, {100000, 24});
     const bool whole = plan.found && left_out(plan).empty();
-    // People who are handed something to get rid of it are no surface: the search may, the domain may not.
+    // People who are handed something to get rid of it are no surface: the search may, the domain
+    // may not.
     TaskWorld alone = start;
     if (wanted.kind != TaskKind::give) alone.people.clear();
     if (wanted.kind == TaskKind::give) alone.people.erase("bert");
     const double least = least_cost(alone, wanted);
-    if (wanted.kind == TaskKind::give && start.in_hand() == "thing0" && wanted.object != "thing0") continue;  // as above, for anna
+    if (wanted.kind == TaskKind::give && start.in_hand() == "thing0" && wanted.object != "thing0")
+      continue;  // as above, for anna
     ASSERT_EQ(whole, least >= 0) << plan.reason << left_out(plan);
     whole ? ++solved : ++unsolved;
     if (!whole) {
@@ -158,7 +170,8 @@ TEST(TaskPlans, reach_their_goal_at_the_least_cost) {
     double cost = plan.cost;
     TaskWorld then = start;
     for (const auto& action : plan.actions) {
-      ASSERT_TRUE(then.perform(action.kind, action.object, action.human, action.surface)) << action.text();
+      ASSERT_TRUE(then.perform(action.kind, action.object, action.human, action.surface))
+          << action.text();
       if (action.kind == ActionKind::go_to) cost -= 3;
     }
     EXPECT_TRUE(wanted.reached(then));
@@ -200,8 +213,8 @@ TEST(TaskPlans, supervised_end_whatever_happens) {
       if (event == 0 && rig.world.on.contains(*object)) {
         rig.world.on.erase(*object);
         rig.world.held_by[*object] = "bert";
-      } else if (event == 1 && rig.world.held_by.contains(*object) && rig.world.held_by[*object] != kRobotName &&
-                 *object != wanted.object) {
+      } else if (event == 1 && rig.world.held_by.contains(*object) &&
+                 rig.world.held_by[*object] != kRobotName && *object != wanted.object) {
         rig.world.held_by.erase(*object);
         rig.world.on[*object] = "table";
       } else if (event == 2) {
@@ -215,7 +228,9 @@ TEST(TaskPlans, supervised_end_whatever_happens) {
     if (rig.last().state == TaskState::succeeded) {
       ++succeeded;
       const bool gone = !wanted.object.empty() && rig.world.held_by.contains(wanted.object);
-      EXPECT_TRUE(wanted.reached(rig.world) || gone || (wanted.kind == TaskKind::clear && wanted.clear(rig.world))) << rig.last().reason;
+      EXPECT_TRUE(wanted.reached(rig.world) || gone ||
+                  (wanted.kind == TaskKind::clear && wanted.clear(rig.world)))
+          << rig.last().reason;
     } else {
       ++failed;
       EXPECT_FALSE(rig.last().reason.empty());
@@ -237,8 +252,10 @@ TEST(TaskDomains, a_broken_one_is_refused_or_works) {
     std::mt19937 random(static_cast<unsigned>(seed));
     std::string bad = text;
     for (int k = between(random, 1, 2); k > 0; --k) {
-      const auto at = static_cast<std::size_t>(between(random, 0, static_cast<int>(bad.size()) - 40));
-      const auto from = static_cast<std::size_t>(between(random, 0, static_cast<int>(bad.size()) - 40));
+      const auto at =
+          static_cast<std::size_t>(between(random, 0, static_cast<int>(bad.size()) - 40));
+      const auto from =
+          static_cast<std::size_t>(between(random, 0, static_cast<int>(bad.size()) - 40));
       const auto n = static_cast<std::size_t>(between(random, 1, 8));
       switch (between(random, 0, 2)) {
         case 0:
@@ -259,7 +276,9 @@ TEST(TaskDomains, a_broken_one_is_refused_or_works) {
       for (const char* task : {"clear", "give", "place"}) {
         const int index = domain.task(task);
         if (index < 0 || domain.tasks[static_cast<std::size_t>(index)].types.size() != 2) continue;
-        const Plan plan = make_plan(domain, start, index, {task == std::string("clear") ? "table" : "thing0", "-"}, {}, {2000, 24});
+        const Plan plan =
+            make_plan(domain, start, index,
+                      {task == std::string("clear") ? "table" : "thing0", "-"}, {}, {2000, 24});
         EXPECT_TRUE(plan.found || !plan.reason.empty());
       }
     } catch (const ConfigError& e) {

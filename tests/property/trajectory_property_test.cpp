@@ -1,5 +1,6 @@
-// Seven axes from any state to any state, ending together: every motion is judged on its exact extremes, a share of them against the slow
-// solver of the tests. HANDSEL_CASES sets the number of problems, HANDSEL_SLOW every how many of them the slow solver looks at.
+// Seven axes from any state to any state, ending together: every motion is judged on its exact
+// extremes, a share of them against the slow solver of the tests. HANDSEL_CASES sets the number of
+// problems, HANDSEL_SLOW every how many of them the slow solver looks at.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,15 +28,20 @@ using test::Cases;
 constexpr int kAxes = 7, kBatch = 8;
 constexpr double kTight = 1e-9;
 
-long setting(const char* name, long otherwise) { return std::getenv(name) ? std::atol(std::getenv(name)) : otherwise; }
+long setting(const char* name, long otherwise) {
+  return std::getenv(name) ? std::atol(std::getenv(name)) : otherwise;
+}
 
 struct Problem {
   MotionState3 from{rest_state(VectorXd::Zero(kAxes))}, to{from};
   KinematicLimits limits{VectorXd::Ones(kAxes), VectorXd::Ones(kAxes), VectorXd::Ones(kAxes)};
   void set(int i, const Case& c) {
-    from.position[i] = c.from.position, from.velocity[i] = c.from.velocity, from.acceleration[i] = c.from.acceleration;
-    to.position[i] = c.to.position, to.velocity[i] = c.to.velocity, to.acceleration[i] = c.to.acceleration;
-    limits.velocity[i] = c.limits.velocity, limits.acceleration[i] = c.limits.acceleration, limits.jerk[i] = c.limits.jerk;
+    from.position[i] = c.from.position, from.velocity[i] = c.from.velocity,
+    from.acceleration[i] = c.from.acceleration;
+    to.position[i] = c.to.position, to.velocity[i] = c.to.velocity,
+    to.acceleration[i] = c.to.acceleration;
+    limits.velocity[i] = c.limits.velocity, limits.acceleration[i] = c.limits.acceleration,
+    limits.jerk[i] = c.limits.jerk;
   }
   Case axis(int i) const {
     return {{from.position[i], from.velocity[i], from.acceleration[i]},
@@ -46,7 +52,8 @@ struct Problem {
 
 bool outside(const AxisState& s, const AxisLimits& l, double slack = 1e-9) {
   const double ahead = s.velocity + s.acceleration * std::abs(s.acceleration) / (2 * l.jerk);
-  return std::abs(s.velocity) > l.velocity * (1 + slack) || std::abs(s.acceleration) > l.acceleration * (1 + slack) ||
+  return std::abs(s.velocity) > l.velocity * (1 + slack) ||
+         std::abs(s.acceleration) > l.acceleration * (1 + slack) ||
          std::abs(ahead) > l.velocity * (1 + slack);
 }
 
@@ -57,7 +64,8 @@ Problem draw(Cases& cases) {
   for (int i = 0; i < kAxes; ++i) {
     const int own = mixed ? cases.pick(Cases::kFamilies + 1) : family;
     Case c = cases.next(own == Cases::kFamilies ? 0 : own);
-    if (own == Cases::kFamilies) c.from.velocity *= cases.uniform(1, 3), c.from.acceleration *= cases.uniform(1, 3);
+    if (own == Cases::kFamilies)
+      c.from.velocity *= cases.uniform(1, 3), c.from.acceleration *= cases.uniform(1, 3);
     out.set(i, c);
   }
   return out;
@@ -66,14 +74,17 @@ Problem draw(Cases& cases) {
 struct Hash {
   std::uint64_t value{1469598103934665603ULL};
   void add(const Problem& p) {
-    for (const VectorXd* all : {&p.from.position, &p.from.velocity, &p.from.acceleration, &p.to.position, &p.to.velocity,
-                                &p.to.acceleration, &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk}) {
-      for (const double x : *all) value = (value ^ std::bit_cast<std::uint64_t>(x)) * 1099511628211ULL;
+    for (const VectorXd* all :
+         {&p.from.position, &p.from.velocity, &p.from.acceleration, &p.to.position, &p.to.velocity,
+          &p.to.acceleration, &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk}) {
+      for (const double x : *all)
+        value = (value ^ std::bit_cast<std::uint64_t>(x)) * 1099511628211ULL;
     }
   }
 };
 
-/// Empty, or what is wrong with a motion whose start is outside the limits: once inside it must stay, and meanwhile nothing may grow.
+/// Empty, or what is wrong with a motion whose start is outside the limits: once inside it must
+/// stay, and meanwhile nothing may grow.
 std::string why_wrong_outside(const Case& c, const AxisProfile& p) {
   if (std::string why = test::why_wrong(c, p, false, 1e-8); !why.empty()) return why;
   AxisState s = c.from;
@@ -81,16 +92,20 @@ std::string why_wrong_outside(const Case& c, const AxisProfile& p) {
   for (; k < p.count && outside(s, c.limits); ++k) {
     s = advanced(s, p.segments[k].duration, p.segments[k].jerk);
     if (std::abs(p.segments[k].jerk) > c.limits.jerk * (1 + kTight)) return "jerk limit";
-    if (std::abs(s.acceleration) > std::max(std::abs(c.from.acceleration), c.limits.acceleration) * (1 + kTight)) return "acceleration";
+    if (std::abs(s.acceleration) >
+        std::max(std::abs(c.from.acceleration), c.limits.acceleration) * (1 + kTight))
+      return "acceleration";
   }
   const AxisExtremes e = extremes(s, p.segments.data() + k, p.count - k);
-  if (e.velocity > c.limits.velocity * (1 + kTight) || e.acceleration > c.limits.acceleration * (1 + kTight))
+  if (e.velocity > c.limits.velocity * (1 + kTight) ||
+      e.acceleration > c.limits.acceleration * (1 + kTight))
     return "leaves the limits again";
   return {};
 }
 
 struct Tally {
-  long problems{}, axes{}, outside{}, blocked{}, slow{}, unknown{}, slow_blocked{}, slow_outside{}, equal_to_slow{};
+  long problems{}, axes{}, outside{}, blocked{}, slow{}, unknown{}, slow_blocked{}, slow_outside{},
+      equal_to_slow{};
   double longest_against_slow{-1};
 };
 
@@ -104,7 +119,9 @@ double slow_common(const Problem& p) {
     const double inside = test::slow_way_inside(start, c.limits);
     if (inside < 0) return -1;
     bounds[i] = test::slow_bounds(start, c.to, c.limits, 200);
-    if (bounds[i].size() == 2) bounds[i].insert(bounds[i].begin(), bounds[i][0]);  // one motion of one duration, nothing else near
+    if (bounds[i].size() == 2)
+      bounds[i].insert(bounds[i].begin(),
+                       bounds[i][0]);  // one motion of one duration, nothing else near
     if (bounds[i].size() % 2 == 0) return -1;
     for (double& t : bounds[i]) t += inside;
     T = std::max(T, bounds[i][0]);
@@ -179,9 +196,14 @@ class Peer {
  public:
   void compare(const Problem& p, double T) {
     test::PeerProblem q;
-    const VectorXd* all[9] = {&p.from.position,   &p.from.velocity,   &p.from.acceleration,   &p.to.position, &p.to.velocity,
-                              &p.to.acceleration, &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk};
-    for (int k = 0; k < 9; ++k) std::copy(all[k]->begin(), all[k]->end(), k < 3 ? q.from[k] : k < 6 ? q.to[k - 3] : q.limits[k - 6]);
+    const VectorXd* all[9] = {&p.from.position,   &p.from.velocity,       &p.from.acceleration,
+                              &p.to.position,     &p.to.velocity,         &p.to.acceleration,
+                              &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk};
+    for (int k = 0; k < 9; ++k)
+      std::copy(all[k]->begin(), all[k]->end(),
+                k < 3   ? q.from[k]
+                : k < 6 ? q.to[k - 3]
+                        : q.limits[k - 6]);
     test::RuckigPeer peer({q});
     if (!peer.solve(0)) {
       ++unsolved_;
@@ -193,8 +215,10 @@ class Peer {
     if (more > kTight) ++longer_, longest_ = std::max(longest_, more);
   }
   void print() const {
-    std::printf("Ruckig: %ld equal within 1e-9, ours shorter %ld, longer %ld (largest %.1e), %ld it does not solve\n", equal_, shorter_,
-                longer_, longest_, unsolved_);
+    std::printf(
+        "Ruckig: %ld equal within 1e-9, ours shorter %ld, longer %ld (largest %.1e), %ld it does "
+        "not solve\n",
+        equal_, shorter_, longer_, longest_, unsolved_);
   }
 
  private:
@@ -209,7 +233,8 @@ struct Peer {
 #endif
 
 TEST(SevenAxes, end_together_inside_the_limits_and_as_soon_as_the_slow_solver) {
-  const long count = setting("HANDSEL_CASES", 100000) / kBatch * kBatch, every = setting("HANDSEL_SLOW", 20);
+  const long count = setting("HANDSEL_CASES", 100000) / kBatch * kBatch,
+             every = setting("HANDSEL_SLOW", 20);
   const std::uint64_t seed = 31;
   Cases cases(seed);
   SynchronisedBatch batch(kAxes, kBatch);
@@ -225,37 +250,44 @@ TEST(SevenAxes, end_together_inside_the_limits_and_as_soon_as_the_slow_solver) {
       problems.push_back(draw(cases));
       const Problem& p = problems.back();
       hash.add(p);
-      const VectorXd* all[9] = {&p.from.position,   &p.from.velocity,   &p.from.acceleration,   &p.to.position, &p.to.velocity,
-                                &p.to.acceleration, &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk};
+      const VectorXd* all[9] = {&p.from.position,   &p.from.velocity,       &p.from.acceleration,
+                                &p.to.position,     &p.to.velocity,         &p.to.acceleration,
+                                &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk};
       for (int j = 0; j < 9; ++j) std::copy_n(all[j]->data(), kAxes, flat[j].data() + k * kAxes);
     }
     const std::uint64_t before = test::allocations();
-    batch.solve({flat[0].data(), flat[1].data(), flat[2].data(), flat[3].data(), flat[4].data(), flat[5].data(), flat[6].data(),
-                 flat[7].data(), flat[8].data()},
+    batch.solve({flat[0].data(), flat[1].data(), flat[2].data(), flat[3].data(), flat[4].data(),
+                 flat[5].data(), flat[6].data(), flat[7].data(), flat[8].data()},
                 kBatch);
     const bool alone = single.solve(problems[0].from, problems[0].to, problems[0].limits);
     ASSERT_EQ(test::allocations(), before);
     ASSERT_TRUE(alone);
-    ASSERT_NEAR(single.duration(), batch.duration(0), 1e-12 * single.duration()) << "seed " << seed << " problem " << first;
+    ASSERT_NEAR(single.duration(), batch.duration(0), 1e-12 * single.duration())
+        << "seed " << seed << " problem " << first;
     for (int k = 0; k < kBatch; ++k) {
-      judge(problems[static_cast<std::size_t>(k)], batch, k, tally, every > 0 && (first + k) % every == 0);
+      judge(problems[static_cast<std::size_t>(k)], batch, k, tally,
+            every > 0 && (first + k) % every == 0);
       peer.compare(problems[static_cast<std::size_t>(k)], batch.duration(k));
       if (::testing::Test::HasFatalFailure()) FAIL() << "seed " << seed << " problem " << first + k;
     }
   }
   std::printf(
-      "%ld problems of 7 axes, inputs %016llx, %s: %ld waited for a blocked duration, %ld axes started outside the limits;\n"
-      "%ld also by the slow solver, of them %ld that waited, %ld with starts outside: %ld equal within 1e-9, none longer (largest %.1e); "
+      "%ld problems of 7 axes, inputs %016llx, %s: %ld waited for a blocked duration, %ld axes "
+      "started outside the limits;\n"
+      "%ld also by the slow solver, of them %ld that waited, %ld with starts outside: %ld equal "
+      "within 1e-9, none longer (largest %.1e); "
       "%ld the slow solver does not know\n",
-      tally.problems, static_cast<unsigned long long>(hash.value), detail::batch_kernels().name, tally.blocked, tally.outside, tally.slow,
-      tally.slow_blocked, tally.slow_outside, tally.equal_to_slow, tally.longest_against_slow, tally.unknown);
+      tally.problems, static_cast<unsigned long long>(hash.value), detail::batch_kernels().name,
+      tally.blocked, tally.outside, tally.slow, tally.slow_blocked, tally.slow_outside,
+      tally.equal_to_slow, tally.longest_against_slow, tally.unknown);
   peer.print();
   if (count < 100000) return;
   EXPECT_GE(tally.blocked, 1000);
   EXPECT_GE(tally.outside, 1000);
 }
 
-/// How long a start beyond +V takes to come back when it decelerates to `deepest`, holds, and comes up so as not to head beyond -V.
+/// How long a start beyond +V takes to come back when it decelerates to `deepest`, holds, and comes
+/// up so as not to head beyond -V.
 double way_back(AxisState s, const AxisLimits& l, double deepest) {
   double t = 0;
   const double step = 1e-4 * std::sqrt(l.velocity / l.jerk);
@@ -263,7 +295,8 @@ double way_back(AxisState s, const AxisLimits& l, double deepest) {
   while (s.velocity > l.velocity) {
     const double ahead = s.velocity - s.acceleration * s.acceleration / (2 * l.jerk);
     rising = rising || (s.acceleration < 0 && ahead <= -l.velocity);
-    const double jerk = rising ? l.jerk : -std::clamp((s.acceleration + deepest) / step, 0.0, l.jerk);
+    const double jerk =
+        rising ? l.jerk : -std::clamp((s.acceleration + deepest) / step, 0.0, l.jerk);
     s = advanced(s, step, jerk);
     t += step;
     if (t > 1e5 * step) return INFINITY;
@@ -275,8 +308,9 @@ TEST(SevenAxes, starts_beyond_the_velocity_come_back_as_fast_as_any_depth_of_dec
   Cases cases(32);
   for (int k = 0; k < 200; ++k) {
     const AxisLimits l{cases.uniform(0.2, 2), cases.uniform(0.5, 6), cases.uniform(0.5, 12)};
-    const AxisState start{0, cases.uniform(1.05, 3) * l.velocity,
-                          cases.uniform(-0.3, 1) * std::min(l.acceleration, std::sqrt(l.jerk * l.velocity))};
+    const AxisState start{
+        0, cases.uniform(1.05, 3) * l.velocity,
+        cases.uniform(-0.3, 1) * std::min(l.acceleration, std::sqrt(l.jerk * l.velocity))};
     AxisProfile p;
     ASSERT_EQ(solve_axis(start, {20, 0, 0}, l, p), AxisOutcome::ok);
     AxisState s = start;
@@ -291,7 +325,9 @@ TEST(SevenAxes, starts_beyond_the_velocity_come_back_as_fast_as_any_depth_of_dec
       s = {at.position[0], at.velocity[0], at.acceleration[0]};
     }
     const double coarse = step * (10 + 3 * l.acceleration / std::sqrt(4 * l.jerk * l.velocity));
-    for (int i = 1; i <= 60; ++i) ASSERT_LE(t, way_back(start, l, l.acceleration * i / 60) + coarse) << start.velocity << ' ' << i;
+    for (int i = 1; i <= 60; ++i)
+      ASSERT_LE(t, way_back(start, l, l.acceleration * i / 60) + coarse)
+          << start.velocity << ' ' << i;
   }
 }
 
@@ -366,7 +402,8 @@ TEST(SevenAxes, bad_input_has_a_reason_and_leaves_the_others_alone) {
     return out;
   };
   for (const double x : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e308}) {
-    EXPECT_EQ(outcome([x](Problem& p) { p.from.position[3] = x, p.to.position[3] = -x; }), AxisOutcome::not_finite);
+    EXPECT_EQ(outcome([x](Problem& p) { p.from.position[3] = x, p.to.position[3] = -x; }),
+              AxisOutcome::not_finite);
     if (x == 1e308) continue;
     EXPECT_EQ(outcome([x](Problem& p) { p.from.velocity[0] = x; }), AxisOutcome::not_finite);
     EXPECT_EQ(outcome([x](Problem& p) { p.to.acceleration[6] = x; }), AxisOutcome::not_finite);
@@ -377,10 +414,14 @@ TEST(SevenAxes, bad_input_has_a_reason_and_leaves_the_others_alone) {
     EXPECT_EQ(outcome([x](Problem& p) { p.limits.acceleration[1] = x; }), AxisOutcome::bad_limits);
     EXPECT_EQ(outcome([x](Problem& p) { p.limits.jerk[1] = x; }), AxisOutcome::bad_limits);
   }
-  EXPECT_EQ(outcome([](Problem& p) { p.to.velocity[5] = 2 * p.limits.velocity[5]; }), AxisOutcome::end_beyond_limits);
-  EXPECT_EQ(outcome([](Problem& p) { p.to.acceleration[5] = -2 * p.limits.acceleration[5]; }), AxisOutcome::end_beyond_limits);
-  EXPECT_EQ(outcome([](Problem& p) { p.to.position.conservativeResize(6); }), AxisOutcome::wrong_size);
-  EXPECT_EQ(outcome([](Problem& p) { p.limits.jerk.conservativeResize(8); }), AxisOutcome::wrong_size);
+  EXPECT_EQ(outcome([](Problem& p) { p.to.velocity[5] = 2 * p.limits.velocity[5]; }),
+            AxisOutcome::end_beyond_limits);
+  EXPECT_EQ(outcome([](Problem& p) { p.to.acceleration[5] = -2 * p.limits.acceleration[5]; }),
+            AxisOutcome::end_beyond_limits);
+  EXPECT_EQ(outcome([](Problem& p) { p.to.position.conservativeResize(6); }),
+            AxisOutcome::wrong_size);
+  EXPECT_EQ(outcome([](Problem& p) { p.limits.jerk.conservativeResize(8); }),
+            AxisOutcome::wrong_size);
 
   Problem outside_start = good;
   outside_start.from.velocity[2] = 3 * good.limits.velocity[2];
@@ -424,7 +465,8 @@ TEST(SevenAxes, imposed_durations_are_inside_the_limits_whenever_that_is_possibl
       ASSERT_EQ(why_not_within(s.trajectory, p.limits, kTight), "");
     }
   }
-  std::printf("imposed: %d inside the limits, %d by three segments, %d too short\n", inside, three, short_);
+  std::printf("imposed: %d inside the limits, %d by three segments, %d too short\n", inside, three,
+              short_);
   EXPECT_GT(three, 100);
   EXPECT_GT(inside, 1000);
   EXPECT_GT(short_, 100);

@@ -1,4 +1,5 @@
-// Counts heap allocations (operator new and malloc). Link allocation_counter.cpp into the test binary.
+// Counts heap allocations (operator new and malloc). Link allocation_counter.cpp into the test
+// binary.
 #pragma once
 
 #include <cstdint>

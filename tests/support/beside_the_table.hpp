@@ -1,4 +1,5 @@
-// Jido, a table and a person beside it: random queries in whose way the person is, for tests and measurements.
+// Jido, a table and a person beside it: random queries in whose way the person is, for tests and
+// measurements.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,8 @@
 namespace handsel::test {
 
 struct BesideTheTable {
-  static constexpr double kNearer = 0.1;  ///< the line between the ends comes this much nearer to the person than they are [m]
+  static constexpr double kNearer =
+      0.1;  ///< the line between the ends comes this much nearer to the person than they are [m]
 
   explicit BesideTheTable(unsigned seed) : random(seed) {
     scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
@@ -23,15 +25,20 @@ struct BesideTheTable {
   }
   BesideTheTable(const BesideTheTable&) = delete;
 
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  }
 
   Vector part(const Vector& q) const { return RobotModel::part(q, robot.require_group("arm")); }
-  Vector whole(const Vector& q) const { return RobotModel::with(problem.start, robot.require_group("arm"), q); }
+  Vector whole(const Vector& q) const {
+    return RobotModel::with(problem.start, robot.require_group("arm"), q);
+  }
 
   Vector draw() {
     Vector q = robot.rest_configuration();
     do {
-      for (int axis : problem.axes) q[axis] = between(robot.axes()[axis].lower, robot.axes()[axis].upper);
+      for (int axis : problem.axes)
+        q[axis] = between(robot.axes()[axis].lower, robot.axes()[axis].upper);
     } while (!world.check(q).free);
     return q;
   }
@@ -49,12 +56,14 @@ struct BesideTheTable {
       goal = draw();
       const double ends = std::min(cost.parts(problem.start).distance, cost.parts(goal).distance);
       for (double t = 0.02; t < 1 && !in_the_way; t += 0.02)
-        in_the_way = cost.parts(problem.start + t * (goal - problem.start)).distance < ends - kNearer;
+        in_the_way =
+            cost.parts(problem.start + t * (goal - problem.start)).distance < ends - kNearer;
     }
     problem.goals = {part(goal)};
   }
 
-  RobotModel robot{RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
+  RobotModel robot{
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
   CollisionWorld world{robot, nullptr};
   HumanCost cost{robot, {}};
   costmap::MapMaker maps{{}};

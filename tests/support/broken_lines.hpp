@@ -14,17 +14,21 @@ struct BrokenLine {
 };
 
 /// `world`: of the robot; the scene is set. `most`: how many nodes, at least 3 and at most.
-inline BrokenLine broken_line(const RobotModel& robot, CollisionWorld& world, int least, int most, std::mt19937& random) {
+inline BrokenLine broken_line(const RobotModel& robot, CollisionWorld& world, int least, int most,
+                              std::mt19937& random) {
   constexpr double kLegStep = 2e-4;  // of the path planner's last check [rad]
-  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   const Group& arm = robot.require_group("arm");
   for (;;) {
     BrokenLine line;
     for (int i = 0; i < 6; ++i)
-      line.scene.boxes.push_back({"box " + std::to_string(i),
-                                  make_pose({between(0.4, 1.1), between(-0.9, 0.6), between(0.4, 1.6)}),
-                                  {between(0.03, 0.3), between(0.03, 0.3), between(0.03, 0.3)},
-                                  false});
+      line.scene.boxes.push_back(
+          {"box " + std::to_string(i),
+           make_pose({between(0.4, 1.1), between(-0.9, 0.6), between(0.4, 1.6)}),
+           {between(0.03, 0.3), between(0.03, 0.3), between(0.03, 0.3)},
+           false});
     world.set_scene(line.scene);
     TrajectoryRequest& request = line.request;
     request.id = {1, 0};
@@ -37,7 +41,8 @@ inline BrokenLine broken_line(const RobotModel& robot, CollisionWorld& world, in
     for (int tries = 0; tries < 40 && static_cast<int>(request.nodes.size()) < nodes; ++tries) {
       Vector next = at;
       for (const int axis : arm.axes)
-        next[axis] = std::clamp(at[axis] + between(-0.7, 0.7), robot.axes()[static_cast<std::size_t>(axis)].lower,
+        next[axis] = std::clamp(at[axis] + between(-0.7, 0.7),
+                                robot.axes()[static_cast<std::size_t>(axis)].lower,
                                 robot.axes()[static_cast<std::size_t>(axis)].upper);
       if (!world.check_motion(at, next, kLegStep).free) continue;
       at = next;

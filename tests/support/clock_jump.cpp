@@ -1,4 +1,5 @@
-// Preloaded: the wall clock of every forked process jumps ahead by one second 0.5 s after its fork. The monotonic clock does not.
+// Preloaded: the wall clock of every forked process jumps ahead by one second 0.5 s after its fork.
+// The monotonic clock does not.
 #include <dlfcn.h>
 #include <pthread.h>
 #include <time.h>
@@ -25,7 +26,8 @@ extern "C" int clock_gettime(clockid_t clock, timespec* t) {
   if (clock != CLOCK_REALTIME || forked.tv_sec == 0) return result;
   timespec now{};
   real()(CLOCK_MONOTONIC, &now);
-  const double since = static_cast<double>(now.tv_sec - forked.tv_sec) + static_cast<double>(now.tv_nsec - forked.tv_nsec) * 1e-9;
+  const double since = static_cast<double>(now.tv_sec - forked.tv_sec) +
+                       static_cast<double>(now.tv_nsec - forked.tv_nsec) * 1e-9;
   if (since > 0.5) t->tv_sec += 1;
   return result;
 }

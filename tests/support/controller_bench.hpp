@@ -1,4 +1,5 @@
-// A controller in virtual time with a robot that follows perfectly (or not), people, and everybody else who speaks to it.
+// A controller in virtual time with a robot that follows perfectly (or not), people, and everybody
+// else who speaks to it.
 #pragma once
 
 #include <algorithm>
@@ -90,16 +91,20 @@ class ControllerBench {
     c.id = id;
     c.epoch = go.epoch;
     c.axes = {0, 1, 2};
-    const MotionState3 from = rest_state(core.set_point().position.head(3)), to = rest_state(arm_goal);
+    const MotionState3 from = rest_state(core.set_point().position.head(3)),
+                       to = rest_state(arm_goal);
     const KinematicLimits& l = robot->comfort_limits();
-    c.trajectory = solve(from, to, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
+    c.trajectory =
+        solve(from, to, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
     return c;
   }
   std::string send(TrajectoryCommand c, double age = 0.0, double switch_at = 0.0) {
     c.switch_at = switch_at;
     return core.accept(c, from_seconds(age), now);
   }
-  std::string go_to(const Vector& arm_goal, std::uint64_t id) { return send(command(arm_goal, id)); }
+  std::string go_to(const Vector& arm_goal, std::uint64_t id) {
+    return send(command(arm_goal, id));
+  }
   static Vector arm(double a, double b, double c) {
     Vector q(3);
     q << a, b, c;
@@ -111,7 +116,9 @@ class ControllerBench {
     p.joints = standing_body(Vector3(x, y, 0), M_PI, 1.75);
     return p;
   }
-  bool at_rest() const { return core.set_point().velocity.isZero(0.0) && core.set_point().acceleration.isZero(0.0); }
+  bool at_rest() const {
+    return core.set_point().velocity.isZero(0.0) && core.set_point().acceleration.isZero(0.0);
+  }
 
   trajectory_controller::ControllerSettings settings;
   std::shared_ptr<const RobotModel> robot;
@@ -125,16 +132,19 @@ class ControllerBench {
   std::string refusal;       ///< why the robot side stands although its drives are enabled
   ServoReference reference;  ///< of the robot side; empty: not known
   Vector external_torque;    ///< empty: not measured
-  bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true}, attention_speaks{true};
+  bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true},
+      attention_speaks{true};
   HumanState people;
-  double human_age{};  ///< what is told of people was so this long ago, or a sample's period longer [s]
+  double human_age{};  ///< what is told of people was so this long ago, or a sample's period longer
+                       ///< [s]
   Go go;
   TrajectoryForecast forecast;
   AttentionAdvice advice;
 
   // Oracle over every set-point sent, written apart from the controller's own check.
   double worst_velocity{}, worst_acceleration{}, worst_jerk{}, worst_jump{};
-  // And over every stop: at rest by detection + the fastest stop from the state at that moment + 50 ms.
+  // And over every stop: at rest by detection + the fastest stop from the state at that moment + 50
+  // ms.
   int stops{}, holds{};                         ///< begun in motion
   double latest_stop{-1.0}, latest_hold{-1.0};  ///< beyond the fastest stop [s]; 0.05 is promised
   std::uint64_t (*count_allocations)(){};       ///< where the heap is watched
@@ -165,16 +175,20 @@ class ControllerBench {
     const MotionState3& s = core.set_point();
     const KinematicLimits& l = robot->stop_limits();
     for (Eigen::Index i = 0; i < s.position.size(); ++i)
-      longest = std::max(longest, measure_stop(s.velocity[i], s.acceleration[i], l.acceleration[i], l.jerk[i]).duration);
+      longest = std::max(
+          longest,
+          measure_stop(s.velocity[i], s.acceleration[i], l.acceleration[i], l.jerk[i]).duration);
     return longest;
   }
   void watch_stops() {
     const trajectory_controller::TimeoutSettings& t = settings.timeouts;
     const auto silent = [&](TimePoint at, double limit) { return to_seconds(now - at) > limit; };
-    const bool stop = silent(robot_at_, t.robot_state) || silent(human_at_, t.human_state) || drive_told_ != DriveMode::enabled;
+    const bool stop = silent(robot_at_, t.robot_state) || silent(human_at_, t.human_state) ||
+                      drive_told_ != DriveMode::enabled;
     const bool running = core.status_key().motion == MotionState::running;
     const double since = running ? running_for_ += settings.period : running_for_ = 0.0;
-    const bool hold = !stop && (!go_told_ || (running && since > t.forecast && silent(forecast_at_, t.forecast)));
+    const bool hold =
+        !stop && (!go_told_ || (running && since > t.forecast && silent(forecast_at_, t.forecast)));
     const double least = fastest_stop();
     stop_.look(stop, at_rest(), now, least, stops, latest_stop);
     // A stop that becomes a hold demands nothing new: an arm that has rested may give way.
@@ -192,12 +206,17 @@ class ControllerBench {
     const double dt = settings.period;
     for (Eigen::Index i = 0; i < b.position.size(); ++i) {
       worst_velocity = std::max(worst_velocity, std::abs(b.velocity[i]) / g.velocity[i]);
-      worst_acceleration = std::max(worst_acceleration, std::abs(b.acceleration[i]) / g.acceleration[i]);
-      worst_jerk = std::max(worst_jerk, std::abs(b.acceleration[i] - a.acceleration[i]) / dt / g.jerk[i]);
+      worst_acceleration =
+          std::max(worst_acceleration, std::abs(b.acceleration[i]) / g.acceleration[i]);
       worst_jerk =
-          std::max(worst_jerk, (std::abs(b.velocity[i] - a.velocity[i] - dt * a.acceleration[i]) - 1e-12) / (g.jerk[i] * dt * dt / 2.0));
-      const double moved = b.position[i] - a.position[i] - dt * a.velocity[i] - 0.5 * dt * dt * a.acceleration[i];
-      worst_jump = std::max(worst_jump, (std::abs(moved) - 1e-12) / (g.jerk[i] * dt * dt * dt / 6.0));
+          std::max(worst_jerk, std::abs(b.acceleration[i] - a.acceleration[i]) / dt / g.jerk[i]);
+      worst_jerk = std::max(
+          worst_jerk, (std::abs(b.velocity[i] - a.velocity[i] - dt * a.acceleration[i]) - 1e-12) /
+                          (g.jerk[i] * dt * dt / 2.0));
+      const double moved =
+          b.position[i] - a.position[i] - dt * a.velocity[i] - 0.5 * dt * dt * a.acceleration[i];
+      worst_jump =
+          std::max(worst_jump, (std::abs(moved) - 1e-12) / (g.jerk[i] * dt * dt * dt / 6.0));
     }
   }
 };

@@ -7,7 +7,9 @@
 
 namespace handsel::test {
 
-inline bool has(const ControllerBench& b, Cause cause) { return (b.core.status().causes & bit(cause)) != 0; }
+inline bool has(const ControllerBench& b, Cause cause) {
+  return (b.core.status().causes & bit(cause)) != 0;
+}
 inline Vector goal() { return ControllerBench::arm(0.6, 0.4, -0.5); }
 
 /// Every set-point so far within the guard limits, and continuous.

@@ -8,8 +8,9 @@
 namespace handsel::test {
 
 /// Over the box `low` to `high` (world, m) at 5 cm: `value` within the inner box, 0 elsewhere.
-inline Costmap box_layer(const std::string& name, const Vector3& low, const Vector3& high, const Vector3& inner_low,
-                         const Vector3& inner_high, std::uint8_t value, double weight) {
+inline Costmap box_layer(const std::string& name, const Vector3& low, const Vector3& high,
+                         const Vector3& inner_low, const Vector3& inner_high, std::uint8_t value,
+                         double weight) {
   Costmap map;
   map.layer = name;
   map.origin = low;
@@ -23,7 +24,8 @@ inline Costmap box_layer(const std::string& name, const Vector3& low, const Vect
     for (int j = 0; j < size.y(); ++j)
       for (int i = 0; i < size.x(); ++i) {
         const Vector3 p = low + map.resolution * Vector3(i, j, k);
-        const bool inside = (p.array() >= inner_low.array()).all() && (p.array() <= inner_high.array()).all();
+        const bool inside =
+            (p.array() >= inner_low.array()).all() && (p.array() <= inner_high.array()).all();
         map.values.push_back(inside ? value : 0);
       }
   return map;

@@ -1,4 +1,5 @@
-// Random problems of one axis, of every family that has broken a solver, and the judgement of an answer.
+// Random problems of one axis, of every family that has broken a solver, and the judgement of an
+// answer.
 #pragma once
 
 #include <cmath>
@@ -18,8 +19,9 @@ struct Case {
 
 inline std::ostream& operator<<(std::ostream& out, const Case& c) {
   out.precision(17);
-  return out << "from " << c.from.position << ' ' << c.from.velocity << ' ' << c.from.acceleration << " to " << c.to.position << ' '
-             << c.to.velocity << ' ' << c.to.acceleration << " limits " << c.limits.velocity << ' ' << c.limits.acceleration << ' '
+  return out << "from " << c.from.position << ' ' << c.from.velocity << ' ' << c.from.acceleration
+             << " to " << c.to.position << ' ' << c.to.velocity << ' ' << c.to.acceleration
+             << " limits " << c.limits.velocity << ' ' << c.limits.acceleration << ' '
              << c.limits.jerk;
 }
 
@@ -27,7 +29,9 @@ class Cases {
  public:
   static constexpr int kFamilies = 10;
   explicit Cases(std::uint64_t seed) : random_(seed) {}
-  double uniform(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random_); }
+  double uniform(double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random_);
+  }
   int pick(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
 
   /// Any family: rest, moving, accelerating, discrete grids, V J = A^2, tiny and huge scales.
@@ -35,7 +39,8 @@ class Cases {
   Case next(int family) {
     Case c;
     c.limits = {uniform(0.1, 4), uniform(0.1, 6), uniform(0.1, 12)};
-    if (family == 1) c.limits.jerk = c.limits.acceleration * c.limits.acceleration / c.limits.velocity;
+    if (family == 1)
+      c.limits.jerk = c.limits.acceleration * c.limits.acceleration / c.limits.velocity;
     if (family == 2) c.limits = {1.0 + pick(2), 1.0 + pick(2), 1.0 + pick(2)};
     double scale = 1;
     if (family == 3) scale = std::pow(10.0, uniform(-6, 6));
@@ -53,17 +58,23 @@ class Cases {
   }
 
  private:
-  /// Accelerations of one sign whose direct way touches zero in between, exactly or by rounding: where short durations become isolated.
+  /// Accelerations of one sign whose direct way touches zero in between, exactly or by rounding:
+  /// where short durations become isolated.
   void through_zero(Case& c) {
-    const double side = pick(2) ? 1 : -1, V = c.limits.velocity, A = c.limits.acceleration, J = c.limits.jerk;
-    const double a = std::min(A, 0.7 * std::sqrt(J * V)), from = uniform(0, 1) * a, to = pick(8) ? uniform(0, 1) * a : from;
+    const double side = pick(2) ? 1 : -1, V = c.limits.velocity, A = c.limits.acceleration,
+                 J = c.limits.jerk;
+    const double a = std::min(A, 0.7 * std::sqrt(J * V)), from = uniform(0, 1) * a,
+                 to = pick(8) ? uniform(0, 1) * a : from;
     const double gain = (from * from + to * to) / (2 * J);
     c.from.acceleration = side * from, c.to.acceleration = side * to;
     c.from.velocity = side * uniform(from * from / (2 * J) - V, V - gain - to * to / (2 * J));
     c.to.velocity = c.from.velocity + side * gain;
     if (pick(2)) c.to.velocity *= 1 + 1e-15 * (pick(5) - 2);
-    const double T = (from + to) / J, way = T * c.from.velocity + side * (from * from * (from / 3 + to / 2) + to * to * to / 6) / (J * J);
-    c.to.position = c.from.position + way + (pick(3) ? uniform(-1, 1) * std::pow(10.0, -pick(14)) : 0);
+    const double T = (from + to) / J,
+                 way = T * c.from.velocity +
+                       side * (from * from * (from / 3 + to / 2) + to * to * to / 6) / (J * J);
+    c.to.position =
+        c.from.position + way + (pick(3) ? uniform(-1, 1) * std::pow(10.0, -pick(14)) : 0);
   }
   void fill(AxisState& s, const AxisLimits& l, int family) {
     for (;;) {
@@ -73,8 +84,8 @@ class Cases {
       if (pick(4) == 0) s.acceleration = 0;
       if (pick(6) == 0) s.velocity = 0;
       const double k = s.acceleration * std::abs(s.acceleration) / (2 * l.jerk);
-      if (std::abs(s.velocity) <= l.velocity && std::abs(s.acceleration) <= l.acceleration && std::abs(s.velocity + k) <= l.velocity &&
-          std::abs(s.velocity - k) <= l.velocity) {
+      if (std::abs(s.velocity) <= l.velocity && std::abs(s.acceleration) <= l.acceleration &&
+          std::abs(s.velocity + k) <= l.velocity && std::abs(s.velocity - k) <= l.velocity) {
         return;
       }
     }
@@ -83,14 +94,17 @@ class Cases {
 };
 
 /// Empty, or how a motion misses its end or breaks a limit, on exact extremes.
-inline std::string why_wrong(const Case& c, const AxisProfile& p, bool check_limits = true, double tolerance = 1e-9) {
+inline std::string why_wrong(const Case& c, const AxisProfile& p, bool check_limits = true,
+                             double tolerance = 1e-9) {
   AxisState s = c.from;
   for (int k = 0; k < p.count; ++k) s = advanced(s, p.segments[k].duration, p.segments[k].jerk);
   const double T = p.duration();
   const double reach = std::abs(c.from.position) + std::abs(c.to.position) + c.limits.velocity * T;
-  if (std::abs(s.position - c.to.position) > tolerance * reach) return "ends off by " + std::to_string(s.position - c.to.position);
+  if (std::abs(s.position - c.to.position) > tolerance * reach)
+    return "ends off by " + std::to_string(s.position - c.to.position);
   if (std::abs(s.velocity - c.to.velocity) > tolerance * c.limits.velocity) return "end velocity";
-  if (std::abs(s.acceleration - c.to.acceleration) > tolerance * c.limits.acceleration) return "end acceleration";
+  if (std::abs(s.acceleration - c.to.acceleration) > tolerance * c.limits.acceleration)
+    return "end acceleration";
   if (!check_limits) return {};
   const AxisExtremes e = extremes(c.from, p.segments.data(), p.count);
   if (e.velocity > c.limits.velocity * (1 + tolerance)) return "velocity limit";

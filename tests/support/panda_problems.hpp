@@ -1,4 +1,5 @@
-// The Panda and its planning problems from the reference data (environment HANDSEL_DATA), for tests and measurements.
+// The Panda and its planning problems from the reference data (environment HANDSEL_DATA), for tests
+// and measurements.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +29,8 @@ inline RobotModel load_panda() {
 inline std::vector<int> panda_arm(const RobotModel& robot) {
   std::vector<int> axes;
   for (int i = 0; i < robot.dof(); ++i)
-    if (robot.axes()[static_cast<std::size_t>(i)].name.find("finger") == std::string::npos) axes.push_back(i);
+    if (robot.axes()[static_cast<std::size_t>(i)].name.find("finger") == std::string::npos)
+      axes.push_back(i);
   return axes;
 }
 
@@ -37,7 +39,8 @@ inline std::vector<PandaProblem> panda_problems(const RobotModel& robot) {
   std::ifstream file(*reference_data("problems/panda/problems.jsonl"));
   const auto put = [&robot](const nlohmann::json& joints, Vector& q) {
     for (int i = 0; i < robot.dof(); ++i)
-      if (const auto found = joints.find(robot.axes()[static_cast<std::size_t>(i)].name); found != joints.end())
+      if (const auto found = joints.find(robot.axes()[static_cast<std::size_t>(i)].name);
+          found != joints.end())
         q[i] = found->get<double>();
   };
   for (std::string line; std::getline(file, line);) {
@@ -48,7 +51,8 @@ inline std::vector<PandaProblem> panda_problems(const RobotModel& robot) {
       const std::vector<double> d = o["dims"], p = o["pos"], q = o["quat_xyzw"];
       Obstacle obstacle;
       obstacle.id = o["id"];
-      obstacle.placed.T_parent_shape = make_pose(Vector3(p[0], p[1], p[2]), Eigen::Quaterniond(q[3], q[0], q[1], q[2]));
+      obstacle.placed.T_parent_shape =
+          make_pose(Vector3(p[0], p[1], p[2]), Eigen::Quaterniond(q[3], q[0], q[1], q[2]));
       if (o["type"] == "box")
         obstacle.placed.shape = Box{Vector3(d[0], d[1], d[2])};
       else if (o["type"] == "cylinder")

@@ -34,16 +34,19 @@ inline Vector3 place(const std::vector<double>& row) { return {row[0], row[1], r
 struct RecordedHandover {
   explicit RecordedHandover(const std::filesystem::path& folder) {
     const std::pair<const char*, const char*> parts[] = {
-        {"head", "head"},     {"neck", "neck"},    {"chest", "torso"},      {"hip", "waist"},     {"LUArm", "l_shoulder"},
-        {"LFArm", "l_elbow"}, {"LHand", "l_hand"}, {"RUArm", "r_shoulder"}, {"RFArm", "r_elbow"}, {"RHand", "r_hand"}};
+        {"head", "head"},        {"neck", "neck"},     {"chest", "torso"},  {"hip", "waist"},
+        {"LUArm", "l_shoulder"}, {"LFArm", "l_elbow"}, {"LHand", "l_hand"}, {"RUArm", "r_shoulder"},
+        {"RFArm", "r_elbow"},    {"RHand", "r_hand"}};
     for (const char* who : {"giver", "taker"})
       for (const auto& [part, joint] : parts)
-        bodies[who].emplace_back(joint, rows(folder / (std::string(who) + "_" + part + "_pose_saved.csv")));
+        bodies[who].emplace_back(
+            joint, rows(folder / (std::string(who) + "_" + part + "_pose_saved.csv")));
     baton = rows(folder / "baton_pose_saved.csv");
     giver_wrench = rows(folder / "Wrench_giver_saved.csv");
     taker_wrench = rows(folder / "Wrench_taker_saved.csv");
   }
-  std::map<std::string, std::vector<std::pair<std::string, std::vector<std::vector<double>>>>> bodies;
+  std::map<std::string, std::vector<std::pair<std::string, std::vector<std::vector<double>>>>>
+      bodies;
   std::vector<std::vector<double>> baton, giver_wrench, taker_wrench;
 };
 

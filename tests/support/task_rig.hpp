@@ -30,12 +30,14 @@ struct Failure {
   Failure(const char* why = "", ActionFailure of = ActionFailure::other) : reason(why), kind(of) {}
 };
 
-/// Plays the rest of the system: spark tells what holds in `world`, the controller obeys Go, the manipulation planner needs `action_time`
-/// for an action and fails as `fails` says; by hand where the test ends actions itself.
+/// Plays the rest of the system: spark tells what holds in `world`, the controller obeys Go, the
+/// manipulation planner needs `action_time` for an action and fails as `fails` says; by hand where
+/// the test ends actions itself.
 class TaskRig {
  public:
   explicit TaskRig(bool by_hand = false)
-      : supervisor(rig_settings(), load_domain(resource("config/tasks.txtpb")), {}, 100), by_hand_(by_hand) {
+      : supervisor(rig_settings(), load_domain(resource("config/tasks.txtpb")), {}, 100),
+        by_hand_(by_hand) {
     world.on["mug"] = "table";
     world.people["anna"] = true;
   }
@@ -53,9 +55,15 @@ class TaskRig {
   }
   static bool is_end(TaskState state) { return state >= TaskState::succeeded; }
 
-  void ask(TaskKind kind, const std::string& object = "", const std::string& human = "", const std::string& surface = "",
-           const std::string& onto = "") {
-    supervisor.on(TaskGoal{.id = ++ids, .kind = kind, .object = object, .human = human, .surface = surface, .onto = onto}, now);
+  void ask(TaskKind kind, const std::string& object = "", const std::string& human = "",
+           const std::string& surface = "", const std::string& onto = "") {
+    supervisor.on(TaskGoal{.id = ++ids,
+                           .kind = kind,
+                           .object = object,
+                           .human = human,
+                           .surface = surface,
+                           .onto = onto},
+                  now);
   }
   void give(std::uint64_t id, const std::string& to = "anna") {
     TaskGoal goal;
@@ -76,7 +84,9 @@ class TaskRig {
   void end_action(ActionState state, const std::string& reason = "") {
     action.state = state;
     action.reason = reason;
-    if (state == ActionState::succeeded) world.perform(goals.back().kind, goals.back().object, goals.back().human, goals.back().surface);
+    if (state == ActionState::succeeded)
+      world.perform(goals.back().kind, goals.back().object, goals.back().human,
+                    goals.back().surface);
     run(0.1);
   }
 
@@ -87,14 +97,16 @@ class TaskRig {
     for (const ActionGoal& goal : goals) {
       if (goal.cancel || goal.id == before) continue;
       before = goal.id;
-      out += (out.empty() ? "" : ", ") + PlannedAction{goal.kind, goal.object, goal.human, goal.surface, -1, {}, 0}.text();
+      out += (out.empty() ? "" : ", ") +
+             PlannedAction{goal.kind, goal.object, goal.human, goal.surface, -1, {}, 0}.text();
     }
     return out;
   }
   std::string line(const std::string& text) const {
     std::string out = "no line \"" + text + "\"";
     for (const PlanStep& step : last().tree)
-      if (step.text == text) out = std::string(name(step.state)) + (step.reason.empty() ? "" : ": " + step.reason);
+      if (step.text == text)
+        out = std::string(name(step.state)) + (step.reason.empty() ? "" : ": " + step.reason);
     return out;
   }
 
@@ -132,8 +144,11 @@ class TaskRig {
     if (out.safety) safety = *out.safety;
     if (out.go) {
       go = *out.go;
-      const bool resumes = go.allowed && go.epoch > execution.epoch && (execution.mode != Mode::fault || go.acknowledge);
-      execution.mode = resumes ? Mode::normal : go.allowed ? execution.mode : std::max(execution.mode, Mode::hold);
+      const bool resumes = go.allowed && go.epoch > execution.epoch &&
+                           (execution.mode != Mode::fault || go.acknowledge);
+      execution.mode = resumes      ? Mode::normal
+                       : go.allowed ? execution.mode
+                                    : std::max(execution.mode, Mode::hold);
       execution.epoch = go.epoch;
     }
     for (const auto& goal : out.action_goals) {
@@ -144,7 +159,8 @@ class TaskRig {
   }
   void take(const ActionGoal& goal) {
     if (goal.cancel) {
-      if (goal.id == action.id && action.state == ActionState::running) action.state = ActionState::cancelled;
+      if (goal.id == action.id && action.state == ActionState::running)
+        action.state = ActionState::cancelled;
       return;
     }
     if (goal.id == action.id) return;
@@ -159,11 +175,14 @@ class TaskRig {
     begun_ = now;
   }
   void act() {
-    if (by_hand_ || !planner_alive || !go.allowed || action.state != ActionState::running || to_seconds(now - begun_) < action_time) return;
+    if (by_hand_ || !planner_alive || !go.allowed || action.state != ActionState::running ||
+        to_seconds(now - begun_) < action_time)
+      return;
     const Failure failure = fails ? fails(current_) : Failure();
     action.reason = failure.reason;
     action.failure = failure.reason.empty() ? ActionFailure::none : failure.kind;
-    if (action.reason.empty() && !world.perform(current_.kind, current_.object, current_.human, current_.surface))
+    if (action.reason.empty() &&
+        !world.perform(current_.kind, current_.object, current_.human, current_.surface))
       action.reason = "it cannot be done here", action.failure = ActionFailure::other;
     action.state = action.reason.empty() ? ActionState::succeeded : ActionState::failed;
   }

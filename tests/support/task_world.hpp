@@ -1,4 +1,5 @@
-// A world of facts that actions change as they should: things on surfaces, in the robot's hand or in people's hands.
+// A world of facts that actions change as they should: things on surfaces, in the robot's hand or
+// in people's hands.
 #pragma once
 
 #include <map>
@@ -13,11 +14,14 @@ namespace handsel {
 struct TaskWorld {
   std::map<std::string, std::string> on;       ///< object: surface
   std::map<std::string, std::string> held_by;  ///< object: person, or "robot"
-  std::map<std::string, std::string> models;   ///< object: model; the object's own name where it is not here
-  std::map<std::string, double> distance;      ///< object: from the shoulder [m]; 0.5 where it is not here, beyond 1 out of reach
-  std::map<std::string, Vector3> surfaces{{"table", {0.7, 0.7, 0.7}}, {"shelf", {0.7, 0.7, 0.7}}};  ///< size [m]
-  std::map<std::string, bool> people;                                                               ///< and whether they are attentive
-  std::set<std::string> offering;                                                                   ///< people who hold out what they have
+  std::map<std::string, std::string>
+      models;  ///< object: model; the object's own name where it is not here
+  std::map<std::string, double>
+      distance;  ///< object: from the shoulder [m]; 0.5 where it is not here, beyond 1 out of reach
+  std::map<std::string, Vector3> surfaces{{"table", {0.7, 0.7, 0.7}},
+                                          {"shelf", {0.7, 0.7, 0.7}}};  ///< size [m]
+  std::map<std::string, bool> people;  ///< and whether they are attentive
+  std::set<std::string> offering;      ///< people who hold out what they have
 
   std::set<std::string> objects() const {
     std::set<std::string> out;
@@ -37,7 +41,8 @@ struct TaskWorld {
 
   Facts facts() const {
     Facts out;
-    const auto say = [&](FactKind kind, const std::string& subject, const std::string& object = "", double value = 1) {
+    const auto say = [&](FactKind kind, const std::string& subject, const std::string& object = "",
+                         double value = 1) {
       out.facts.push_back({kind, subject, object, value, 1.0});
     };
     for (const auto& [object, surface] : on) say(FactKind::on_surface, object, surface);
@@ -77,7 +82,9 @@ struct TaskWorld {
         const int n = many[it->second]++;
         for (const auto& box : out.boxes)
           if (box.id == it->second)
-            seen.T_world_object = box.T_world_box * make_pose({-0.25 + 0.22 * (n % 3), -0.25 + 0.22 * (n / 3), box.size.z() / 2});
+            seen.T_world_object =
+                box.T_world_box *
+                make_pose({-0.25 + 0.22 * (n % 3), -0.25 + 0.22 * (n / 3), box.size.z() / 2});
       } else {
         seen.holder = held_by.at(object) == kRobotName ? Holder::robot : Holder::human;
       }
@@ -87,7 +94,8 @@ struct TaskWorld {
   }
 
   /// What a successful action leaves behind; false: it cannot be done here.
-  bool perform(ActionKind kind, const std::string& object, const std::string& human, const std::string& surface) {
+  bool perform(ActionKind kind, const std::string& object, const std::string& human,
+               const std::string& surface) {
     const std::string hand = in_hand();
     switch (kind) {
       case ActionKind::pick:

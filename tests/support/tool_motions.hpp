@@ -10,10 +10,15 @@
 
 namespace handsel::test {
 
-/// Two to five nodes, every other with its elbow; no nodes when the draw was in vain. `also`: further active axes.
-inline trajectory_planner::CartesianRequest tool_motion(const RobotModel& robot, const Group& arm, const std::vector<int>& also,
-                                                        const Vector& home, CollisionWorld& world, std::mt19937& random) {
-  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+/// Two to five nodes, every other with its elbow; no nodes when the draw was in vain. `also`:
+/// further active axes.
+inline trajectory_planner::CartesianRequest tool_motion(const RobotModel& robot, const Group& arm,
+                                                        const std::vector<int>& also,
+                                                        const Vector& home, CollisionWorld& world,
+                                                        std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   const ik::Chain chain(robot, arm, home);
   const ik::SrsArm srs = *ik::SrsArm::recognise(chain);
   trajectory_planner::CartesianRequest request;
@@ -26,7 +31,8 @@ inline trajectory_planner::CartesianRequest tool_motion(const RobotModel& robot,
     for (std::size_t i = 0; i < arm.axes.size(); ++i) {
       const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[i])];
       double& value = next[arm.axes[i]];
-      const double moved = std::clamp(value + between(-0.6, 0.6), axis.lower + 0.2, axis.upper - 0.2);
+      const double moved =
+          std::clamp(value + between(-0.6, 0.6), axis.lower + 0.2, axis.upper - 0.2);
       const bool bends = i == 1 || i == 3 || i == 5;
       value = bends && (moved * home[arm.axes[i]] < 0 || std::abs(moved) < 0.15) ? value : moved;
     }
@@ -38,7 +44,8 @@ inline trajectory_planner::CartesianRequest tool_motion(const RobotModel& robot,
     node.also = Vector(static_cast<Eigen::Index>(also.size()));
     for (std::size_t i = 0; i < also.size(); ++i) {
       const Axis& axis = robot.axes()[static_cast<std::size_t>(also[i])];
-      node.also[static_cast<Eigen::Index>(i)] = std::clamp(home[also[i]] + between(-0.1, 0.1), axis.lower, axis.upper);
+      node.also[static_cast<Eigen::Index>(i)] =
+          std::clamp(home[also[i]] + between(-0.1, 0.1), axis.lower, axis.upper);
     }
     request.nodes.push_back(node);
   }
@@ -48,7 +55,8 @@ inline trajectory_planner::CartesianRequest tool_motion(const RobotModel& robot,
 /// Hand and head of Jido: with the tool and the elbow 22 active axes.
 inline std::vector<int> hand_and_head(const RobotModel& robot) {
   std::vector<int> axes = robot.require_group("hand").axes;
-  axes.insert(axes.end(), robot.require_group("head").axes.begin(), robot.require_group("head").axes.end());
+  axes.insert(axes.end(), robot.require_group("head").axes.begin(),
+              robot.require_group("head").axes.end());
   return axes;
 }
 

@@ -1,7 +1,8 @@
-// No arm moves blind, over real processes: while it carries a mug about beside a person, the sources of people fall silent, freeze, repeat
-// an empty picture, are late or look elsewhere. The arm comes to rest in time, the cause is named, it rests as long as that lasts, and
-// completes its task afterwards. Without HANDSEL_RUNS: each kind once. HANDSEL_RUNS=n: n times at random moments; HANDSEL_FIRST_SEED: of
-// the first.
+// No arm moves blind, over real processes: while it carries a mug about beside a person, the
+// sources of people fall silent, freeze, repeat an empty picture, are late or look elsewhere. The
+// arm comes to rest in time, the cause is named, it rests as long as that lasts, and completes its
+// task afterwards. Without HANDSEL_RUNS: each kind once. HANDSEL_RUNS=n: n times at random moments;
+// HANDSEL_FIRST_SEED: of the first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,11 +27,13 @@ constexpr double kNamed = 1.0;    // [s] within which the cause is named
 constexpr double kLasts = 2.0;    // [s] of a disturbance
 constexpr Duration kMoves = std::chrono::seconds(20), kCompletes = std::chrono::seconds(60);
 
-// The last good picture was captured before the disturbance began, or one period of the sensor after (a source that freezes repeats the
-// first picture). A view counts for max_view_age after that; the stop takes no longer than the longest of an axis; P2 allows 50 ms more.
-// Then the messages of the disturbance and of the set-points, and the servo of the simulated robot, 60 rad/s, which has followed to 1 mrad
-// after 0.1 s.
-constexpr double kViewAge = 0.25, kSensorPeriod = 1.0 / 30, kPromised = 0.05, kTransport = 0.02, kServo = 0.1;
+// The last good picture was captured before the disturbance began, or one period of the sensor
+// after (a source that freezes repeats the first picture). A view counts for max_view_age after
+// that; the stop takes no longer than the longest of an axis; P2 allows 50 ms more. Then the
+// messages of the disturbance and of the set-points, and the servo of the simulated robot, 60
+// rad/s, which has followed to 1 mrad after 0.1 s.
+constexpr double kViewAge = 0.25, kSensorPeriod = 1.0 / 30, kPromised = 0.05, kTransport = 0.02,
+                 kServo = 0.1;
 
 struct Kind {
   const char* name;
@@ -59,11 +62,14 @@ class BlindOverDds : public testing::Test {
   static bool names_cause() {
     const Snapshot& now = busy_->now();
     const ExecutionStatus& status = now.execution.sample;
-    return (status.causes & (1U << static_cast<unsigned>(Cause::blind))) != 0 && status.reason.find("kinect") != std::string::npos;
+    return (status.causes & (1U << static_cast<unsigned>(Cause::blind))) != 0 &&
+           status.reason.find("kinect") != std::string::npos;
   }
   static bool health_names_source() {
     for (const auto& [component, health] : busy_->now().health)
-      if (health.sample.state == HealthState::degraded && health.sample.reason.find("kinect") != std::string::npos) return true;
+      if (health.sample.state == HealthState::degraded &&
+          health.sample.reason.find("kinect") != std::string::npos)
+        return true;
     return false;
   }
   /// In the middle of a motion.
@@ -80,10 +86,13 @@ class BlindOverDds : public testing::Test {
     BusySystem& s = *busy_;
     const std::string what = std::string(kind.name) + ", seed " + std::to_string(seed);
     std::mt19937_64 random(seed);
-    ASSERT_TRUE(wait_moving(random)) << what << ": it does not move: " << s.now().execution.sample.reason;
+    ASSERT_TRUE(wait_moving(random))
+        << what << ": it does not move: " << s.now().execution.sample.reason;
     const std::uint64_t task = s.task();
-    const std::uint64_t ssm = s.now().ground_truth.sample.ssm_violations, limits = s.now().ground_truth.sample.limit_violations;
-    const double bound = kSensorPeriod + kViewAge + s.longest_stop() + kPromised + kTransport + kServo;
+    const std::uint64_t ssm = s.now().ground_truth.sample.ssm_violations,
+                        limits = s.now().ground_truth.sample.limit_violations;
+    const double bound =
+        kSensorPeriod + kViewAge + s.longest_stop() + kPromised + kTransport + kServo;
     const TimePoint begin = monotonic_now();
     const auto since = [&] { return to_seconds(monotonic_now() - begin); };
     s.disturb(kind.action, kind.value);
@@ -96,9 +105,12 @@ class BlindOverDds : public testing::Test {
     s.wait(from_seconds(bound), look);
     s.mark();
     s.wait(from_seconds(kLasts - bound), look);
-    EXPECT_LT(s.deviation(), kRest) << what << ": it moves " << bound << " s after the disturbance began, or later";
-    EXPECT_TRUE(named >= 0 && named <= kNamed) << what << ": named after " << named << " s: " << s.now().execution.sample.reason;
-    EXPECT_TRUE(healthy >= 0 && healthy <= kNamed) << what << ": in no health, or after " << healthy << " s";
+    EXPECT_LT(s.deviation(), kRest)
+        << what << ": it moves " << bound << " s after the disturbance began, or later";
+    EXPECT_TRUE(named >= 0 && named <= kNamed)
+        << what << ": named after " << named << " s: " << s.now().execution.sample.reason;
+    EXPECT_TRUE(healthy >= 0 && healthy <= kNamed)
+        << what << ": in no health, or after " << healthy << " s";
     const double moved = s.deviation();
     s.mark();
     s.disturb(SimAction::restore);
@@ -112,11 +124,14 @@ class BlindOverDds : public testing::Test {
     };
     EXPECT_TRUE(s.wait(kCompletes, over)) << what << ": the task does not end\n" << s.timeline();
     const TaskStatus end = over() ? s.now().tasks.at(task) : TaskStatus{};
-    EXPECT_EQ(end.state, TaskState::succeeded) << what << ": " << name(end.state) << ": " << end.reason;
+    EXPECT_EQ(end.state, TaskState::succeeded)
+        << what << ": " << name(end.state) << ": " << end.reason;
     EXPECT_EQ(s.now().ground_truth.sample.ssm_violations, ssm) << what;
     EXPECT_EQ(s.now().ground_truth.sample.limit_violations, limits) << what;
-    std::printf("%-22s moved %.6f rad from %.2f s on, named after %.2f s, in health after %.2f s, moved again %.2f s after the end\n",
-                what.c_str(), moved, bound, named, healthy, resumed);
+    std::printf(
+        "%-22s moved %.6f rad from %.2f s on, named after %.2f s, in health after %.2f s, moved "
+        "again %.2f s after the end\n",
+        what.c_str(), moved, bound, named, healthy, resumed);
     std::fflush(stdout);
   }
 

@@ -1,4 +1,5 @@
-// The command as its user meets it: exit codes, one sentence for each mistake, no process left behind.
+// The command as its user meets it: exit codes, one sentence for each mistake, no process left
+// behind.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +22,9 @@ using testing::HasSubstr;
 const std::string kHandsel = HANDSEL_COMMAND;
 const std::string kDomain = " --domain 39";
 
-int processes_running() { return std::atoi(shell("ps -eo args | grep -c '[b]in/handsel_.*--domain 39'").out.c_str()); }
+int processes_running() {
+  return std::atoi(shell("ps -eo args | grep -c '[b]in/handsel_.*--domain 39'").out.c_str());
+}
 
 /// One sentence, exit code, nothing left.
 void expect_refusal(const std::string& arguments, int exit_code, const std::string& says) {
@@ -36,7 +39,8 @@ void expect_refusal(const std::string& arguments, int exit_code, const std::stri
 struct TemporaryFile {
   explicit TemporaryFile(const std::string& text) { std::ofstream(path) << text; }
   ~TemporaryFile() { std::filesystem::remove(path); }
-  std::filesystem::path path = std::filesystem::temp_directory_path() / ("handsel-test-" + std::to_string(getpid()) + ".txtpb");
+  std::filesystem::path path = std::filesystem::temp_directory_path() /
+                               ("handsel-test-" + std::to_string(getpid()) + ".txtpb");
 };
 
 TEST(Command, wrong_usage_is_one_sentence) {
@@ -51,7 +55,8 @@ TEST(Command, wrong_usage_is_one_sentence) {
 }
 
 TEST(Command, help_is_an_answer) {
-  for (const char* command : {"", "up", "run", "task", "task give", "story", "speed", "status", "topic", "topic hz", "doctor", "eval"}) {
+  for (const char* command : {"", "up", "run", "task", "task give", "story", "speed", "status",
+                              "topic", "topic hz", "doctor", "eval"}) {
     const Outcome outcome = shell(kHandsel + " " + command + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
@@ -62,27 +67,35 @@ TEST(Command, what_is_not_there_is_named_before_anything_starts) {
   expect_refusal("run --scenario nowhere" + kDomain, 3, "nowhere");
   expect_refusal("up --robot nobody" + kDomain, 3, "nobody");
   expect_refusal("story nothing.story", 3, "nothing.story");
-  const TemporaryFile scenario("name: \"x\" objects { id: \"a\" model: \"unknown_thing\" } tasks { kind: \"give\" object: \"a\" }");
+  const TemporaryFile scenario(
+      "name: \"x\" objects { id: \"a\" model: \"unknown_thing\" } tasks { kind: \"give\" object: "
+      "\"a\" }");
   expect_refusal("run --scenario " + scenario.path.string() + kDomain, 3, "unknown_thing");
 }
 
 TEST(Command, a_wrong_scenario_is_named_with_file_and_line) {
   const TemporaryFile unknown_key("name: \"x\"\nbanana: 3\n");
-  expect_refusal("run --scenario " + unknown_key.path.string() + kDomain, 2, unknown_key.path.string() + ":2");
+  expect_refusal("run --scenario " + unknown_key.path.string() + kDomain, 2,
+                 unknown_key.path.string() + ":2");
 }
 
 TEST(Command, a_recording_that_cannot_be_played_starts_nothing) {
   const std::string corpus = std::string(HANDSEL_SOURCE_DIR) + "/tests/fuzz/corpus/";
   const std::string run = "run --headless --scenario give_mug" + kDomain + " --human " + corpus;
-  expect_refusal(run + "csv/millimetres.csv", 2, "millimetres.csv:2: from waist to head the body measures 650");
-  expect_refusal(run + "csv/time_backwards.csv", 2, "time_backwards.csv:7: time 0.100000 is not after");
+  expect_refusal(run + "csv/millimetres.csv", 2,
+                 "millimetres.csv:2: from waist to head the body measures 650");
+  expect_refusal(run + "csv/time_backwards.csv", 2,
+                 "time_backwards.csv:7: time 0.100000 is not after");
   expect_refusal(run + "bvh/truncated_motion.bvh", 2, "truncated_motion.bvh:");
-  expect_refusal(run + "bvh/unknown_channel.bvh", 2, "unknown_channel.bvh:5: channel \"Wrotation\" is unknown");
+  expect_refusal(run + "bvh/unknown_channel.bvh", 2,
+                 "unknown_channel.bvh:5: channel \"Wrotation\" is unknown");
   expect_refusal(run + "nobody.bvh", 3, "nobody.bvh");
 }
 
 TEST(Command, a_wrong_joint_name_is_named) {
-  const TemporaryFile scenario("name: \"x\" start { key: \"elbow_of_nobody\" value: 1 } tasks { kind: \"give\" object: \"mug\" }");
+  const TemporaryFile scenario(
+      "name: \"x\" start { key: \"elbow_of_nobody\" value: 1 } tasks { kind: \"give\" object: "
+      "\"mug\" }");
   expect_refusal("run --scenario " + scenario.path.string() + kDomain, 2, "elbow_of_nobody");
 }
 
@@ -92,7 +105,8 @@ TEST(Command, a_scenario_without_tasks_cannot_be_performed) {
 }
 
 TEST(Command, asking_an_empty_domain_says_that_nothing_runs_there) {
-  for (const char* command : {"status", "task give mug", "speed 50", "task cancel"}) expect_refusal(command + kDomain, 3, "domain 39");
+  for (const char* command : {"status", "task give mug", "speed 50", "task cancel"})
+    expect_refusal(command + kDomain, 3, "domain 39");
 }
 
 TEST(Command, topics_are_listed_as_json_lines) {
@@ -100,7 +114,8 @@ TEST(Command, topics_are_listed_as_json_lines) {
   EXPECT_EQ(outcome.exit_code, 0);
   std::istringstream lines(outcome.out);
   int count = 0;
-  for (std::string line; std::getline(lines, line); ++count) EXPECT_FALSE(nlohmann::json::parse(line)["topic"].get<std::string>().empty());
+  for (std::string line; std::getline(lines, line); ++count)
+    EXPECT_FALSE(nlohmann::json::parse(line)["topic"].get<std::string>().empty());
   EXPECT_GT(count, 25);
 }
 
@@ -138,11 +153,14 @@ TEST(Command, a_taken_port_costs_the_page_and_nothing_else) {
 TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {
   Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "39"});
   ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
-  const std::string running = shell("ps -eo args | grep -o '[b]in/handsel_[a-z_]* --domain 39' | sort | uniq -c").out;
-  for (const char* box : kProcesses) EXPECT_THAT(running, testing::ContainsRegex(std::string(" 1 bin/handsel_") + box + " ")) << box;
+  const std::string running =
+      shell("ps -eo args | grep -o '[b]in/handsel_[a-z_]* --domain 39' | sort | uniq -c").out;
+  for (const char* box : kProcesses)
+    EXPECT_THAT(running, testing::ContainsRegex(std::string(" 1 bin/handsel_") + box + " ")) << box;
 
   const std::string said = up.said();
-  const auto port = static_cast<std::uint16_t>(std::atoi(said.substr(said.find("127.0.0.1:") + 10).c_str()));
+  const auto port =
+      static_cast<std::uint16_t>(std::atoi(said.substr(said.find("127.0.0.1:") + 10).c_str()));
   HttpClient settings(port);
   settings.request("GET", "/config.json");
   const std::string told = settings.read();

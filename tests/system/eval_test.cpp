@@ -1,4 +1,5 @@
-// handsel eval as its users call it: several conditions with the same seeds, shards that come together, and the same trial elsewhere.
+// handsel eval as its users call it: several conditions with the same seeds, shards that come
+// together, and the same trial elsewhere.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,26 +35,32 @@ TEST(Eval, a_replayed_trial_is_the_same_bit_for_bit_from_another_folder_too) {
   fs::copy(kHandsel, root / "bin/handsel");
   fs::copy(HANDSEL_SOURCE_DIR "/deploy", root / "deploy", fs::copy_options::recursive);
   fs::create_directories(root / "sim");
-  fs::copy(HANDSEL_SOURCE_DIR "/sim/scenarios", root / "sim/scenarios", fs::copy_options::recursive);
+  fs::copy(HANDSEL_SOURCE_DIR "/sim/scenarios", root / "sim/scenarios",
+           fs::copy_options::recursive);
   const std::string arguments = " eval --scenario give_mug --replay 5 --timeout 5";
-  const Outcome here = shell(kHandsel + arguments), there = shell((root / "bin/handsel").string() + arguments);
+  const Outcome here = shell(kHandsel + arguments),
+                there = shell((root / "bin/handsel").string() + arguments);
   const Json a = lines_of(here.out).at(0), b = lines_of(there.out).at(0);
   EXPECT_EQ(a["output_hash"], b["output_hash"]);
   EXPECT_EQ(a["hash"], b["hash"]);
   EXPECT_THAT(here.err, HasSubstr("hash of all outputs " + a["output_hash"].get<std::string>()));
   EXPECT_GT(a["events"].get<int>(), 10000);
-  const Json other = lines_of(shell(kHandsel + " eval --scenario give_mug --replay 6 --timeout 5").out).at(0);
+  const Json other =
+      lines_of(shell(kHandsel + " eval --scenario give_mug --replay 6 --timeout 5").out).at(0);
   EXPECT_NE(other["output_hash"], a["output_hash"]);
   const std::string file = (root / "trial.mcap").string();
-  EXPECT_EQ(lines_of(shell(kHandsel + arguments + " --record " + file).out).at(0)["output_hash"], a["output_hash"])
+  EXPECT_EQ(lines_of(shell(kHandsel + arguments + " --record " + file).out).at(0)["output_hash"],
+            a["output_hash"])
       << "who listens changes it";
   EXPECT_GT(fs::file_size(file), 1'000'000u);
 }
 
 TEST(Eval, conditions_share_their_seeds_and_come_in_a_drawn_order) {
   const TemporaryFolder folder;
-  const Outcome outcome = shell(kHandsel + " eval --scenario give_mug --trials 4 --seed 3 --timeout 0.3 --jobs 2 --participant p07 " +
-                                "--attention adaptive max off fixed:0.5 --report " + (folder.path() / "study").string());
+  const Outcome outcome = shell(
+      kHandsel +
+      " eval --scenario give_mug --trials 4 --seed 3 --timeout 0.3 --jobs 2 --participant p07 " +
+      "--attention adaptive max off fixed:0.5 --report " + (folder.path() / "study").string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   std::map<int, std::set<std::string>> conditions;
   std::set<std::string> first;
@@ -78,15 +85,22 @@ TEST(Eval, conditions_share_their_seeds_and_come_in_a_drawn_order) {
 
 TEST(Eval, shards_come_together_as_if_they_had_been_one) {
   const TemporaryFolder folder;
-  const std::string trials = kHandsel + " eval --scenario give_mug --trials 3 --seed 3 --timeout 0.3 --attention adaptive max ";
+  const std::string trials =
+      kHandsel +
+      " eval --scenario give_mug --trials 3 --seed 3 --timeout 0.3 --attention adaptive max ";
   std::string files;
   for (const char* shard : {"0/2", "1/2"}) {
     const std::string file = (folder.path() / (std::string(1, shard[0]) + ".jsonl")).string();
     EXPECT_EQ(shell(trials + "--shard " + shard + " --out " + file).exit_code, 0);
     files += " " + file;
   }
-  EXPECT_EQ(shell(trials + "--out /dev/null --report " + (folder.path() / "whole").string()).exit_code, 0);
-  EXPECT_EQ(shell(kHandsel + " eval --from" + files + " --report " + (folder.path() / "parts").string()).exit_code, 0);
+  EXPECT_EQ(
+      shell(trials + "--out /dev/null --report " + (folder.path() / "whole").string()).exit_code,
+      0);
+  EXPECT_EQ(
+      shell(kHandsel + " eval --from" + files + " --report " + (folder.path() / "parts").string())
+          .exit_code,
+      0);
   const auto looks = [&](const char* name) {
     std::ostringstream text;
     text << std::ifstream(folder.path() / name / "comparison.jsonl").rdbuf();

@@ -1,5 +1,5 @@
-// The person who is to be given something steps aside while the arm carries it to them: the running path is led to another exchange point,
-// without a stop. The whole system in lock-step.
+// The person who is to be given something steps aside while the arm carries it to them: the running
+// path is led to another exchange point, without a stop. The whole system in lock-step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,11 +49,16 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
   HumanState people;
   ActiveTrajectory active;
   path_planner::Random random(seed);
-  const auto noise = [&random] { return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal())); };
-  double walked = 0, carrying = 0, still = 0;  // carrying: since the first path to the person has begun to run
+  const auto noise = [&random] {
+    return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal()));
+  };
+  double walked = 0, carrying = 0,
+         still = 0;  // carrying: since the first path to the person has begun to run
   std::uint64_t first_path = 0;
   Vector3 first_point = Vector3::Zero();
-  const auto body = [&] { return standing_body({1.4, -0.05 + walked, 0}, M_PI - 0.5 * walked, 1.72); };
+  const auto body = [&] {
+    return standing_body({1.4, -0.05 + walked, 0}, M_PI - 0.5 * walked, 1.72);
+  };
   seat.subscribe<HumanState>([&](const HumanState& s, const Receipt&) { people = s; });
   seat.subscribe<ActionStatus>([&](const ActionStatus& s, const Receipt&) { action = s; });
   seat.subscribe<ActiveTrajectory>([&](const ActiveTrajectory& a, const Receipt&) { active = a; });
@@ -80,25 +85,31 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
     seen.coverage = {{-2, -3, 0}, {4, 3, 2.5}};
     ObservedPerson person;
     person.body = "anna";
-    for (const BodyJoint& joint : body()) person.joints.push_back({joint.name, joint.position + noise(), 1.0});
+    for (const BodyJoint& joint : body())
+      person.joints.push_back({joint.name, joint.position + noise(), 1.0});
     person.has_gaze = true;
     person.gaze_origin = person.joints.front().position;
     person.gaze_direction = Vector3(-1, -0.2 * walked, -0.2).normalized();
     seen.people.push_back(person);
     body_out->publish(seen);
   });
-  seat.after(from_seconds(3.0), [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug"}); });
+  seat.after(from_seconds(3.0), [&](TimePoint) {
+    goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug"});
+  });
   const auto ended = [&] {
     const auto& tasks = system.snapshot().tasks;
-    return action.phase == ActionPhase::offer || (tasks.count(1) != 0 && tasks.at(1).state == TaskState::failed);
+    return action.phase == ActionPhase::offer ||
+           (tasks.count(1) != 0 && tasks.at(1).state == TaskState::failed);
   };
   system.network().run_until(ended, TimePoint(from_seconds(80)));
   out.offered = action.phase == ActionPhase::offer;
   out.moved = (action.exchange_point - first_point).norm();
   const auto& tasks = system.snapshot().tasks;
-  if (!out.offered) out.ended = phase_text(action) + ": " + (tasks.count(1) != 0 ? tasks.at(1).reason : "no task");
+  if (!out.offered)
+    out.ended = phase_text(action) + ": " + (tasks.count(1) != 0 ? tasks.at(1).reason : "no task");
   out.reached = people.people.size() == 1 && within_reach(people.people[0], action.exchange_point);
-  out.aside = std::abs(action.exchange_point.y() - body()[static_cast<std::size_t>(body_joint_index("torso"))].position.y());
+  out.aside = std::abs(action.exchange_point.y() -
+                       body()[static_cast<std::size_t>(body_joint_index("torso"))].position.y());
   return out;
 }
 
@@ -110,13 +121,17 @@ TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_s
   for (int k = 0; k < runs; ++k) {
     const auto seed = static_cast<std::uint64_t>(k + 1);
     const Carried run = carry(seed, 0.5, 0.0, folder.path().string());
-    std::printf("seed %d: offered %d %s, led %.2f m on, switches %d, stood for %.2f s, offered %.2f m aside, reached %d\n", k + 1,
-                run.offered, run.ended.c_str(), run.moved, run.switches, run.standing, run.aside, run.reached);
+    std::printf(
+        "seed %d: offered %d %s, led %.2f m on, switches %d, stood for %.2f s, offered %.2f m "
+        "aside, reached %d\n",
+        k + 1, run.offered, run.ended.c_str(), run.moved, run.switches, run.standing, run.aside,
+        run.reached);
     EXPECT_TRUE(run.offered) << run.ended;
     reached += run.reached;
     led_over += run.moved > 0.15 && run.switches > 0 && run.standing < 0.05;
   }
-  EXPECT_GE(reached, runs * 2 / 3) << "what is offered is out of the person's reach where they are now";
+  EXPECT_GE(reached, runs * 2 / 3)
+      << "what is offered is out of the person's reach where they are now";
   EXPECT_GE(led_over, runs * 2 / 3) << "the arm stopped, or went on to where the person was";
 }
 

@@ -1,5 +1,6 @@
-// People who differ, over real processes in real time: they give and take; and whatever process dies meanwhile, the task is finished or
-// given up in order. HANDSEL_RUNS: trials of each; HANDSEL_FIRST_SEED: of the first one.
+// People who differ, over real processes in real time: they give and take; and whatever process
+// dies meanwhile, the task is finished or given up in order. HANDSEL_RUNS: trials of each;
+// HANDSEL_FIRST_SEED: of the first one.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -44,28 +45,36 @@ struct Performance {
   std::string killed_in;  ///< phase of the action
 };
 
-Performance perform(const std::string& name, std::uint64_t seed, const std::optional<Death>& death) {
+Performance perform(const std::string& name, std::uint64_t seed,
+                    const std::optional<Death>& death) {
   config::Scenario scenario;
   load_text_proto(scenario_file(name), scenario);
   System system({.domain = kDomain, .scenario = name, .seed = seed, .web_port = 0});
   Session& session = system.session();
-  Performer performer(session.bus(), session.observer(), scenario, 0, [&] { return not_ready(session.snapshot()).empty(); });
+  Performer performer(session.bus(), session.observer(), scenario, 0,
+                      [&] { return not_ready(session.snapshot()).empty(); });
   Performance out;
   const auto ready = system.wait_ready(kReadyTimeout);
   if (!ready) return out;
-  ReportInputs inputs{.scenario = name, .robot = robot_of(system.options()), .seed = seed, .ready = to_seconds(*ready)};
+  ReportInputs inputs{.scenario = name,
+                      .robot = robot_of(system.options()),
+                      .seed = seed,
+                      .ready = to_seconds(*ready)};
   inputs.before = counters(session.snapshot());
   inputs.ground_truth_before = session.snapshot().ground_truth.sample;
   if (death) {
     system.wait(kPatience, [&] {
-      return performer.finished() || (performer.started() && session.bus().now() - performer.begin() > from_seconds(death->at));
+      return performer.finished() ||
+             (performer.started() &&
+              session.bus().now() - performer.begin() > from_seconds(death->at));
     });
     out.killed_in = phase_text(session.snapshot().action.sample);
     if (const pid_t pid = system.launcher().pid(death->process); pid > 0) ::kill(pid, SIGKILL);
   }
   out.over = system.wait(kPatience, [&] { return performer.finished(); });
   out.at_rest = system.wait(kRestPatience, [&] {
-    return !session.snapshot().ground_truth.sample.robot_moving && session.snapshot().action.sample.state != ActionState::running;
+    return !session.snapshot().ground_truth.sample.robot_moving &&
+           session.snapshot().action.sample.state != ActionState::running;
   });
   out.report = make_report(inputs, performer, session.observer());
   return out;
@@ -73,20 +82,23 @@ Performance perform(const std::string& name, std::uint64_t seed, const std::opti
 
 std::string told(const Json& report) {
   const Json& task = report["tasks"].back();
-  return (report["success"].get<bool>() ? "done" : "failed: " + report["failure"].get<std::string>()) + " in " +
-         std::to_string(task["duration_s"].get<double>()) + " s";
+  return (report["success"].get<bool>() ? "done"
+                                        : "failed: " + report["failure"].get<std::string>()) +
+         " in " + std::to_string(task["duration_s"].get<double>()) + " s";
 }
 
 void print_timeline(const Json& report) {
   for (const Json& event : report["timeline"])
-    std::printf("%9.3f s  %s\n", event["t_s"].get<double>(), event["event"].get<std::string>().c_str());
+    std::printf("%9.3f s  %s\n", event["t_s"].get<double>(),
+                event["event"].get<std::string>().c_str());
 }
 
 void expect_harmless(const Json& report, const std::string& what) {
   EXPECT_EQ(report["ssm_violations"], 0) << what;
   EXPECT_EQ(report["oracle"]["limit_violations"], 0) << what;
   EXPECT_FALSE(report["oracle"]["dropped"].get<bool>()) << what;
-  EXPECT_LE(report["oracle"]["commanders"].get<int>(), 2) << what << ": more than the controller and the one that took its place";
+  EXPECT_LE(report["oracle"]["commanders"].get<int>(), 2)
+      << what << ": more than the controller and the one that took its place";
 }
 
 class Exchanges : public testing::TestWithParam<const char*> {};
@@ -98,17 +110,24 @@ TEST_P(Exchanges, succeed_in_each_scenario) {
   for (std::uint64_t seed = first; seed < first + runs; ++seed) {
     const Performance trial = perform(GetParam(), seed, std::nullopt);
     ASSERT_TRUE(trial.over) << "seed " << seed;
-    const std::string what = std::string(GetParam()) + " seed " + std::to_string(seed) + ": " + told(trial.report);
+    const std::string what =
+        std::string(GetParam()) + " seed " + std::to_string(seed) + ": " + told(trial.report);
     std::printf("%s\n", what.c_str());
     std::fflush(stdout);
     done += trial.report["success"].get<bool>();
-    if (const Json& moved = trial.report["tasks"][0]["first_motion_s"]; moved.is_number()) first_motions.push_back(moved);
+    if (const Json& moved = trial.report["tasks"][0]["first_motion_s"]; moved.is_number())
+      first_motions.push_back(moved);
     expect_harmless(trial.report, what);
-    EXPECT_TRUE(trial.report["success"].get<bool>() || !trial.report["failure"].get<std::string>().empty()) << what;
+    EXPECT_TRUE(trial.report["success"].get<bool>() ||
+                !trial.report["failure"].get<std::string>().empty())
+        << what;
   }
-  std::printf("%s: %llu of %llu\n", GetParam(), static_cast<unsigned long long>(done), static_cast<unsigned long long>(runs));
+  std::printf("%s: %llu of %llu\n", GetParam(), static_cast<unsigned long long>(done),
+              static_cast<unsigned long long>(runs));
   std::sort(first_motions.begin(), first_motions.end());
-  if (!first_motions.empty()) std::printf("first motion after the goal: median %.2f s\n", first_motions[first_motions.size() / 2]);
+  if (!first_motions.empty())
+    std::printf("first motion after the goal: median %.2f s\n",
+                first_motions[first_motions.size() / 2]);
   EXPECT_GE(static_cast<double>(done), kSuccess * static_cast<double>(runs));
 }
 
@@ -125,10 +144,13 @@ TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {
     std::mt19937_64 random(seed);
     const bool gives = seed % 2 == 0;
     const char* scenario = gives ? "give_mug" : "receive_mug";
-    const Death death{mortal[random() % mortal.size()], std::uniform_real_distribution<double>(0, gives ? kGiving : kReceiving)(random)};
+    const Death death{
+        mortal[random() % mortal.size()],
+        std::uniform_real_distribution<double>(0, gives ? kGiving : kReceiving)(random)};
     const Performance trial = perform(scenario, seed, death);
-    std::string what = std::string(scenario) + " seed " + std::to_string(seed) + ": " + death.process + " dies after " +
-                       std::to_string(death.at) + " s in \"" + trial.killed_in + "\"";
+    std::string what = std::string(scenario) + " seed " + std::to_string(seed) + ": " +
+                       death.process + " dies after " + std::to_string(death.at) + " s in \"" +
+                       trial.killed_in + "\"";
     EXPECT_TRUE(trial.over) << what;
     if (!trial.over) continue;
     what += ": " + told(trial.report);
@@ -139,10 +161,14 @@ TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {
     EXPECT_TRUE(trial.at_rest) << what;
     if (!trial.at_rest) print_timeline(trial.report);
     const std::string state = trial.report["tasks"].back()["state"];
-    EXPECT_TRUE(state == "succeeded" || state == "failed" || state == "refused") << what << ", left " << state;
-    EXPECT_TRUE(trial.report["success"].get<bool>() || !trial.report["failure"].get<std::string>().empty()) << what;
+    EXPECT_TRUE(state == "succeeded" || state == "failed" || state == "refused")
+        << what << ", left " << state;
+    EXPECT_TRUE(trial.report["success"].get<bool>() ||
+                !trial.report["failure"].get<std::string>().empty())
+        << what;
   }
-  std::printf("%llu of %llu finished, the others given up\n", static_cast<unsigned long long>(done), static_cast<unsigned long long>(runs));
+  std::printf("%llu of %llu finished, the others given up\n", static_cast<unsigned long long>(done),
+              static_cast<unsigned long long>(runs));
 }
 
 }  // namespace

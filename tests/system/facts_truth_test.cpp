@@ -1,4 +1,5 @@
-// The facts of simulated handovers beside the simulator's truth, in lock-step. HANDSEL_RUNS: how many seeds (3).
+// The facts of simulated handovers beside the simulator's truth, in lock-step. HANDSEL_RUNS: how
+// many seeds (3).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +30,8 @@ class Truth {
  public:
   void see(const GroundTruth& ground_truth) {
     const double t = ground_truth.sim_time;
-    if (ground_truth.carrier == "robot" && ground_truth.lifted > kOffTheTable && !steps.lifted) steps.lifted = t;
+    if (ground_truth.carrier == "robot" && ground_truth.lifted > kOffTheTable && !steps.lifted)
+      steps.lifted = t;
     if (ground_truth.carrier == "both" && !steps.taken) steps.taken = t;
     if (ground_truth.carrier == "human" && steps.lifted && !steps.released) steps.released = t;
     const auto place = [&](const char* joint) {
@@ -39,7 +41,8 @@ class Truth {
       const Vector3 object = ground_truth.T_world_object.translation();
       for (const char* hand : {"l_hand", "r_hand"}) {
         const Vector3 from_torso = place(hand) - place("torso");
-        const Vector3 velocity = last_ > 0 ? Vector3((from_torso - before_[hand]) / (t - last_)) : Vector3(Vector3::Zero());
+        const Vector3 velocity = last_ > 0 ? Vector3((from_torso - before_[hand]) / (t - last_))
+                                           : Vector3(Vector3::Zero());
         before_[hand] = from_torso;
         const double toward = velocity.dot((object - place(hand)).normalized());
         if (toward > 0.12 && steps.lifted && !steps.reaches) steps.reaches = t;
@@ -61,11 +64,14 @@ class Told {
     std::map<std::string, int> now;
     for (const Fact& fact : facts.facts) {
       const bool of_object = fact.subject == object || fact.object == object;
-      if (of_object && ++now[std::string(name(fact.kind)) + " " + fact.subject + " " + fact.object] > 1) ++doubled;
+      if (of_object &&
+          ++now[std::string(name(fact.kind)) + " " + fact.subject + " " + fact.object] > 1)
+        ++doubled;
       if (!of_object) continue;
       if (fact.kind == FactKind::held_by_robot && !steps.lifted) steps.lifted = t;
       if (fact.kind == FactKind::reaching && steps.lifted && !steps.reaches) steps.reaches = t;
-      if (fact.kind == FactKind::released && fact.object == kRobotName && !steps.released) steps.released = t;
+      if (fact.kind == FactKind::released && fact.object == kRobotName && !steps.released)
+        steps.released = t;
     }
     for (const auto& [fact, count] : now)
       if (!before_.count(fact)) ++begun[fact];
@@ -86,7 +92,8 @@ class Expected {
     for (const Person& person : people.people)
       for (const HandPrediction& hand : person.hands) {
         const auto joint = static_cast<std::size_t>(body_joint_index(hand.joint));
-        for (const HandAhead& ahead : hand.ahead) open_.push_back({t + ahead.time, joint, ahead, person.joints.at(joint)});
+        for (const HandAhead& ahead : hand.ahead)
+          open_.push_back({t + ahead.time, joint, ahead, person.joints.at(joint)});
       }
   }
   void see(const GroundTruth& ground_truth) {
@@ -96,7 +103,8 @@ class Expected {
       if (one.due > t) return false;
       if (one.due < before_ || last_.size() != ground_truth.person.size()) return true;
       const double share = (one.due - before_) / std::max(1e-9, t - before_);
-      const Vector3 is = (1 - share) * last_[one.joint].position + share * ground_truth.person[one.joint].position;
+      const Vector3 is =
+          (1 - share) * last_[one.joint].position + share * ground_truth.person[one.joint].position;
       const double error = (one.ahead.position - is).norm();
       Sum& sum = sums_[static_cast<int>(std::lround(10 * one.ahead.time))];
       ++sum.count;
@@ -113,8 +121,10 @@ class Expected {
     ASSERT_FALSE(sums_.empty());
     for (const auto& [tenths, sum] : sums_) {
       const auto rms = [&](double squares) { return 1e3 * std::sqrt(squares / sum.count); };
-      std::printf("hands %.1f s ahead: %.0f mm, stays %.0f, goes on %.0f; in the ball %.1f %% of %d\n", 0.1 * tenths, rms(sum.ours),
-                  rms(sum.stays), rms(sum.goes_on), 100.0 * sum.inside / sum.count, sum.count);
+      std::printf(
+          "hands %.1f s ahead: %.0f mm, stays %.0f, goes on %.0f; in the ball %.1f %% of %d\n",
+          0.1 * tenths, rms(sum.ours), rms(sum.stays), rms(sum.goes_on),
+          100.0 * sum.inside / sum.count, sum.count);
       EXPECT_GE(sum.inside, 0.95 * sum.count) << tenths;
       EXPECT_LT(sum.ours, sum.stays) << tenths;
       EXPECT_LT(sum.ours, 1.1 * sum.goes_on) << tenths;
@@ -160,18 +170,23 @@ TEST(SimulatedHandovers, facts_agree_with_the_truth) {
       hands.see(sample);
       object = sample.object;
     });
-    system.bus().subscribe<Facts>([&](const Facts& facts, const Receipt&) { told.hear(facts, sim_time, object); });
-    system.bus().subscribe<HumanState>(
-        [&](const HumanState& people, const Receipt&) { hands.hear(people, sim_time + to_seconds(system.now() - sim_at)); });
+    system.bus().subscribe<Facts>(
+        [&](const Facts& facts, const Receipt&) { told.hear(facts, sim_time, object); });
+    system.bus().subscribe<HumanState>([&](const HumanState& people, const Receipt&) {
+      hands.hear(people, sim_time + to_seconds(system.now() - sim_at));
+    });
     bool ready = false;
-    Performer performer(system.bus(), system.observer(), scenario, 0,
-                        [&] { return ready = ready || not_ready(system.snapshot(), false).empty(); });
-    system.network().run_until([&] { return performer.finished(); }, system.now() + std::chrono::minutes(3));
+    Performer performer(system.bus(), system.observer(), scenario, 0, [&] {
+      return ready = ready || not_ready(system.snapshot(), false).empty();
+    });
+    system.network().run_until([&] { return performer.finished(); },
+                               system.now() + std::chrono::minutes(3));
     ASSERT_TRUE(performer.finished());
     if (!performer.succeeded()) continue;
     ++handed_over;
 
-    const auto compare = [&](const char* what, const std::optional<double>& is, const std::optional<double>& said) {
+    const auto compare = [&](const char* what, const std::optional<double>& is,
+                             const std::optional<double>& said) {
       ASSERT_TRUE(is) << what << " did not happen";
       ASSERT_TRUE(said) << what << " was not told";
       EXPECT_NEAR(*said, *is, kAgree + kRounding) << what;

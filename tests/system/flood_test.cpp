@@ -1,5 +1,6 @@
-// A flood of objects, people, goals and requests under ever-new names against SPARK, the supervisor and two planners in one process: the
-// nearest stay, the rest is counted, memory is flat, and what a person asks for is still done.
+// A flood of objects, people, goals and requests under ever-new names against SPARK, the supervisor
+// and two planners in one process: the nearest stay, the rest is counted, memory is flat, and what
+// a person asks for is still done.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -32,10 +33,11 @@ constexpr double kFlood = 4;                // [s] with ever-new names
 std::filesystem::path crowded_place(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "crowded.txtpb";
   std::ofstream out(file);
-  out << std::ifstream(std::filesystem::path(HANDSEL_SOURCE_DIR) / "sim/scenarios/give_mug.txtpb").rdbuf();
+  out << std::ifstream(std::filesystem::path(HANDSEL_SOURCE_DIR) / "sim/scenarios/give_mug.txtpb")
+             .rdbuf();
   for (int i = 0; i < kBoxes; ++i)
-    out << "boxes { id: \"shelf" << i << "\" pose { xyz { x: " << -4.0 - 0.5 * (i % 20) << " y: " << -4.0 + 0.5 * (i / 20)
-        << " z: 0.5 } } size { x: 0.3 y: 0.3 z: 1 } }\n";
+    out << "boxes { id: \"shelf" << i << "\" pose { xyz { x: " << -4.0 - 0.5 * (i % 20)
+        << " y: " << -4.0 + 0.5 * (i / 20) << " z: 0.5 } } size { x: 0.3 y: 0.3 z: 1 } }\n";
   return file;
 }
 
@@ -74,8 +76,12 @@ class Stranger {
     things.source = "stranger";
     for (int i = 0; i < kObjects; ++i) {
       const Vector3 where(-5.0 - 0.2 * (i % 25), 4.0 + 0.2 * (i / 25), 0.8);
-      things.objects.push_back(
-          {"thing" + std::to_string(i) + generation, "", make_pose(where), 0.9, {}, {PrimitiveKind::box, {0.05, 0.05, 0.05}}});
+      things.objects.push_back({"thing" + std::to_string(i) + generation,
+                                "",
+                                make_pose(where),
+                                0.9,
+                                {},
+                                {PrimitiveKind::box, {0.05, 0.05, 0.05}}});
     }
     HumanObservation people;
     people.source = "stranger";
@@ -83,7 +89,8 @@ class Stranger {
       ObservedPerson person;
       person.body = "passer" + std::to_string(i) + generation;
       const Vector3 feet(-9.0 - 0.9 * (i % 14), -6 + 0.9 * (i / 14) + 1e-3 * (samples_ % 3), 0);
-      for (const BodyJoint& joint : standing_body(feet, 0, 1.7)) person.joints.push_back({joint.name, joint.position, 1});
+      for (const BodyJoint& joint : standing_body(feet, 0, 1.7))
+        person.joints.push_back({joint.name, joint.position, 1});
       people.people.push_back(std::move(person));
     }
     ++samples_;
@@ -109,7 +116,8 @@ class Stranger {
       trajectory.id = path.id;
       trajectory.group = "arm";
       trajectory.start = path.start;
-      trajectory.nodes = {RobotModel::part(path.start, robot_.require_group("arm")), path.goals.front()};
+      trajectory.nodes = {RobotModel::part(path.start, robot_.require_group("arm")),
+                          path.goals.front()};
       trajectories_out_->publish(trajectory);
     }
   }
@@ -154,7 +162,8 @@ class Room {
     people.source = "kinect";
     people.coverage = {{-3, -3, -0.5}, {3, 3, 2.5}};
     people.people.push_back({"anna", {}, false});
-    for (const BodyJoint& joint : standing_body({1.4 + 1e-4 * (sequence_ % 3), -0.05, 0}, M_PI, 1.72))
+    for (const BodyJoint& joint :
+         standing_body({1.4 + 1e-4 * (sequence_ % 3), -0.05, 0}, M_PI, 1.72))
       people.people[0].joints.push_back({joint.name, joint.position, 1});
     people_out_->publish(people);
     ObjectObservation things;
@@ -179,7 +188,8 @@ class Flood : public ::testing::Test {
     spark_ = std::make_unique<spark::Node>(network_.add("spark"), context_);
     supervisor_ = std::make_unique<supervisor::Node>(network_.add("supervisor"), context_);
     path_planner_ = std::make_unique<path_planner::Node>(network_.add("path_planner"), context_);
-    trajectory_planner_ = std::make_unique<trajectory_planner::Node>(network_.add("trajectory_planner"), context_);
+    trajectory_planner_ =
+        std::make_unique<trajectory_planner::Node>(network_.add("trajectory_planner"), context_);
     room_ = std::make_unique<Room>(network_.add("sim"), context_);
     Bus& seat = network_.add("handsel");
     goals_out_ = seat.advertise<TaskGoal>();
@@ -197,7 +207,8 @@ class Flood : public ::testing::Test {
     });
     seat.subscribe<ComponentHealth>([this](const ComponentHealth& m, const Receipt&) {
       health_[m.component] = m;
-      if (m.reason.find("refused to send") != std::string::npos) refused_ = m.component + ": " + m.reason;
+      if (m.reason.find("refused to send") != std::string::npos)
+        refused_ = m.component + ": " + m.reason;
     });
     network_.run_for(milliseconds(500));
   }
@@ -248,14 +259,16 @@ void Flood::expect_the_nearest_and_the_counts() {
   EXPECT_EQ(facts_.facts.size(), 256u);
   EXPECT_GT(facts_.left_out, 0u);
   for (const auto& [component, what] :
-       {std::pair{"spark", "people:"}, std::pair{"spark", "bodies of an observation:"}, std::pair{"spark", "objects:"},
-        std::pair{"spark", "objects remembered:"}, std::pair{"spark", "boxes:"}, std::pair{"spark", "facts:"},
+       {std::pair{"spark", "people:"}, std::pair{"spark", "bodies of an observation:"},
+        std::pair{"spark", "objects:"}, std::pair{"spark", "objects remembered:"},
+        std::pair{"spark", "boxes:"}, std::pair{"spark", "facts:"},
         std::pair{"supervisor", "task goals:"}, std::pair{"path_planner", "path requests:"},
         std::pair{"trajectory_planner", "trajectory requests:"}})
     EXPECT_GT(left_out(component, what), 0u) << component << ", " << what;
   EXPECT_EQ(refused_, "");
   for (const auto& [component, health] : health_)
-    for (const TopicHealth& topic : health.topics) EXPECT_EQ(topic.rejected, 0u) << component << ", " << topic.topic;
+    for (const TopicHealth& topic : health.topics)
+      EXPECT_EQ(topic.rejected, 0u) << component << ", " << topic.topic;
 }
 
 TEST_F(Flood, the_nearest_stay_the_rest_is_counted_and_memory_is_flat) {
@@ -266,8 +279,8 @@ TEST_F(Flood, the_nearest_stay_the_rest_is_counted_and_memory_is_flat) {
   network_.run_for(from_seconds(kFlood / 2));
   const double growth = heap_in_use() - before;
   std::printf("%llu names and %llu requests of each kind more: the heap grew by %.0f kB\n",
-              static_cast<unsigned long long>(stranger.names() - names), static_cast<unsigned long long>(stranger.requests() - requests),
-              growth / 1e3);
+              static_cast<unsigned long long>(stranger.names() - names),
+              static_cast<unsigned long long>(stranger.requests() - requests), growth / 1e3);
   EXPECT_EQ(stranger.requests(), kRequests);
   EXPECT_GE(stranger.names() - names, 20000u);
   EXPECT_LT(growth, 0.5e6) << "about 20 bytes a name";
@@ -298,7 +311,8 @@ TEST_F(Flood, a_person_pauses_in_the_flood_and_asks_for_work_after_it) {
   request.goals = {moved(*context_.robot)};
   request.time_limit = 5;
   paths_out_->publish(request);
-  EXPECT_TRUE(network_.run_until([&] { return reply_.id.client == kClient; }, network_.now() + std::chrono::seconds(10)));
+  EXPECT_TRUE(network_.run_until([&] { return reply_.id.client == kClient; },
+                                 network_.now() + std::chrono::seconds(10)));
   EXPECT_TRUE(reply_.solved) << reply_.reason;
 
   TaskGoal give;

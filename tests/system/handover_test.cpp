@@ -1,5 +1,5 @@
-// The main job, judged by the simulator's oracle: over DDS and in lock-step, with people who take, who never move, who were recorded, and
-// a robot that never lets go.
+// The main job, judged by the simulator's oracle: over DDS and in lock-step, with people who take,
+// who never move, who were recorded, and a robot that never lets go.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -26,14 +26,16 @@ std::vector<Json> in_lockstep(const std::string& scenario, int seeds) {
     trials.push_back({context, {.scenario = scenario}});
   }
   std::vector<Json> lines;
-  EXPECT_TRUE(run_trials(trials, 2, [&](const Json& line) { lines.push_back(line); })) << "a trial crashed";
+  EXPECT_TRUE(run_trials(trials, 2, [&](const Json& line) { lines.push_back(line); }))
+      << "a trial crashed";
   return lines;
 }
 
 /// `timeout` [s]; empty: the scenario's.
 Json over_dds(const std::string& scenario, int seed, const std::string& timeout = {}) {
-  const test::Outcome outcome = test::shell(std::string(HANDSEL_COMMAND) + " run --headless --port 0 --domain 38 --scenario " + scenario +
-                                            " --seed " + std::to_string(seed) + (timeout.empty() ? "" : " --timeout " + timeout));
+  const test::Outcome outcome = test::shell(
+      std::string(HANDSEL_COMMAND) + " run --headless --port 0 --domain 38 --scenario " + scenario +
+      " --seed " + std::to_string(seed) + (timeout.empty() ? "" : " --timeout " + timeout));
   const Json report = Json::parse(outcome.out, nullptr, false);
   if (report.is_discarded()) {
     ADD_FAILURE() << "no report; exit code " << outcome.exit_code << ": " << outcome.err;
@@ -46,7 +48,8 @@ Json over_dds(const std::string& scenario, int seed, const std::string& timeout 
 void expect_bounded(const Json& line, const std::string& what) {
   ASSERT_TRUE(line.contains("limit_ratio")) << what << ": " << line.dump();
   for (const char* derivative : {"v", "a", "j"})
-    EXPECT_LE(line["limit_ratio"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
+    EXPECT_LE(line["limit_ratio"][derivative].get<double>(), 1.0 + 1e-6)
+        << what << " " << derivative;
   EXPECT_EQ(line["ssm_violations"], 0) << what;
 }
 
@@ -56,7 +59,8 @@ int successes(const std::vector<Json>& lines) {
     if (line["success"].get<bool>()) {
       ++count;
     } else {
-      std::printf("seed %s: %s %s\n", line["seed"].dump().c_str(), line["failure"].dump().c_str(), line["reason"].dump().c_str());
+      std::printf("seed %s: %s %s\n", line["seed"].dump().c_str(), line["failure"].dump().c_str(),
+                  line["reason"].dump().c_str());
     }
   }
   return count;
@@ -72,7 +76,8 @@ TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
     const std::string what = "seed " + std::to_string(seed);
     const bool success = report["success"];
     std::printf("%s: %s, lock-step %s %s\n", what.c_str(), success ? "done" : "failed",
-                lockstep[static_cast<std::size_t>(seed - 1)]["success"].dump().c_str(), report["failure"].dump().c_str());
+                lockstep[static_cast<std::size_t>(seed - 1)]["success"].dump().c_str(),
+                report["failure"].dump().c_str());
     done += success;
     agreed += success == lockstep[static_cast<std::size_t>(seed - 1)]["success"].get<bool>();
     if (!report.contains("oracle")) continue;
@@ -105,21 +110,24 @@ TEST(Mutants, fail_with_a_reason) {
   }
 }
 
-/// Long enough for a person who takes it: the mug is lifted and held out, and nobody else's failure passes for the mutant's.
+/// Long enough for a person who takes it: the mug is lifted and held out, and nobody else's failure
+/// passes for the mutant's.
 TEST(Handover, mutants_fail_over_dds_too) {
   for (const char* scenario : kMutants) {
     const Json report = over_dds(scenario, 1, "25");
     const std::string what = std::string(scenario) + " over DDS";
     expect_failure(report, what);
     if (report.contains("oracle")) {
-      EXPECT_GE(report["oracle"]["max_lifted_m"].get<double>(), 0.10) << what << ": " << report["failure"];
+      EXPECT_GE(report["oracle"]["max_lifted_m"].get<double>(), 0.10)
+          << what << ": " << report["failure"];
     }
   }
 }
 
 TEST(Recorded, people_take_it_too) {
   const char* data = std::getenv("HANDSEL_DATA");
-  if (!data || !std::filesystem::is_directory(std::filesystem::path(data) / "motion/kth_handover")) {
+  if (!data ||
+      !std::filesystem::is_directory(std::filesystem::path(data) / "motion/kth_handover")) {
     GTEST_SKIP() << "HANDSEL_DATA names no folder with motion/kth_handover";
   }
   const std::vector<Json> lines = in_lockstep("give_mug_recorded", 10);

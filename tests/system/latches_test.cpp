@@ -1,7 +1,9 @@
-// What a person, a fault or a stop of the robot has halted stays halted whichever process dies, over real processes: the arm is latched in
-// the middle of a motion, a process is killed, it comes back, and nothing moves until a person says so; then it moves.
-// Without HANDSEL_RUNS: one death for each latch and the processes that keep it. HANDSEL_RUNS=n: every process n times for each latch, at
-// random moments; HANDSEL_FIRST_SEED: of the first; HANDSEL_LATCH, HANDSEL_PROCESS: only these (names separated by commas).
+// What a person, a fault or a stop of the robot has halted stays halted whichever process dies,
+// over real processes: the arm is latched in the middle of a motion, a process is killed, it comes
+// back, and nothing moves until a person says so; then it moves. Without HANDSEL_RUNS: one death
+// for each latch and the processes that keep it. HANDSEL_RUNS=n: every process n times for each
+// latch, at random moments; HANDSEL_FIRST_SEED: of the first; HANDSEL_LATCH, HANDSEL_PROCESS: only
+// these (names separated by commas).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -28,7 +30,8 @@ constexpr double kRest = 5e-4;  // [rad] the arm stands: 0.000
 constexpr double kTenth = 0.1;  // of the speed
 constexpr Duration kMoves = std::chrono::seconds(20);
 constexpr Duration kBack = std::chrono::seconds(10);
-constexpr Duration kWatched = std::chrono::milliseconds(2000);  // after the process is back: it resumed after 1.3 s when latches died
+constexpr Duration kWatched = std::chrono::milliseconds(
+    2000);  // after the process is back: it resumed after 1.3 s when latches died
 
 enum class Latch { pause, fault, protective_stop, override_speed };
 constexpr const char* kLatchNames[] = {"pause", "fault", "protective_stop", "override"};
@@ -75,7 +78,8 @@ class LatchesOverDds : public testing::Test {
           return s.wait(from_seconds(3), [&] { return s.safety().paused && s.answered(); });
         case Latch::override_speed:
           s.say(TaskKind::speed, kTenth);
-          return s.wait(from_seconds(3), [&] { return s.safety().override_factor == kTenth && s.answered(); });
+          return s.wait(from_seconds(3),
+                        [&] { return s.safety().override_factor == kTenth && s.answered(); });
         case Latch::protective_stop:
           s.stop_robot("protective");
           return s.wait(from_seconds(3), [&] { return s.safety().awaits_person; });
@@ -106,14 +110,19 @@ class LatchesOverDds : public testing::Test {
   }
 
   void release(Latch latch) {
-    busy_->say(latch == Latch::override_speed ? TaskKind::speed : latch == Latch::fault ? TaskKind::acknowledge : TaskKind::resume, 1.0);
+    busy_->say(latch == Latch::override_speed ? TaskKind::speed
+               : latch == Latch::fault        ? TaskKind::acknowledge
+                                              : TaskKind::resume,
+               1.0);
   }
 
   void die(const Death& death) {
     BusySystem& s = *busy_;
-    const std::string what = std::string(name(death.latch)) + ", then kill -9 " + death.process + ", seed " + std::to_string(death.seed);
+    const std::string what = std::string(name(death.latch)) + ", then kill -9 " + death.process +
+                             ", seed " + std::to_string(death.seed);
     std::mt19937_64 random(death.seed);
-    ASSERT_TRUE(latch(death.latch, random)) << what << ": " << s.safety().reason << "\n" << s.timeline();
+    ASSERT_TRUE(latch(death.latch, random)) << what << ": " << s.safety().reason << "\n"
+                                            << s.timeline();
     const bool halts = death.latch != Latch::override_speed;
     if (halts) {
       ASSERT_TRUE(s.wait(from_seconds(4), [&] { return !s.moves(); })) << what;
@@ -124,7 +133,9 @@ class LatchesOverDds : public testing::Test {
     const std::uint64_t before = s.incarnation(death.process);
     s.kill(death.process);
     const TimePoint killed = monotonic_now();
-    EXPECT_TRUE(s.wait(kBack, [&] { return s.incarnation(death.process) != before && s.is_ok(death.process); })) << what << ": not back";
+    EXPECT_TRUE(s.wait(
+        kBack, [&] { return s.incarnation(death.process) != before && s.is_ok(death.process); }))
+        << what << ": not back";
     const double back = to_seconds(monotonic_now() - killed);
     s.listen(kWatched);
     EXPECT_TRUE(stands(death.latch, s.safety())) << what << ": the latch is gone";
@@ -134,12 +145,16 @@ class LatchesOverDds : public testing::Test {
       EXPECT_LE(s.fastest(), kTenth + 1e-6) << what << ": faster than the override";
     const double moved = s.deviation(), fastest = s.fastest();
     release(death.latch);
-    EXPECT_TRUE(s.wait(from_seconds(5), [&] { return !stands(death.latch, s.safety()); })) << what << ": a person's word was not heard";
+    EXPECT_TRUE(s.wait(from_seconds(5), [&] { return !stands(death.latch, s.safety()); }))
+        << what << ": a person's word was not heard";
     s.mark();
-    EXPECT_TRUE(s.wait(kMoves, [&] { return s.deviation() > 0.02; })) << what << ": it does not move again: " << s.safety().reason << "\n"
-                                                                      << s.timeline();
+    EXPECT_TRUE(s.wait(kMoves, [&] { return s.deviation() > 0.02; }))
+        << what << ": it does not move again: " << s.safety().reason << "\n"
+        << s.timeline();
     std::printf("%-62s back %.1f s, %s\n", what.c_str(), back,
-                (halts ? "moved " + std::to_string(moved) + " rad" : "speed factor at most " + std::to_string(fastest)).c_str());
+                (halts ? "moved " + std::to_string(moved) + " rad"
+                       : "speed factor at most " + std::to_string(fastest))
+                    .c_str());
     std::fflush(stdout);
   }
 
@@ -155,11 +170,13 @@ class LatchesOverDds : public testing::Test {
               {Latch::override_speed, "supervisor", seed + 5}};
     std::vector<Death> out;
     for (std::uint64_t run = 0; run < std::stoull(runs); ++run)
-      for (const Latch latch : {Latch::pause, Latch::fault, Latch::protective_stop, Latch::override_speed})
+      for (const Latch latch :
+           {Latch::pause, Latch::fault, Latch::protective_stop, Latch::override_speed})
         for (const std::string process : kProcesses) {
           ++seed;
           // The simulator is the world: with another one the arm stands elsewhere.
-          if (process != "sim" && named(environment("HANDSEL_LATCH"), name(latch)) && named(environment("HANDSEL_PROCESS"), process))
+          if (process != "sim" && named(environment("HANDSEL_LATCH"), name(latch)) &&
+              named(environment("HANDSEL_PROCESS"), process))
             out.push_back({latch, process, seed});
         }
     return out;
@@ -188,13 +205,16 @@ TEST(KilledSystem, leaves_the_pause_to_the_next_one_and_an_orderly_end_does_not)
   setenv("HANDSEL_STATE", folder.path().c_str(), 1);
   const std::string domain = std::to_string(kDomain + 1), of_domain = " --domain " + domain;
   const auto paused = [&] {
-    return test::shell(std::string(HANDSEL_COMMAND) + " status --json" + of_domain).out.find("\"paused\":true") != std::string::npos;
+    return test::shell(std::string(HANDSEL_COMMAND) + " status --json" + of_domain)
+               .out.find("\"paused\":true") != std::string::npos;
   };
-  const std::vector<std::string> up{HANDSEL_COMMAND, "up", "--headless", "--port", "0", "--scenario", "idle", "--domain", domain};
+  const std::vector<std::string> up{HANDSEL_COMMAND, "up",   "--headless", "--port", "0",
+                                    "--scenario",    "idle", "--domain",   domain};
   {
     test::Background first(up);
     ASSERT_TRUE(first.wait_for("ready after")) << first.said();
-    const test::Outcome pause = test::shell(std::string(HANDSEL_COMMAND) + " task pause" + of_domain);
+    const test::Outcome pause =
+        test::shell(std::string(HANDSEL_COMMAND) + " task pause" + of_domain);
     ASSERT_EQ(pause.exit_code, 0) << pause.out << pause.err;
     EXPECT_TRUE(paused());
     first.send(SIGKILL);
@@ -203,7 +223,10 @@ TEST(KilledSystem, leaves_the_pause_to_the_next_one_and_an_orderly_end_does_not)
   {
     test::Background second(up);
     ASSERT_TRUE(second.wait_for("ready after")) << second.said();
-    EXPECT_THAT(second.said(), HasSubstr("did not end in order; still in force: paused by a person (`handsel task resume`)"));
+    EXPECT_THAT(
+        second.said(),
+        HasSubstr(
+            "did not end in order; still in force: paused by a person (`handsel task resume`)"));
     EXPECT_TRUE(paused());
     EXPECT_EQ(second.interrupt(), 0);
   }

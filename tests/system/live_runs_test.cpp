@@ -1,6 +1,7 @@
-// Live runs in lock-step: the arm is on its way when a person walks up and reaches into it. The whole system; judged from the simulator's
-// truth by an exact collision check of its own. HANDSEL_RUNS: how many (seeds 1 ...), HANDSEL_FIRST: the first seed, HANDSEL_LIVE_PERIOD:
-// another live_period (0: without, for comparison; what is asked of live paths then fails).
+// Live runs in lock-step: the arm is on its way when a person walks up and reaches into it. The
+// whole system; judged from the simulator's truth by an exact collision check of its own.
+// HANDSEL_RUNS: how many (seeds 1 ...), HANDSEL_FIRST: the first seed, HANDSEL_LIVE_PERIOD: another
+// live_period (0: without, for comparison; what is asked of live paths then fails).
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -29,10 +30,12 @@ namespace {
 using Json = nlohmann::json;
 using path_planner::Random;
 
-constexpr double kKeepsOff = 0.12;  // nobody pushes a hand or their body nearer than this to the robot [m]
-constexpr double kLimit = 45;       // of one run [s]
+constexpr double kKeepsOff =
+    0.12;  // nobody pushes a hand or their body nearer than this to the robot [m]
+constexpr double kLimit = 45;  // of one run [s]
 
-/// Walks up, reaches out once, draws back and goes. Where they would come too near the robot they wait.
+/// Walks up, reaches out once, draws back and goes. Where they would come too near the robot they
+/// wait.
 class Visitor {
  public:
   /// Reaches for a place near `way`, where the robot's hand will come by.
@@ -61,17 +64,23 @@ class Visitor {
     const Vector3 way = to_ - from_, feet = from_ + walked_ * way;
     std::vector<BodyJoint> joints = standing_body(feet, std::atan2(-feet.y(), -feet.x()), 1.72);
     const auto at = [&](const char* name) -> Vector3& {
-      return std::find_if(joints.begin(), joints.end(), [&](const BodyJoint& j) { return j.name == name; })->position;
+      return std::find_if(joints.begin(), joints.end(),
+                          [&](const BodyJoint& j) { return j.name == name; })
+          ->position;
     };
     const Vector3 shoulder = at("r_shoulder"), hanging = at("r_hand");
-    const double upper = (at("r_elbow") - shoulder).norm(), fore = (at("r_hand") - at("r_elbow")).norm();
+    const double upper = (at("r_elbow") - shoulder).norm(),
+                 fore = (at("r_hand") - at("r_elbow")).norm();
     Vector3 target = target_ - shoulder;
     target *= std::min(1.0, 0.97 * (upper + fore) / target.norm());
-    const Vector3 hand = hanging + reached_ * (shoulder + target - hanging), along = hand - shoulder;
-    const double d = std::clamp(along.norm(), 0.05, 0.999 * (upper + fore)), a = (upper * upper - fore * fore + d * d) / (2 * d);
+    const Vector3 hand = hanging + reached_ * (shoulder + target - hanging),
+                  along = hand - shoulder;
+    const double d = std::clamp(along.norm(), 0.05, 0.999 * (upper + fore)),
+                 a = (upper * upper - fore * fore + d * d) / (2 * d);
     Vector3 down = Vector3(0, 0, -1) + along * along.z() / along.squaredNorm();
     if (down.norm() < 1e-3) down = along.unitOrthogonal();
-    const Vector3 elbow = shoulder + along.normalized() * a + down.normalized() * std::sqrt(std::max(0.0, upper * upper - a * a));
+    const Vector3 elbow = shoulder + along.normalized() * a +
+                          down.normalized() * std::sqrt(std::max(0.0, upper * upper - a * a));
     const double palm = (at("r_hand") - at("r_wrist")).norm();
     at("r_elbow") = elbow;
     at("r_hand") = hand;
@@ -125,7 +134,8 @@ class Visitor {
 /// The exact check on what is true: people and posture as the simulator has them.
 class Oracle {
  public:
-  explicit Oracle(const NodeContext& context) : robot_(*context.robot), world_(robot_, context.objects) {
+  explicit Oracle(const NodeContext& context)
+      : robot_(*context.robot), world_(robot_, context.objects) {
     Scene scene;
     scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
     world_.set_scene(scene);
@@ -150,14 +160,19 @@ class Oracle {
   CollisionWorld world_;
 };
 
-/// What of the old path remains, against what is taken instead, for the people and the scene of that moment; with instances of our own.
+/// What of the old path remains, against what is taken instead, for the people and the scene of
+/// that moment; with instances of our own.
 class Judge {
  public:
   explicit Judge(const NodeContext& context)
-      : robot_(*context.robot), arm_(robot_.require_group("arm")), world_(robot_, context.objects), cost_(robot_, {}) {}
+      : robot_(*context.robot),
+        arm_(robot_.require_group("arm")),
+        world_(robot_, context.objects),
+        cost_(robot_, {}) {}
 
   /// Integral cost of what remains of the path, for the people now [rad].
-  double remaining(const PathRequest& request, const std::vector<Vector>& path, const HumanState& people) {
+  double remaining(const PathRequest& request, const std::vector<Vector>& path,
+                   const HumanState& people) {
     cost_.set_people(people);
     return integral(request.start, remainder(path, RobotModel::part(request.start, arm_), 0.5));
   }
@@ -165,8 +180,8 @@ class Judge {
     bool was_blocked{}, rejoins{};
     double before{}, after{};  // integral cost [rad]
   };
-  Change compare(const PathRequest& request, const std::vector<Vector>& old, const std::vector<Vector>& taken, const Scene& scene,
-                 const HumanState& people) {
+  Change compare(const PathRequest& request, const std::vector<Vector>& old,
+                 const std::vector<Vector>& taken, const Scene& scene, const HumanState& people) {
     world_.set_scene(scene);
     world_.set_people(people);
     world_.set_attachment(request.attachment, request.allowed_contacts);
@@ -178,21 +193,27 @@ class Judge {
     change.after = integral(request.start, taken);
     int samples = 0, near = 0;
     for (std::size_t i = 1; i < rest.size(); ++i) {
-      change.was_blocked = change.was_blocked || !world_.check_motion(all(request.start, rest[i - 1]), all(request.start, rest[i])).free;
-      for (int k = 1; k <= 10; ++k, ++samples) near += distance(taken, rest[i - 1] + 0.1 * k * (rest[i] - rest[i - 1])) < 0.1;
+      change.was_blocked =
+          change.was_blocked ||
+          !world_.check_motion(all(request.start, rest[i - 1]), all(request.start, rest[i])).free;
+      for (int k = 1; k <= 10; ++k, ++samples)
+        near += distance(taken, rest[i - 1] + 0.1 * k * (rest[i] - rest[i - 1])) < 0.1;
     }
     change.rejoins = near * 4 > samples;
     return change;
   }
 
  private:
-  Vector all(const Vector& start, const Vector& q) const { return RobotModel::with(start, arm_, q); }
+  Vector all(const Vector& start, const Vector& q) const {
+    return RobotModel::with(start, arm_, q);
+  }
   double integral(const Vector& start, const std::vector<Vector>& path) const {
     double sum = 0;
     for (std::size_t i = 1; i < path.size(); ++i) {
       const Vector step = path[i] - path[i - 1];
       const int pieces = std::max(1, static_cast<int>(std::ceil(step.norm() / 0.02)));
-      for (int k = 0; k < pieces; ++k) sum += cost_(all(start, path[i - 1] + step * ((k + 0.5) / pieces))) * step.norm() / pieces;
+      for (int k = 0; k < pieces; ++k)
+        sum += cost_(all(start, path[i - 1] + step * ((k + 0.5) / pieces))) * step.norm() / pieces;
     }
     return sum;
   }
@@ -200,7 +221,8 @@ class Judge {
     double least = 1e9;
     for (std::size_t i = 1; i < path.size(); ++i) {
       const Vector edge = path[i] - path[i - 1];
-      const double share = std::clamp((q - path[i - 1]).dot(edge) / std::max(1e-12, edge.squaredNorm()), 0.0, 1.0);
+      const double share =
+          std::clamp((q - path[i - 1]).dot(edge) / std::max(1e-12, edge.squaredNorm()), 0.0, 1.0);
       least = std::min(least, (path[i - 1] + share * edge - q).norm());
     }
     return least;
@@ -218,7 +240,8 @@ boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0
 people { id: "visitor" x: 3.0 y: 0.4 yaw: 3.1416 stature: 1.72 behaviour: EXTERNAL external: "body_tracker" }
 )";
   for (int axis : robot.require_group("arm").axes)
-    text += "start { key: \"" + robot.axes()[axis].name + "\" value: " + std::to_string(start[axis]) + " }\n";
+    text += "start { key: \"" + robot.axes()[axis].name +
+            "\" value: " + std::to_string(start[axis]) + " }\n";
   return text + "timeout: 60\n";
 }
 
@@ -233,10 +256,12 @@ Vector random_start(const NodeContext& context, Random& random) {
     Vector q = robot.rest_configuration();
     for (int axis : arm.axes) {
       const double margin = 0.1;
-      q[axis] = random.between(robot.axes()[axis].lower + margin, robot.axes()[axis].upper - margin);
+      q[axis] =
+          random.between(robot.axes()[axis].lower + margin, robot.axes()[axis].upper - margin);
     }
     const Vector3 tool = robot.link_pose(q, robot.tool_link()).translation();
-    const bool far = (RobotModel::part(q, arm) - RobotModel::part(robot.rest_configuration(), arm)).norm() > 1.8;
+    const bool far =
+        (RobotModel::part(q, arm) - RobotModel::part(robot.rest_configuration(), arm)).norm() > 1.8;
     if (far && tool.x() > 0.2 && tool.z() > 0.8 && tool.z() < 1.6 && world.check(q).free) return q;
   }
 }
@@ -245,7 +270,8 @@ Vector random_start(const NodeContext& context, Random& random) {
 std::filesystem::path settings(const std::string& folder) {
   const char* period = std::getenv("HANDSEL_LIVE_PERIOD");
   if (period == nullptr) return {};
-  const std::filesystem::path copy = std::filesystem::path(folder) / ("config" + std::to_string(getpid()));
+  const std::filesystem::path copy =
+      std::filesystem::path(folder) / ("config" + std::to_string(getpid()));
   if (std::filesystem::exists(copy)) return copy;
   std::filesystem::copy(resource("config"), copy, std::filesystem::copy_options::recursive);
   std::ofstream out(copy / "manipulation_planner.txtpb");
@@ -260,17 +286,22 @@ Json run(std::uint64_t seed, const std::string& folder) {
   Random random(seed);
   NodeContext context = system_context("give_mug", "", seed);
   const std::string file = folder + "/live_" + std::to_string(seed) + ".txtpb";
-  const Vector start = random_start(context, random), rest_configuration = context.robot->rest_configuration();
+  const Vector start = random_start(context, random),
+               rest_configuration = context.robot->rest_configuration();
   std::ofstream(file) << scenario_text(*context.robot, start);
   LockstepSystem system(system_context(file, "", seed, settings(folder)));
-  Visitor visitor(
-      random,
-      context.robot->link_pose(start + random.between(0.4, 0.9) * (rest_configuration - start), context.robot->tool_link()).translation());
+  Visitor visitor(random,
+                  context.robot
+                      ->link_pose(start + random.between(0.4, 0.9) * (rest_configuration - start),
+                                  context.robot->tool_link())
+                      .translation());
   Oracle oracle(context);
   Judge judge(context);
 
   Bus& seat = system.bus();
-  const auto noise = [&random] { return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal())); };
+  const auto noise = [&random] {
+    return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal()));
+  };
   auto goals = seat.advertise<TaskGoal>();
   auto body_out = seat.advertise<HumanObservation>();
   RobotState robot;
@@ -293,7 +324,8 @@ Json run(std::uint64_t seed, const std::string& folder) {
     live = !r.running.empty();
     people_then = people;
     looks += live;
-    if (live && !path.empty() && people.people.size() == 1) remaining.push_back(judge.remaining(r, path, people));
+    if (live && !path.empty() && people.people.size() == 1)
+      remaining.push_back(judge.remaining(r, path, people));
   });
   seat.subscribe<PathReply>([&](const PathReply& r, const Receipt&) {
     if (!request || !(r.id == request->id) || !r.solved) return;
@@ -325,23 +357,27 @@ Json run(std::uint64_t seed, const std::string& folder) {
     seen.coverage = {{-2, -3, 0}, {4, 3, 2.5}};
     ObservedPerson person;
     person.body = "visitor";
-    for (const BodyJoint& joint : visitor.body()) person.joints.push_back({joint.name, joint.position + noise(), 1.0});
+    for (const BodyJoint& joint : visitor.body())
+      person.joints.push_back({joint.name, joint.position + noise(), 1.0});
     person.has_gaze = true;
     person.gaze_origin = person.joints.front().position;
     person.gaze_direction = Vector3(-1, 0, -0.2).normalized();
     seen.people.push_back(person);
     body_out->publish(seen);
   });
-  seat.after(from_seconds(1.0), [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::go_to}); });
+  seat.after(from_seconds(1.0),
+             [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::go_to}); });
   TimePoint judged{};
   system.observer().on_sample([&](const Snapshot& s, TimePoint now) {
-    if (!s.ground_truth.ever || s.ground_truth.arrival == judged || robot.position.size() == 0 || s.ground_truth.sample.person.empty())
+    if (!s.ground_truth.ever || s.ground_truth.arrival == judged || robot.position.size() == 0 ||
+        s.ground_truth.sample.person.empty())
       return;
     judged = s.ground_truth.arrival;
     const CollisionVerdict verdict = oracle.touches(s.ground_truth.sample.person, robot);
     least_distance = std::min(least_distance, oracle.distance(s.ground_truth.sample.person, robot));
     if (!verdict.free && touching++ == 0) first_touch = verdict.first + " " + verdict.second;
-    const bool held = s.active.ever && s.active.sample.trajectory != 0 && std::abs(s.active.sample.speed_factor) < 1e-3 &&
+    const bool held = s.active.ever && s.active.sample.trajectory != 0 &&
+                      std::abs(s.active.sample.speed_factor) < 1e-3 &&
                       to_seconds(now.time_since_epoch()) > 1.5;
     if (held && (standing += 0.02) > 0.1 && standing - 0.02 <= 0.1) ++stops;
     if (!held) standing = 0;
@@ -350,8 +386,9 @@ Json run(std::uint64_t seed, const std::string& folder) {
   const auto ended = [&] {
     const auto& tasks = system.snapshot().tasks;
     const auto task = tasks.find(1);
-    return task != tasks.end() && (task->second.state == TaskState::succeeded || task->second.state == TaskState::failed ||
-                                   task->second.state == TaskState::cancelled);
+    return task != tasks.end() &&
+           (task->second.state == TaskState::succeeded || task->second.state == TaskState::failed ||
+            task->second.state == TaskState::cancelled);
   };
   system.network().run_until(ended, TimePoint(from_seconds(kLimit)));
   const auto& tasks = system.snapshot().tasks;
@@ -390,7 +427,8 @@ std::vector<Json> run_all(int first, int count) {
       try {
         std::ofstream out(folder.path() / ("lines" + std::to_string(k)));
         for (int i = k; i < count; i += kProcesses)
-          out << run(static_cast<std::uint64_t>(first + i), folder.path().string()).dump() << std::endl;
+          out << run(static_cast<std::uint64_t>(first + i), folder.path().string()).dump()
+              << std::endl;
       } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         _exit(1);
@@ -418,7 +456,8 @@ TEST(LiveRuns, nothing_is_touched_goals_are_reached_and_paths_get_cheaper) {
   const int count = number("HANDSEL_RUNS", 4), first = number("HANDSEL_FIRST", 1);
   const std::vector<Json> lines = run_all(first, count);
   ASSERT_EQ(static_cast<int>(lines.size()), count);
-  int reached = 0, cheaper = 0, falls = 0, repaired = 0, replanned = 0, stopped = 0, looked = 0, too_fast = 0;
+  int reached = 0, cheaper = 0, falls = 0, repaired = 0, replanned = 0, stopped = 0, looked = 0,
+      too_fast = 0;
   double fell = 0;
   for (const Json& line : lines) {
     std::printf("%s\n", line.dump().c_str());
@@ -436,10 +475,13 @@ TEST(LiveRuns, nothing_is_touched_goals_are_reached_and_paths_get_cheaper) {
     too_fast += line["ssm_violations"].get<int>() > 0;
     fell += line["fell"].get<double>();
   }
-  std::printf("%d runs, seeds %d ... %d: reached %d, cost of the rest falls %d, made cheaper %d, repaired %d, replanned %d, stopped %d\n",
-              count, first, first + count - 1, reached, falls, cheaper, repaired, replanned, stopped);
+  std::printf(
+      "%d runs, seeds %d ... %d: reached %d, cost of the rest falls %d, made cheaper %d, repaired "
+      "%d, replanned %d, stopped %d\n",
+      count, first, first + count - 1, reached, falls, cheaper, repaired, replanned, stopped);
   std::printf("steps above the speed and separation rule in %d runs\n", too_fast);
-  std::printf("where it is made cheaper, the changes take %.0f %% off the rest on average\n", 100 * fell / std::max(1, cheaper));
+  std::printf("where it is made cheaper, the changes take %.0f %% off the rest on average\n",
+              100 * fell / std::max(1, cheaper));
   EXPECT_GE(reached, count * 8 / 10);
   EXPECT_GE(falls, count * 9 / 10);
   EXPECT_GE(cheaper, count >= 20 ? count * 9 / 10 : 1);

@@ -1,4 +1,5 @@
-// The whole system in virtual time: the same seed gives the same bits, another seed another world; a crash is one failed trial.
+// The whole system in virtual time: the same seed gives the same bits, another seed another world;
+// a crash is one failed trial.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,10 +24,12 @@ Trace play(std::uint64_t seed, double seconds) {
   LockstepSystem system("give_mug", "", seed);
   Trace trace;
   auto goals = system.bus().advertise<TaskGoal>();
-  system.bus().after(from_seconds(0.6),
-                     [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"}); });
-  system.observer().on_sample(
-      [&](const Snapshot& snapshot, TimePoint) { trace.moved = trace.moved || snapshot.ground_truth.sample.robot_moving; });
+  system.bus().after(from_seconds(0.6), [&](TimePoint) {
+    goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"});
+  });
+  system.observer().on_sample([&](const Snapshot& snapshot, TimePoint) {
+    trace.moved = trace.moved || snapshot.ground_truth.sample.robot_moving;
+  });
   system.network().run_for(from_seconds(seconds));
   const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
   trace.hash = ground_truth.hash;
@@ -37,7 +40,8 @@ Trace play(std::uint64_t seed, double seconds) {
 
 TEST(Lockstep, every_box_is_ready_within_half_a_second) {
   LockstepSystem system("give_mug", "", 1);
-  EXPECT_TRUE(system.network().run_until([&] { return not_ready(system.snapshot(), false).empty(); }, TimePoint(from_seconds(0.5))));
+  EXPECT_TRUE(system.network().run_until(
+      [&] { return not_ready(system.snapshot(), false).empty(); }, TimePoint(from_seconds(0.5))));
   for (const std::string& missing : not_ready(system.snapshot(), false)) ADD_FAILURE() << missing;
 }
 
@@ -75,13 +79,15 @@ TEST(Trials, lines_come_in_order_and_a_trial_that_cannot_start_is_one_failure) {
   broken.settings = "/nowhere";
   const TrialOptions options{.scenario = "give_mug", .timeout = 0.5};
   std::vector<nlohmann::json> lines;
-  EXPECT_TRUE(run_trials({{context, options}, {broken, options}}, 2, [&](const nlohmann::json& line) { lines.push_back(line); }));
+  EXPECT_TRUE(run_trials({{context, options}, {broken, options}}, 2,
+                         [&](const nlohmann::json& line) { lines.push_back(line); }));
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0]["failure"], "timeout");
   EXPECT_EQ(lines[1]["failure"], "error");
   for (const char* field :
-       {"scenario", "seed", "attention", "law", "success", "failure", "duration_s", "min_separation_m", "ssm_violations", "limit_ratio",
-        "drops", "activations", "activations_at_pmin", "reaction_p50_s", "reaction_p99_s", "hash"}) {
+       {"scenario", "seed", "attention", "law", "success", "failure", "duration_s",
+        "min_separation_m", "ssm_violations", "limit_ratio", "drops", "activations",
+        "activations_at_pmin", "reaction_p50_s", "reaction_p99_s", "hash"}) {
     EXPECT_TRUE(lines[0].contains(field)) << field;
   }
 }
@@ -91,7 +97,8 @@ TEST(Trials, a_crash_is_counted_and_the_rest_still_runs) {
   TrialOptions quick{.scenario = "give_mug", .timeout = 0.2}, crashing = quick;
   crashing.on_event = [](double, const std::string&) { std::abort(); };
   std::vector<nlohmann::json> lines;
-  EXPECT_FALSE(run_trials({{context, crashing}, {context, quick}}, 2, [&](const nlohmann::json& line) { lines.push_back(line); }));
+  EXPECT_FALSE(run_trials({{context, crashing}, {context, quick}}, 2,
+                          [&](const nlohmann::json& line) { lines.push_back(line); }));
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0]["failure"], "crash");
   EXPECT_EQ(lines[1]["failure"], "timeout");

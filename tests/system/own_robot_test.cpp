@@ -1,5 +1,5 @@
-// Robots that are not the project's own, by description alone: a Panda with its hand, an iiwa with a parallel gripper. Their URDFs are
-// reference data.
+// Robots that are not the project's own, by description alone: a Panda with its hand, an iiwa with
+// a parallel gripper. Their URDFs are reference data.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -20,7 +20,8 @@ using Json = nlohmann::json;
 
 bool has_data() {
   const char* data = std::getenv("HANDSEL_DATA");
-  return data != nullptr && std::filesystem::is_directory(std::filesystem::path(data) / "robots/franka_panda") &&
+  return data != nullptr &&
+         std::filesystem::is_directory(std::filesystem::path(data) / "robots/franka_panda") &&
          std::filesystem::is_directory(std::filesystem::path(data) / "robots/kuka_iiwa14");
 }
 
@@ -32,14 +33,17 @@ std::vector<Json> in_lockstep(const std::string& scenario, const std::string& ro
     trials.push_back({context, {.scenario = scenario}});
   }
   std::vector<Json> lines;
-  EXPECT_TRUE(run_trials(trials, 2, [&](const Json& line) { lines.push_back(line); })) << "a trial crashed";
+  EXPECT_TRUE(run_trials(trials, 2, [&](const Json& line) { lines.push_back(line); }))
+      << "a trial crashed";
   return lines;
 }
 
 class OwnRobot : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (!has_data()) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/franka_panda and robots/kuka_iiwa14";
+    if (!has_data())
+      GTEST_SKIP()
+          << "HANDSEL_DATA names no folder with robots/franka_panda and robots/kuka_iiwa14";
   }
   static void give(int seeds, int at_least) {
     const std::string robot = GetParam();
@@ -49,10 +53,12 @@ class OwnRobot : public testing::TestWithParam<const char*> {
       if (line["success"].get<bool>())
         ++done;
       else
-        std::printf("%s: %s %s\n", what.c_str(), line["failure"].dump().c_str(), line["reason"].dump().c_str());
+        std::printf("%s: %s %s\n", what.c_str(), line["failure"].dump().c_str(),
+                    line["reason"].dump().c_str());
       ASSERT_TRUE(line.contains("limit_ratio")) << what << ": " << line.dump();
       for (const char* derivative : {"v", "a", "j"})
-        EXPECT_LE(line["limit_ratio"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
+        EXPECT_LE(line["limit_ratio"][derivative].get<double>(), 1.0 + 1e-6)
+            << what << " " << derivative;
       EXPECT_EQ(line["ssm_violations"], 0) << what;
     }
     EXPECT_GE(done, at_least);
@@ -67,25 +73,30 @@ TEST_P(OwnRobotTen, gives_the_object_nine_times_of_ten) { give(10, 9); }
 INSTANTIATE_TEST_SUITE_P(Robots, OwnRobot, testing::Values("panda", "iiwa14"));
 INSTANTIATE_TEST_SUITE_P(Robots, OwnRobotTen, testing::Values("panda", "iiwa14"));
 
-test::Outcome model_check(const std::string& robot) { return test::shell(std::string(HANDSEL_COMMAND) + " model check " + robot); }
+test::Outcome model_check(const std::string& robot) {
+  return test::shell(std::string(HANDSEL_COMMAND) + " model check " + robot);
+}
 
 TEST_P(OwnRobot, lacks_nothing) {
   const test::Outcome outcome = model_check(GetParam());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
-/// The integrator's folder: description, URDF and SRDF lie together, far from the project; a limit is forgotten.
+/// The integrator's folder: description, URDF and SRDF lie together, far from the project; a limit
+/// is forgotten.
 TEST(OwnRobotFolder, is_enough_and_a_robot_without_limits_is_refused) {
   if (!has_data()) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
   const test::TemporaryFolder folder;
   const std::filesystem::path source = robot_description("iiwa14").parent_path();
-  const std::filesystem::path data = std::filesystem::path(std::getenv("HANDSEL_DATA")) / "robots/kuka_iiwa14";
+  const std::filesystem::path data =
+      std::filesystem::path(std::getenv("HANDSEL_DATA")) / "robots/kuka_iiwa14";
   std::filesystem::copy(data / "model.urdf", folder.path() / "model.urdf");
   std::filesystem::copy(data / "meshes", folder.path() / "meshes");
   std::filesystem::copy(source / "iiwa14.srdf", folder.path() / "iiwa14.srdf");
   std::ifstream in(source / "iiwa14.txtpb");
   std::string text((std::istreambuf_iterator<char>(in)), {});
-  const std::string far = "$HANDSEL_DATA/robots/kuka_iiwa14/model.urdf", guard = "guard { joints: \"finger_joint\"";
+  const std::string far = "$HANDSEL_DATA/robots/kuka_iiwa14/model.urdf",
+                    guard = "guard { joints: \"finger_joint\"";
   ASSERT_NE(text.find(far), std::string::npos);
   text.replace(text.find(far), far.size(), "model.urdf");
   const auto file = folder.write("mine.txtpb", text);
@@ -98,10 +109,12 @@ TEST(OwnRobotFolder, is_enough_and_a_robot_without_limits_is_refused) {
   const test::Outcome checked = model_check(lame.string());
   EXPECT_EQ(checked.exit_code, 1);
   EXPECT_NE(checked.out.find("guard has no entry for"), std::string::npos) << checked.out;
-  const test::Outcome started = test::shell(std::string(HANDSEL_COMMAND) +
-                                            " run --headless --port 0 --domain 66 --scenario give_box_iiwa14 --robot " + lame.string());
+  const test::Outcome started = test::shell(
+      std::string(HANDSEL_COMMAND) +
+      " run --headless --port 0 --domain 66 --scenario give_box_iiwa14 --robot " + lame.string());
   EXPECT_EQ(started.exit_code, 2);
-  EXPECT_NE(started.err.find("guard has no entry for \"finger_joint\""), std::string::npos) << started.err;
+  EXPECT_NE(started.err.find("guard has no entry for \"finger_joint\""), std::string::npos)
+      << started.err;
 }
 
 }  // namespace

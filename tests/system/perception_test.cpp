@@ -1,5 +1,6 @@
-// The perception example as its author would work with it: built from an installed tree in an empty folder, its person receives the mug
-// from the robot. And broken in one way each: `handsel doctor --perception` names every fault.
+// The perception example as its author would work with it: built from an installed tree in an empty
+// folder, its person receives the mug from the robot. And broken in one way each: `handsel doctor
+// --perception` names every fault.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,56 +42,94 @@ struct Variant {
 };
 
 /// A writer of one's own, for who does not use Handsel's.
-std::vector<Edit> own_writer(const std::string& topic, const std::string& tweak,
-                             const std::string& descriptor = "handsel_find_topic(\"human_observation\")->descriptor") {
+std::vector<Edit> own_writer(
+    const std::string& topic, const std::string& tweak,
+    const std::string& descriptor = "handsel_find_topic(\"human_observation\")->descriptor") {
   return {{"int main(",
-           "static dds_entity_t own_writer(dds_entity_t participant) {\n  dds_qos_t *qos = handsel_topic_qos(\"human_observation\");\n  " +
-               tweak + "\n  return dds_create_writer(participant, dds_create_topic(participant, " + descriptor + ", \"" + topic +
-               "\", NULL, NULL), qos, NULL);\n}\n\nint main("},
+           "static dds_entity_t own_writer(dds_entity_t participant) {\n  dds_qos_t *qos = "
+           "handsel_topic_qos(\"human_observation\");\n  " +
+               tweak + "\n  return dds_create_writer(participant, dds_create_topic(participant, " +
+               descriptor + ", \"" + topic + "\", NULL, NULL), qos, NULL);\n}\n\nint main("},
           {"handsel_writer(participant, \"human_observation\")", "own_writer(participant)"}};
 }
 
-const std::string kStamp = "seen.stamp = things.stamp = dds_time();", kNumbers = "joint->confidence = 0.9;";
+const std::string kStamp = "seen.stamp = things.stamp = dds_time();",
+                  kNumbers = "joint->confidence = 0.9;";
 
 std::vector<Variant> issue_variants() {
   return {
-      {"topic", own_writer("handsel/human_observations", ""), "topic", "writes the topic handsel/human_observations, which nobody reads"},
-      {"qos", own_writer("handsel/human_observation", "dds_qset_deadline(qos, DDS_INFINITY);"), "QoS",
-       "its DEADLINE is none, asked for is 0.2 s"},
+      {"topic", own_writer("handsel/human_observations", ""), "topic",
+       "writes the topic handsel/human_observations, which nobody reads"},
+      {"qos", own_writer("handsel/human_observation", "dds_qset_deadline(qos, DDS_INFINITY);"),
+       "QoS", "its DEADLINE is none, asked for is 0.2 s"},
       {"rate", {{"next += period", "next += 12 * period"}}, "rate", "times a second"},
       {"age", {{kStamp, "seen.stamp = things.stamp = dds_time() - DDS_MSECS(600);"}}, "age", "0.6"},
-      {"jitter", {{kStamp, "seen.stamp = things.stamp = dds_time() - (rand() % 5 == 0 ? DDS_MSECS(180) : 0);"}}, "jitter", "varies by"},
-      {"clock", {{kStamp, "seen.stamp = things.stamp = dds_time() + DDS_SECS(3);"}}, "clock offset", "in the future"},
+      {"jitter",
+       {{kStamp,
+         "seen.stamp = things.stamp = dds_time() - (rand() % 5 == 0 ? DDS_MSECS(180) : 0);"}},
+       "jitter",
+       "varies by"},
+      {"clock",
+       {{kStamp, "seen.stamp = things.stamp = dds_time() + DDS_SECS(3);"}},
+       "clock offset",
+       "in the future"},
       {"frame",
-       {{kNumbers, kNumbers + " { const double z = joint->position.z; joint->position.z = joint->position.x; joint->position.x = "
+       {{kNumbers, kNumbers + " { const double z = joint->position.z; joint->position.z = "
+                              "joint->position.x; joint->position.x = "
                               "-joint->position.y; joint->position.y = 1.4 - z; }"}},
        "frame",
        "y points down, as in a camera's optical frame"},
-      {"names", {{kNumbers, kNumbers + " joint->name[0] = (char)(joint->name[0] - 32);"}}, "names", "joints that are not known"},
-      {"nan", {{kNumbers, kNumbers + " if (i == 5) joint->position.z = NAN;"}}, "malformed", "joints[5].position.z"},
+      {"names",
+       {{kNumbers, kNumbers + " joint->name[0] = (char)(joint->name[0] - 32);"}},
+       "names",
+       "joints that are not known"},
+      {"nan",
+       {{kNumbers, kNumbers + " if (i == 5) joint->position.z = NAN;"}},
+       "malformed",
+       "joints[5].position.z"},
       {"reach", {{kNumbers, kNumbers + " joint->position.x += 50;"}}, "reach", "out of reach"},
   };
 }
 
 std::vector<Variant> more_variants() {
   return {
-      {"partition", own_writer("handsel/human_observation", "const char *p = \"lab\"; dds_qset_partition(qos, 1, &p);"), "QoS",
-       "its PARTITION is \"lab\""},
-      {"old_idl", own_writer("handsel/human_observation", "", "&handsel_HumanObservation_desc"), "IDL", "of another shape"},
+      {"partition",
+       own_writer("handsel/human_observation",
+                  "const char *p = \"lab\"; dds_qset_partition(qos, 1, &p);"),
+       "QoS", "its PARTITION is \"lab\""},
+      {"old_idl", own_writer("handsel/human_observation", "", "&handsel_HumanObservation_desc"),
+       "IDL", "of another shape"},
       {"millimetres",
-       {{kNumbers, kNumbers + " joint->position.x *= 1000; joint->position.y *= 1000; joint->position.z *= 1000;"}},
+       {{kNumbers,
+         kNumbers +
+             " joint->position.x *= 1000; joint->position.y *= 1000; joint->position.z *= 1000;"}},
        "frame",
        "millimetres"},
-      {"coverage", {{".coverage = {{-4, -4, -0.1}, {4, 4, 2.5}}", ".coverage = {{0, 0, 0}, {0, 0, 0}}"}}, "coverage", "looks at no volume"},
+      {"coverage",
+       {{".coverage = {{-4, -4, -0.1}, {4, 4, 2.5}}", ".coverage = {{0, 0, 0}, {0, 0, 0}}"}},
+       "coverage",
+       "looks at no volume"},
       {"part_covered",
        {{".coverage = {{-4, -4, -0.1}, {4, 4, 2.5}}", ".coverage = {{0, -4, -0.1}, {4, 4, 2.5}}"}},
        "coverage",
        "does not contain the robot's reach"},
       {"gaze", {{"ahead.z / norm};", "2 * ahead.z / norm};"}}, "gaze", "gaze_direction"},
-      {"ids", {{kStamp, kStamp + " snprintf(body.body, sizeof body.body, \"b%d\", rand());"}}, "ids", "ids to 1 people"},
-      {"frozen", {{"body_at(&person, t, &body);", "body_at(&person, 4.0, &body);"}}, "frozen", "the very same body"},
-      {"stamps", {{kStamp, "seen.stamp = things.stamp = dds_time() / 1000000;"}}, "stamp", "looks like milliseconds"},
-      {"models", {{"confidence = 1;", "confidence = 1; strcpy(o->model, \"cann\");"}}, "names", "can (cann)"},
+      {"ids",
+       {{kStamp, kStamp + " snprintf(body.body, sizeof body.body, \"b%d\", rand());"}},
+       "ids",
+       "ids to 1 people"},
+      {"frozen",
+       {{"body_at(&person, t, &body);", "body_at(&person, 4.0, &body);"}},
+       "frozen",
+       "the very same body"},
+      {"stamps",
+       {{kStamp, "seen.stamp = things.stamp = dds_time() / 1000000;"}},
+       "stamp",
+       "looks like milliseconds"},
+      {"models",
+       {{"confidence = 1;", "confidence = 1; strcpy(o->model, \"cann\");"}},
+       "names",
+       "can (cann)"},
   };
 }
 
@@ -99,12 +138,15 @@ class Perception : public testing::Test {
   static void SetUpTestSuite() {
     fs::remove_all(folder());
     fs::create_directories(folder());
-    installed() = shell(HANDSEL_CMAKE " --install " HANDSEL_BUILD_DIR " --strip --prefix " + prefix().string());
+    installed() = shell(HANDSEL_CMAKE " --install " HANDSEL_BUILD_DIR " --strip --prefix " +
+                        prefix().string());
   }
   static void TearDownTestSuite() { fs::remove_all(folder()); }
   void SetUp() override { ASSERT_EQ(installed().exit_code, 0) << installed().err; }
 
-  static fs::path folder() { return fs::temp_directory_path() / ("handsel-perception-" + std::to_string(getpid())); }
+  static fs::path folder() {
+    return fs::temp_directory_path() / ("handsel-perception-" + std::to_string(getpid()));
+  }
   static fs::path prefix() { return folder() / "prefix"; }
   static fs::path example() { return prefix() / "share/handsel/examples/perception"; }
   static Outcome& installed() {
@@ -115,21 +157,29 @@ class Perception : public testing::Test {
   static std::string clean() { return "env -i PATH=/usr/bin:/bin HOME=" + folder().string() + " "; }
   static std::string build(const fs::path& source) {
     const std::string out = (source / "build").string();
-    const Outcome built =
-        shell(clean() + HANDSEL_CMAKE " -S " + source.string() + " -B " + out + " -DCMAKE_PREFIX_PATH=" + prefix().string() +
-              " -DCMAKE_C_FLAGS='-Wall -Wextra -Werror -pedantic' && " + clean() + HANDSEL_CMAKE " --build " + out + " -j2");
+    const Outcome built = shell(clean() + HANDSEL_CMAKE " -S " + source.string() + " -B " + out +
+                                " -DCMAKE_PREFIX_PATH=" + prefix().string() +
+                                " -DCMAKE_C_FLAGS='-Wall -Wextra -Werror -pedantic' && " + clean() +
+                                HANDSEL_CMAKE " --build " + out + " -j2");
     EXPECT_EQ(built.exit_code, 0) << built.out << built.err;
     return out;
   }
   static std::vector<std::string> run_example(const std::string& program, int domain) {
-    return {"/usr/bin/env", "-i", "HANDSEL_DOMAIN=" + std::to_string(domain), program,
-            "--repeat",     "5",  (example() / "person.csv").string(),        (example() / "objects.csv").string()};
+    return {"/usr/bin/env",
+            "-i",
+            "HANDSEL_DOMAIN=" + std::to_string(domain),
+            program,
+            "--repeat",
+            "5",
+            (example() / "person.csv").string(),
+            (example() / "objects.csv").string()};
   }
   static std::pair<int, std::string> doctor(int domain, const std::string& options) {
     const std::string file = (folder() / ("doctor-" + std::to_string(domain))).string();
-    const int status = std::system((clean() + (prefix() / "bin/handsel").string() + " doctor --json --perception " + options +
-                                    " --port 0 --domain " + std::to_string(domain) + " > " + file + " 2>&1")
-                                       .c_str());
+    const int status = std::system(
+        (clean() + (prefix() / "bin/handsel").string() + " doctor --json --perception " + options +
+         " --port 0 --domain " + std::to_string(domain) + " > " + file + " 2>&1")
+            .c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, text_of(file)};
   }
 
@@ -149,7 +199,8 @@ class Perception : public testing::Test {
       names += variant.name + " ";
     }
     std::ofstream(source / "CMakeLists.txt")
-        << "cmake_minimum_required(VERSION 3.16)\nproject(variants LANGUAGES C)\nfind_package(handsel REQUIRED)\n"
+        << "cmake_minimum_required(VERSION 3.16)\nproject(variants LANGUAGES "
+           "C)\nfind_package(handsel REQUIRED)\n"
         << "foreach(name " << names << ")\n  add_executable(${name} ${name}.c)\n"
         << "  target_link_libraries(${name} handsel::idl m)\nendforeach()\n"
         << "if(TARGET old_idl)\n  target_sources(old_idl PRIVATE old/perception.c old/geometry.c)\n"
@@ -160,9 +211,12 @@ class Perception : public testing::Test {
       std::vector<std::future<std::pair<int, std::string>>> answers;
       const std::size_t end = std::min(first + kAtOnce, variants.size());
       for (std::size_t i = first; i < end; ++i)
-        running.push_back(std::make_unique<Background>(run_example(out + "/" + variants[i].name, kFirstVariant + static_cast<int>(i))));
+        running.push_back(std::make_unique<Background>(
+            run_example(out + "/" + variants[i].name, kFirstVariant + static_cast<int>(i))));
       for (std::size_t i = first; i < end; ++i)
-        answers.push_back(std::async(std::launch::async, [i] { return doctor(kFirstVariant + static_cast<int>(i), "--inputs-only"); }));
+        answers.push_back(std::async(std::launch::async, [i] {
+          return doctor(kFirstVariant + static_cast<int>(i), "--inputs-only");
+        }));
       for (std::size_t i = first; i < end; ++i) {
         const auto [code, said] = answers[i - first].get();
         SCOPED_TRACE(variants[i].name + ":\n" + said + running[i - first]->said());
@@ -173,10 +227,12 @@ class Perception : public testing::Test {
           const Json finding = Json::parse(line, nullptr, false);
           if (finding.is_discarded() || finding["result"] != "bad") continue;
           named = named || (finding["subject"] == variants[i].subject &&
-                            finding["text"].get<std::string>().find(variants[i].words) != std::string::npos &&
+                            finding["text"].get<std::string>().find(variants[i].words) !=
+                                std::string::npos &&
                             !finding["remedy"].get<std::string>().empty());
         }
-        EXPECT_TRUE(named) << "no finding on " << variants[i].subject << " says \"" << variants[i].words << "\"";
+        EXPECT_TRUE(named) << "no finding on " << variants[i].subject << " says \""
+                           << variants[i].words << "\"";
       }
     }
   }
@@ -184,15 +240,19 @@ class Perception : public testing::Test {
   /// Of an IDL in which joints had no confidence yet.
   static std::string older(const fs::path& source, std::string text) {
     fs::create_directories(source / "old");
-    fs::copy(prefix() / "share/handsel/idl", source / "idl", fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    fs::copy(prefix() / "share/handsel/idl", source / "idl",
+             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     std::string idl = text_of(source / "idl/perception.idl");
     const std::size_t at = idl.find("  double confidence;");
     idl.erase(at, idl.find('\n', at) - at);
     std::ofstream(source / "idl/perception.idl") << idl;
-    const Outcome made = shell("cd " + (source / "idl").string() + " && idlc -l c -o " + (source / "old").string() +
-                               " geometry.idl && idlc -l c -o " + (source / "old").string() + " perception.idl");
+    const Outcome made =
+        shell("cd " + (source / "idl").string() + " && idlc -l c -o " + (source / "old").string() +
+              " geometry.idl && idlc -l c -o " + (source / "old").string() + " perception.idl");
     EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
-    for (const Edit& edit : {Edit{"#include <handsel/idl/perception.h>", "#include \"perception.h\""}, Edit{kNumbers, ""}})
+    for (const Edit& edit :
+         {Edit{"#include <handsel/idl/perception.h>", "#include \"perception.h\""},
+          Edit{kNumbers, ""}})
       text.replace(text.find(edit.find), edit.find.size(), edit.replace);
     return text;
   }
@@ -201,14 +261,16 @@ class Perception : public testing::Test {
 TEST_F(Perception, robot_hands_the_mug_to_the_person_published_from_outside) {
   const fs::path mine = folder() / "my_perception";
   fs::create_directories(mine);
-  for (const char* file : {"perception.c", "CMakeLists.txt"}) fs::copy_file(example() / file, mine / file);
+  for (const char* file : {"perception.c", "CMakeLists.txt"})
+    fs::copy_file(example() / file, mine / file);
   const Background perception(run_example(build(mine) + "/perception", kDomain));
   const auto [code, said] = doctor(kDomain, "--inputs-only");  // meanwhile the person has come
   EXPECT_EQ(code, 0) << said;
   EXPECT_THAT(said, HasSubstr("from body_tracker"));
   const std::string report = (folder() / "report.json").string();
-  Background robot({(prefix() / "bin/handsel").string(), "run", "--scenario", "give_mug_external", "--headless", "--port", "0", "--domain",
-                    std::to_string(kDomain), "--report", report, "--json"});
+  Background robot({(prefix() / "bin/handsel").string(), "run", "--scenario", "give_mug_external",
+                    "--headless", "--port", "0", "--domain", std::to_string(kDomain), "--report",
+                    report, "--json"});
   EXPECT_EQ(robot.wait(120), 0) << robot.said();
   const Json out = Json::parse(text_of(report));
   EXPECT_TRUE(out["success"].get<bool>()) << out["failure"] << robot.said();
@@ -219,14 +281,20 @@ TEST_F(Perception, robot_hands_the_mug_to_the_person_published_from_outside) {
   EXPECT_EQ(out["ssm_violations"], 0);
 }
 
-TEST_F(Perception, doctor_names_the_fault_of_each_broken_variant) { expect_named(issue_variants()); }
+TEST_F(Perception, doctor_names_the_fault_of_each_broken_variant) {
+  expect_named(issue_variants());
+}
 
 using PerceptionMore = Perception;
-TEST_F(PerceptionMore, doctor_names_the_fault_of_each_broken_variant) { expect_named(more_variants()); }
+TEST_F(PerceptionMore, doctor_names_the_fault_of_each_broken_variant) {
+  expect_named(more_variants());
+}
 
 TEST(Recording, is_what_its_generator_makes) {
-  const fs::path made = fs::temp_directory_path() / ("handsel-person-" + std::to_string(getpid()) + ".csv");
-  const Outcome outcome = shell("python3 " HANDSEL_SOURCE_DIR "/examples/perception/generate.py " + made.string());
+  const fs::path made =
+      fs::temp_directory_path() / ("handsel-person-" + std::to_string(getpid()) + ".csv");
+  const Outcome outcome =
+      shell("python3 " HANDSEL_SOURCE_DIR "/examples/perception/generate.py " + made.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(text_of(made), text_of(HANDSEL_SOURCE_DIR "/examples/perception/person.csv"));
   fs::remove(made);

@@ -1,4 +1,5 @@
-// Who reaches for what the robot is putting down is given it; who merely passes is not (HANDSEL_RUNS: trials of each).
+// Who reaches for what the robot is putting down is given it; who merely passes is not
+// (HANDSEL_RUNS: trials of each).
 #include <gtest/gtest.h>
 
 #include "common/config/resources.hpp"
@@ -18,13 +19,15 @@ Ending perform(const std::string& name, std::uint64_t seed) {
   config::Scenario scenario;
   load_text_proto(scenario_file(name), scenario);
   LockstepSystem system(name, "", seed);
-  Performer performer(system.bus(), system.observer(), scenario, 0, [&] { return not_ready(system.snapshot(), false).empty(); });
+  Performer performer(system.bus(), system.observer(), scenario, 0,
+                      [&] { return not_ready(system.snapshot(), false).empty(); });
   system.network().run_until([&] { return performer.finished(); }, TimePoint(from_seconds(200)));
   const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
   EXPECT_EQ(ground_truth.ssm_violations, 0u) << name << " seed " << seed;
   EXPECT_EQ(ground_truth.limit_violations, 0u) << name << " seed " << seed;
   EXPECT_FALSE(ground_truth.dropped) << name << " seed " << seed;
-  return {ground_truth.handover_done, performer.succeeded(), performer.outcomes().empty() ? "" : performer.outcomes().back().reason};
+  return {ground_truth.handover_done, performer.succeeded(),
+          performer.outcomes().empty() ? "" : performer.outcomes().back().reason};
 }
 
 int count_given(const std::string& name, int runs) {

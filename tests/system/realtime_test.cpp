@@ -1,4 +1,5 @@
-// The controller's own thread: real time and locked memory where that is permitted, and a plain word where it is not.
+// The controller's own thread: real time and locked memory where that is permitted, and a plain
+// word where it is not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +61,9 @@ TEST(Realtime, is_taken_where_permitted) {
   const Started started = start([] {});
   EXPECT_THAT(started.says, HasSubstr("real time"));
   EXPECT_EQ(started.policy, SCHED_FIFO);
-  EXPECT_TRUE(started.locked_kb > 1000 || started.says.find("cannot be locked") != std::string::npos) << started.locked_kb;
+  EXPECT_TRUE(started.locked_kb > 1000 ||
+              started.says.find("cannot be locked") != std::string::npos)
+      << started.locked_kb;
 }
 
 TEST(Realtime, says_so_when_it_is_not_permitted) {

@@ -1,4 +1,5 @@
-// A study's run is recorded whole, with its marks; replayed into a system without a robot, it shows the same person again.
+// A study's run is recorded whole, with its marks; replayed into a system without a robot, it shows
+// the same person again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +60,8 @@ Recorded read(const std::filesystem::path& file) {
 
 TEST(RecordedRun, holds_everything_with_its_marks_and_comes_again) {
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "run.mcap").string(), domain = " --domain " + std::to_string(kDomain);
+  const std::string file = (folder.path() / "run.mcap").string(),
+                    domain = " --domain " + std::to_string(kDomain);
   const auto scenario = folder.write("pick.txtpb", R"(
 name: "pick"
 boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 } supports: true }
@@ -70,8 +72,9 @@ object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0.001 }
 tasks { kind: "pick" object: "mug" }
 timeout: 40
 )");
-  const Outcome run = shell(kHandsel + " run --headless --port 0 --scenario " + scenario.string() + domain + " --record " + file +
-                            " --participant p07 --condition calm --trial 3");
+  const Outcome run =
+      shell(kHandsel + " run --headless --port 0 --scenario " + scenario.string() + domain +
+            " --record " + file + " --participant p07 --condition calm --trial 3");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr(file));
   const Recorded recorded = read(file);
@@ -86,16 +89,17 @@ timeout: 40
   EXPECT_EQ(recorded.marks[1].participant, "p07");
   EXPECT_EQ(recorded.marks[1].trial, 3u);
   // Fast topics are there whole: the truth comes at a tenth of the rate of the robot's state.
-  EXPECT_GT(recorded.samples.at("handsel/robot_state"), 9 * recorded.samples.at("handsel/ground_truth"));
-  for (const char* topic :
-       {"attention_state", "attention_advice", "task_status", "costmap", "component_health", "trajectory", "joint_command"})
+  EXPECT_GT(recorded.samples.at("handsel/robot_state"),
+            9 * recorded.samples.at("handsel/ground_truth"));
+  for (const char* topic : {"attention_state", "attention_advice", "task_status", "costmap",
+                            "component_health", "trajectory", "joint_command"})
     EXPECT_GT(recorded.samples.at(std::string("handsel/") + topic), 0) << topic;
   const Outcome twice = shell(kHandsel + " up --headless --port 0" + domain + " --record " + file);
   EXPECT_EQ(twice.exit_code, 2);
   EXPECT_THAT(twice.err, HasSubstr("is there already"));
 
-  Background up({kHandsel, "up", "--headless", "--port", "0", "--without", "sim", "--scenario", scenario.string(), "--domain",
-                 std::to_string(kDomain)});
+  Background up({kHandsel, "up", "--headless", "--port", "0", "--without", "sim", "--scenario",
+                 scenario.string(), "--domain", std::to_string(kDomain)});
   Session session(kDomain);
   Vector3 head = Vector3::Zero();
   int seen = 0;
@@ -104,10 +108,12 @@ timeout: 40
     head = people.people[0].joints[0].position;
     ++seen;
   });
-  ASSERT_TRUE(session.wait(std::chrono::seconds(20), [&] { return why_not_ready(session.snapshot(), "spark").empty(); }));
+  ASSERT_TRUE(session.wait(std::chrono::seconds(20),
+                           [&] { return why_not_ready(session.snapshot(), "spark").empty(); }));
   Background replay({kHandsel, "replay", file, "--from", "2", "--domain", std::to_string(kDomain)});
   EXPECT_TRUE(session.wait(std::chrono::seconds(20), [&] { return seen > 60; })) << seen;
-  EXPECT_LT((head - recorded.head).norm(), 0.05) << head.transpose() << " against " << recorded.head.transpose();
+  EXPECT_LT((head - recorded.head).norm(), 0.05)
+      << head.transpose() << " against " << recorded.head.transpose();
   const Outcome second = shell(kHandsel + " replay " + file + domain);
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_THAT(second.err, HasSubstr("replay sim writes handsel/"));

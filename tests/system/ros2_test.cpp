@@ -1,4 +1,5 @@
-// A publisher and readers with the names and types of ROS 2, made with Cyclone alone, beside a whole system with its lane to ROS 2.
+// A publisher and readers with the names and types of ROS 2, made with Cyclone alone, beside a
+// whole system with its lane to ROS 2.
 #include <dds/dds.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,10 +43,14 @@ class RosNode {
   RosNode() : participant_(dds_create_participant(kDomain, nullptr, nullptr)) {}
   ~RosNode() { dds_delete(participant_); }
   dds_entity_t writer(const dds_topic_descriptor_t& type, const char* topic) {
-    return dds_create_writer(participant_, dds_create_topic(participant_, &type, topic, nullptr, nullptr), ros_default().get(), nullptr);
+    return dds_create_writer(participant_,
+                             dds_create_topic(participant_, &type, topic, nullptr, nullptr),
+                             ros_default().get(), nullptr);
   }
   dds_entity_t reader(const dds_topic_descriptor_t& type, const char* topic) {
-    return dds_create_reader(participant_, dds_create_topic(participant_, &type, topic, nullptr, nullptr), ros_default().get(), nullptr);
+    return dds_create_reader(participant_,
+                             dds_create_topic(participant_, &type, topic, nullptr, nullptr),
+                             ros_default().get(), nullptr);
   }
 
  private:
@@ -75,7 +80,8 @@ void publish(dds_entity_t writer, std::vector<Frame> frames) {
   std::vector<geometry_msgs_msg_dds__TransformStamped_> list(frames.size());
   const dds_time_t now = dds_time();
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    list[i].header_.stamp_ = {static_cast<std::int32_t>(now / 1'000'000'000), static_cast<std::uint32_t>(now % 1'000'000'000)};
+    list[i].header_.stamp_ = {static_cast<std::int32_t>(now / 1'000'000'000),
+                              static_cast<std::uint32_t>(now % 1'000'000'000)};
     list[i].header_.frame_id_ = frames[i].parent.data();
     list[i].child_frame_id_ = frames[i].child.data();
     list[i].transform_.translation_ = {frames[i].at.x(), frames[i].at.y(), frames[i].at.z()};
@@ -83,17 +89,20 @@ void publish(dds_entity_t writer, std::vector<Frame> frames) {
   }
   tf2_msgs_msg_dds__TFMessage_ message{};
   message.transforms_._buffer = list.data();
-  message.transforms_._length = message.transforms_._maximum = static_cast<std::uint32_t>(list.size());
+  message.transforms_._length = message.transforms_._maximum =
+      static_cast<std::uint32_t>(list.size());
   dds_write(writer, &message);
 }
 
-/// The body of somebody at `feet` whose right hand is at `hand`, below a camera's frame, as a tracker for ROS4HRI tells it.
+/// The body of somebody at `feet` whose right hand is at `hand`, below a camera's frame, as a
+/// tracker for ROS4HRI tells it.
 std::vector<Frame> body(const Vector3& feet, const Vector3& hand) {
   const Vector3 camera(0.5, -1.0, 1.5);
   std::vector<Frame> out{{"world", "mast", camera}};
   for (const BodyJoint& joint : standing_body(feet, M_PI, 1.72)) {
     if (joint.name == "torso" || joint.name == "r_elbow" || joint.name == "r_wrist") continue;
-    out.push_back({"mast", joint.name + "_7f", (joint.name == "r_hand" ? hand : joint.position) - camera});
+    out.push_back(
+        {"mast", joint.name + "_7f", (joint.name == "r_hand" ? hand : joint.position) - camera});
   }
   return out;
 }
@@ -108,8 +117,10 @@ Vector3 joint_of(const std::vector<BodyJoint>& joints, const std::string& name) 
 std::string scenario() {
   std::ostringstream text;
   text << std::ifstream(HANDSEL_SOURCE_DIR "/sim/scenarios/give_mug_external.txtpb").rdbuf();
-  const fs::path file = fs::temp_directory_path() / ("handsel-ros2-" + std::to_string(getpid()) + ".txtpb");
-  std::ofstream(file) << std::regex_replace(text.str(), std::regex("external: \"body_tracker\""), "external: \"ros2\"");
+  const fs::path file =
+      fs::temp_directory_path() / ("handsel-ros2-" + std::to_string(getpid()) + ".txtpb");
+  std::ofstream(file) << std::regex_replace(text.str(), std::regex("external: \"body_tracker\""),
+                                            "external: \"ros2\"");
   return file;
 }
 
@@ -117,13 +128,16 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
   setenv("CYCLONEDDS_URI", "file://" HANDSEL_SOURCE_DIR "/deploy/dds/loopback.xml", 1);
   const std::string place = scenario();
-  Background up({HANDSEL_COMMAND, "up", "--ros2", "--headless", "--port", "0", "--domain", std::to_string(kDomain), "--scenario", place});
+  Background up({HANDSEL_COMMAND, "up", "--ros2", "--headless", "--port", "0", "--domain",
+                 std::to_string(kDomain), "--scenario", place});
   RosNode ros;
   const dds_entity_t tf = ros.writer(tf2_msgs_msg_dds__TFMessage__desc, "rt/tf");
-  const dds_entity_t asks = ros.writer(trajectory_msgs_msg_dds__JointTrajectory__desc, "rt/handsel/joint_trajectory");
+  const dds_entity_t asks =
+      ros.writer(trajectory_msgs_msg_dds__JointTrajectory__desc, "rt/handsel/joint_trajectory");
   const dds_entity_t joints = ros.reader(sensor_msgs_msg_dds__JointState__desc, "rt/joint_states");
   const dds_entity_t frames = ros.reader(tf2_msgs_msg_dds__TFMessage__desc, "rt/tf");
-  const dds_entity_t results = ros.reader(std_msgs_msg_dds__String__desc, "rt/handsel/joint_trajectory_result");
+  const dds_entity_t results =
+      ros.reader(std_msgs_msg_dds__String__desc, "rt/handsel/joint_trajectory_result");
   ASSERT_GT(results, 0);
   ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
 
@@ -143,17 +157,22 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
     publish(tf, body(feet, hand));
   });
   const auto follows = [&] {
-    return people.people.size() == 1 && people.covered && (joint_of(people.people[0].joints, "r_hand") - hand).norm() < 0.03 &&
+    return people.people.size() == 1 && people.covered &&
+           (joint_of(people.people[0].joints, "r_hand") - hand).norm() < 0.03 &&
            (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm() < 0.05 &&
            (joint_of(ground_truth.person, "r_hand") - hand).norm() < 0.05;
   };
   EXPECT_TRUE(bus.run_until(follows, from_seconds(5)))
       << people.people.size() << " people, covered " << people.covered << ", SPARK's hand "
-      << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "r_hand") - hand).norm()) << " m off, its waist "
-      << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm()) << ", the simulated hand "
-      << (joint_of(ground_truth.person, "r_hand") - hand).norm();
+      << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "r_hand") - hand).norm())
+      << " m off, its waist "
+      << (people.people.empty()
+              ? 1e9
+              : (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm())
+      << ", the simulated hand " << (joint_of(ground_truth.person, "r_hand") - hand).norm();
   goal += Vector3(0, -0.3, 0.2);
-  EXPECT_TRUE(bus.run_until([&] { return (goal - hand).norm() < 1e-3 && follows(); }, from_seconds(8)))
+  EXPECT_TRUE(
+      bus.run_until([&] { return (goal - hand).norm() < 1e-3 && follows(); }, from_seconds(8)))
       << "SPARK's person and the simulated one go where ROS says";
 
   std::vector<std::string> names;
@@ -161,11 +180,12 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   std::int64_t stamp = 0;
   bool tool_told = false, mug_told = false;
   const auto heard = [&] {
-    take_last<sensor_msgs_msg_dds__JointState_>(joints, [&](const sensor_msgs_msg_dds__JointState_& m) {
-      names.assign(m.name_._buffer, m.name_._buffer + m.name_._length);
-      position.assign(m.position_._buffer, m.position_._buffer + m.position_._length);
-      stamp = m.header_.stamp_.sec_ * 1'000'000'000LL + m.header_.stamp_.nanosec_;
-    });
+    take_last<sensor_msgs_msg_dds__JointState_>(
+        joints, [&](const sensor_msgs_msg_dds__JointState_& m) {
+          names.assign(m.name_._buffer, m.name_._buffer + m.name_._length);
+          position.assign(m.position_._buffer, m.position_._buffer + m.position_._length);
+          stamp = m.header_.stamp_.sec_ * 1'000'000'000LL + m.header_.stamp_.nanosec_;
+        });
     take_last<tf2_msgs_msg_dds__TFMessage_>(frames, [&](const tf2_msgs_msg_dds__TFMessage_& m) {
       for (std::uint32_t i = 0; i < m.transforms_._length; ++i) {
         const std::string child = m.transforms_._buffer[i].child_frame_id_;
@@ -175,14 +195,16 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
     });
     return !names.empty() && mug_told && tool_told;
   };
-  ASSERT_TRUE(bus.run_until(heard, from_seconds(3))) << names.size() << " joints, mug " << mug_told << ", hand " << tool_told;
+  ASSERT_TRUE(bus.run_until(heard, from_seconds(3)))
+      << names.size() << " joints, mug " << mug_told << ", hand " << tool_told;
   const NodeContext context = load_context("jido");
   ASSERT_EQ(names.size(), context.robot->axes().size());
   ASSERT_EQ(position.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(names[i], context.robot->axes()[i].name);
     const bool moves = names[i].starts_with("head");  // it looks at the person
-    EXPECT_NEAR(position[i], robot.position[static_cast<Eigen::Index>(i)], moves ? 0.1 : 2e-3) << names[i];
+    EXPECT_NEAR(position[i], robot.position[static_cast<Eigen::Index>(i)], moves ? 0.1 : 2e-3)
+        << names[i];
   }
   EXPECT_LT(std::abs(static_cast<double>(stamp - robot.stamp)) * 1e-9, 0.2);
 
@@ -206,18 +228,22 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
     std::string result;
     bus.run_until(
         [&] {
-          take_last<std_msgs_msg_dds__String_>(results, [&](const std_msgs_msg_dds__String_& m) { result = m.data_; });
+          take_last<std_msgs_msg_dds__String_>(
+              results, [&](const std_msgs_msg_dds__String_& m) { result = m.data_; });
           return !result.empty();
         },
         from_seconds(10));
     return result;
   };
-  std::string result;  // on a busy machine the robot may have been stopped on the path; then it is asked once more
+  std::string result;  // on a busy machine the robot may have been stopped on the path; then it is
+                       // asked once more
   for (int tries = 0; tries < 3 && result != "done"; ++tries) result = ask(names[axis], target);
   EXPECT_EQ(result, "done");
   EXPECT_NEAR(robot.position[static_cast<Eigen::Index>(axis)], target, 0.01);
-  EXPECT_THAT(ask(names[axis], 50), testing::HasSubstr("refused: point 0 has " + names[axis] + " at 50"));
-  EXPECT_THAT(ask("nonsense", 0), testing::HasSubstr("refused: joint nonsense is no joint of the arm"));
+  EXPECT_THAT(ask(names[axis], 50),
+              testing::HasSubstr("refused: point 0 has " + names[axis] + " at 50"));
+  EXPECT_THAT(ask("nonsense", 0),
+              testing::HasSubstr("refused: joint nonsense is no joint of the arm"));
   EXPECT_EQ(ground_truth.limit_violations, 0u);
   EXPECT_EQ(ground_truth.self_or_scene_collisions, 0u);
   fs::remove(place);

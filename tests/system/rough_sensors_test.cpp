@@ -1,4 +1,5 @@
-// The give under sensors as they are, and under data that lies for a while; judged by the simulator's oracle, in lock-step.
+// The give under sensors as they are, and under data that lies for a while; judged by the
+// simulator's oracle, in lock-step.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -31,8 +32,8 @@ class Changed {
     std::string text;
     google::protobuf::TextFormat::PrintToString(scenario, &text);
     static int number = 0;
-    path_ =
-        std::filesystem::temp_directory_path() / ("handsel-rough-" + std::to_string(getpid()) + "-" + std::to_string(++number) + ".txtpb");
+    path_ = std::filesystem::temp_directory_path() / ("handsel-rough-" + std::to_string(getpid()) +
+                                                      "-" + std::to_string(++number) + ".txtpb");
     std::ofstream(path_) << text;
   }
   ~Changed() { std::filesystem::remove(path_); }
@@ -50,7 +51,8 @@ std::vector<Json> trials(const std::string& scenario, int first, int count) {
     all.push_back({context, {.scenario = scenario}});
   }
   std::vector<Json> lines;
-  EXPECT_TRUE(run_trials(all, 2, [&](const Json& line) { lines.push_back(line); })) << "a trial crashed";
+  EXPECT_TRUE(run_trials(all, 2, [&](const Json& line) { lines.push_back(line); }))
+      << "a trial crashed";
   return lines;
 }
 
@@ -60,7 +62,8 @@ int successes(const std::vector<Json>& lines) {
     EXPECT_EQ(line["ssm_violations"], 0) << "seed " << line["seed"];
     EXPECT_EQ(line["limit_violations"], 0) << "seed " << line["seed"];
     count += line["success"].get<bool>();
-    std::printf("seed %s: %s %s %s s\n", line["seed"].dump().c_str(), line["success"].dump().c_str(), line["reason"].dump().c_str(),
+    std::printf("seed %s: %s %s %s s\n", line["seed"].dump().c_str(),
+                line["success"].dump().c_str(), line["reason"].dump().c_str(),
                 line["duration_s"].dump().c_str());
   }
   return count;
@@ -88,12 +91,15 @@ struct Standstill {
   std::uint64_t ssm_violations{};
 };
 
-/// The give with seed 3; calls with every sample of the truth whether the arm moves along a trajectory.
-std::uint64_t give(const std::string& scenario, double seconds, const std::function<void(const GroundTruth&, bool)>& see) {
+/// The give with seed 3; calls with every sample of the truth whether the arm moves along a
+/// trajectory.
+std::uint64_t give(const std::string& scenario, double seconds,
+                   const std::function<void(const GroundTruth&, bool)>& see) {
   LockstepSystem system(scenario, "", 3);
   auto goals = system.bus().advertise<TaskGoal>();
-  system.bus().after(from_seconds(0.6),
-                     [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"}); });
+  system.bus().after(from_seconds(0.6), [&](TimePoint) {
+    goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"});
+  });
   system.observer().on_sample([&](const Snapshot& snapshot, TimePoint) {
     see(snapshot.ground_truth.sample, std::abs(snapshot.active.sample.speed_factor) >= 1e-3);
   });
@@ -101,7 +107,8 @@ std::uint64_t give(const std::string& scenario, double seconds, const std::funct
   return system.snapshot().ground_truth.sample.ssm_violations;
 }
 
-/// When the arm, were all well, is in the middle of its longest motion with the mug [s]: the same seed gives the same bits until a fault.
+/// When the arm, were all well, is in the middle of its longest motion with the mug [s]: the same
+/// seed gives the same bits until a fault.
 double on_its_way() {
   const Changed scenario([](config::SensorDescription&) {});
   double begun = -1, last = -1, longest = 0, middle = 0;
@@ -125,13 +132,14 @@ Standstill with_fault(config::SensorFaultKind kind, double at, double length) {
     fault->set_delay(2);
   });
   Standstill out;
-  out.ssm_violations = give(scenario.path(), at + length + 15, [&](const GroundTruth& ground_truth, bool moves) {
-    if (!moves) return;
-    const double t = ground_truth.sim_time - at;
-    if (t > -1 && t < 0) out.moved_before = true;
-    if (t > 0 && t < length) out.last_moved = t;
-    if (t > length + 0.5) out.moved_again = true;
-  });
+  out.ssm_violations =
+      give(scenario.path(), at + length + 15, [&](const GroundTruth& ground_truth, bool moves) {
+        if (!moves) return;
+        const double t = ground_truth.sim_time - at;
+        if (t > -1 && t < 0) out.moved_before = true;
+        if (t > 0 && t < length) out.last_moved = t;
+        if (t > length + 0.5) out.moved_again = true;
+      });
   return out;
 }
 

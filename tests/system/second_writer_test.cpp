@@ -1,6 +1,6 @@
-// A second writer on each topic with one writer, in a running system over DDS, at rest and in motion: no axis leaves its place because of
-// that writer, it is named within a second, and nothing breaks a limit. HANDSEL_RUNS: runs of each topic and kind (default: a selection,
-// once).
+// A second writer on each topic with one writer, in a running system over DDS, at rest and in
+// motion: no axis leaves its place because of that writer, it is named within a second, and nothing
+// breaks a limit. HANDSEL_RUNS: runs of each topic and kind (default: a selection, once).
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -41,7 +41,9 @@ std::uint64_t runs() {
 
 enum class Kind : std::uint8_t { same_qos, stronger, stranger };
 const char* name(Kind kind) {
-  return kind == Kind::same_qos ? "of the same name and QoS" : kind == Kind::stronger ? "exclusive and stronger" : "of another name";
+  return kind == Kind::same_qos   ? "of the same name and QoS"
+         : kind == Kind::stronger ? "exclusive and stronger"
+                                  : "of another name";
 }
 
 /// What the rightful writers said last, for second writers that imitate them.
@@ -165,12 +167,15 @@ class SecondWriter {
   SecondWriter(const MessageType& type, Kind kind, std::function<bool(std::uint64_t, void*)> make) {
     const TopicRow& row = type.row();
     const std::string_view writers = row.writers;
-    const std::string component = kind == Kind::stranger ? "stranger" : std::string(writers.substr(0, writers.find(' ')));
-    const Qos named(dds_create_qos(), &dds_delete_qos), of_topic = topic_qos(row), offered = writer_qos(row);
+    const std::string component =
+        kind == Kind::stranger ? "stranger" : std::string(writers.substr(0, writers.find(' ')));
+    const Qos named(dds_create_qos(), &dds_delete_qos), of_topic = topic_qos(row),
+                                                        offered = writer_qos(row);
     dds_qset_entity_name(named.get(), component.c_str());
     participant_ = dds_create_participant(kDomain, named.get(), nullptr);
-    const dds_entity_t topic =
-        dds_create_topic(participant_, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), row.topic, of_topic.get(), nullptr);
+    const dds_entity_t topic = dds_create_topic(
+        participant_, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), row.topic,
+        of_topic.get(), nullptr);
     if (kind == Kind::stronger) {
       dds_qset_ownership(offered.get(), DDS_OWNERSHIP_EXCLUSIVE);
       dds_qset_ownership_strength(offered.get(), 1'000'000);
@@ -199,11 +204,13 @@ struct Topic {
 };
 template <class M>
 Topic topic() {
-  return {&TopicOf<M>::row, [](Known& known, Kind kind) { return SecondWriter::of<M>(known, kind); }};
+  return {&TopicOf<M>::row,
+          [](Known& known, Kind kind) { return SecondWriter::of<M>(known, kind); }};
 }
 std::vector<Topic> all_topics() {
-  return {topic<JointCommand>(), topic<Go>(),         topic<SafetyState>(), topic<TrajectoryCommand>(), topic<HandCommand>(),
-          topic<HumanState>(),   topic<RobotState>(), topic<Scene>(),       topic<ActionStatus>()};
+  return {topic<JointCommand>(),      topic<Go>(),          topic<SafetyState>(),
+          topic<TrajectoryCommand>(), topic<HandCommand>(), topic<HumanState>(),
+          topic<RobotState>(),        topic<Scene>(),       topic<ActionStatus>()};
 }
 
 /// What a second writer brought about.
@@ -217,7 +224,9 @@ struct Effect {
 
 class SecondWriterTest : public testing::Test {
  protected:
-  SecondWriterTest() : system_({.domain = kDomain, .scenario = "give_mug", .seed = 3, .web_port = 0}), session_(system_.session()) {
+  SecondWriterTest()
+      : system_({.domain = kDomain, .scenario = "give_mug", .seed = 3, .web_port = 0}),
+        session_(system_.session()) {
     const RobotModel robot = RobotModel::load(robot_description(robot_of(system_.options())));
     arm_ = robot.require_group("arm").axes;
     DdsBus& bus = session_.bus();
@@ -227,8 +236,10 @@ class SecondWriterTest : public testing::Test {
     });
     bus.subscribe<Go>([this](const Go& m, const Receipt&) { keep(known_.go, m); });
     bus.subscribe<Scene>([this](const Scene& m, const Receipt&) { keep(known_.scene, m); });
-    bus.subscribe<HumanState>([this](const HumanState& m, const Receipt&) { keep(known_.people, m); });
-    bus.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt&) { keep(known_.action, m); });
+    bus.subscribe<HumanState>(
+        [this](const HumanState& m, const Receipt&) { keep(known_.people, m); });
+    bus.subscribe<ActionStatus>(
+        [this](const ActionStatus& m, const Receipt&) { keep(known_.action, m); });
     bus.subscribe<RobotState>([this](const RobotState& m, const Receipt&) {
       keep(known_.state, m);
       if (watching_) states_.push_back({m.stamp, m.position});
@@ -236,7 +247,9 @@ class SecondWriterTest : public testing::Test {
   }
   void SetUp() override {
     ASSERT_TRUE(system_.wait_ready(kReadyTimeout).has_value());
-    ASSERT_TRUE(session_.wait(kPatience, [&] { return known_.set_point.position.size() > 0 && known_.go.allowed && at_rest(); }));
+    ASSERT_TRUE(session_.wait(kPatience, [&] {
+      return known_.set_point.position.size() > 0 && known_.go.allowed && at_rest();
+    }));
   }
   template <class M>
   void keep(M& kept, const M& now) {
@@ -268,7 +281,8 @@ class SecondWriterTest : public testing::Test {
     return largest;
   }
   bool at_rest() const {
-    return session_.snapshot().ground_truth.ever && !session_.snapshot().ground_truth.sample.robot_moving &&
+    return session_.snapshot().ground_truth.ever &&
+           !session_.snapshot().ground_truth.sample.robot_moving &&
            session_.snapshot().action.sample.state != ActionState::running;
   }
   /// First arm motion of a task: the mug is taken, or put back.
@@ -282,13 +296,15 @@ class SecondWriterTest : public testing::Test {
     ASSERT_TRUE(session_.send(goal));
     ASSERT_TRUE(session_.wait(kPatience, [&] {
       const GroundTruth& ground_truth = session_.snapshot().ground_truth.sample;
-      return ground_truth.robot_moving && session_.snapshot().execution.sample.motion == MotionState::running;
+      return ground_truth.robot_moving &&
+             session_.snapshot().execution.sample.motion == MotionState::running;
     })) << session_.snapshot().task.sample.reason;
   }
   void end_motion() {
     EXPECT_TRUE(session_.wait(std::chrono::seconds(60), [&] {
       const TaskStatus& task = session_.snapshot().task.sample;
-      return at_rest() && (task.state == TaskState::succeeded || task.state == TaskState::failed || task.state == TaskState::refused);
+      return at_rest() && (task.state == TaskState::succeeded || task.state == TaskState::failed ||
+                           task.state == TaskState::refused);
     })) << "the task does not end";
   }
   /// Name of the reader whose health names a second writer of the topic, or empty.
@@ -317,19 +333,23 @@ class SecondWriterTest : public testing::Test {
     watching_ = true;
     const TimePoint begin = session_.bus().now();
     auto writer = topic.make(known_, kind);
-    const bool named = session_.wait(from_seconds(3), [&] { return !named_by(*topic.row).empty(); });
+    const bool named =
+        session_.wait(from_seconds(3), [&] { return !named_by(*topic.row).empty(); });
     effect.named_after = named ? to_seconds(session_.bus().now() - begin) : -1;
     if (named) effect.reason = session_.snapshot().health.at(named_by(*topic.row)).sample.reason;
     session_.wait(from_seconds(0.7), [] { return false; });
     const SystemStatus status = make_status(session_.snapshot(), session_.bus().now());
-    EXPECT_TRUE(std::any_of(status.troubles.begin(), status.troubles.end(), [](const std::string& trouble) {
-      return trouble.find("second_writer") != std::string::npos;
-    })) << "handsel status does not show it";
+    EXPECT_TRUE(std::any_of(status.troubles.begin(), status.troubles.end(),
+                            [](const std::string& trouble) {
+                              return trouble.find("second_writer") != std::string::npos;
+                            }))
+        << "handsel status does not show it";
     EXPECT_GT(writer->sent(), 0u);
     watching_ = false;
     writer.reset();
     const TimePoint gone = session_.bus().now();
-    const bool cleared = session_.wait(from_seconds(3), [&] { return named_by(*topic.row).empty(); });
+    const bool cleared =
+        session_.wait(from_seconds(3), [&] { return named_by(*topic.row).empty(); });
     effect.cleared_after = cleared ? to_seconds(session_.bus().now() - gone) : -1;
     if (in_motion) end_motion();
     EXPECT_GT(states_.size(), 20u);
@@ -345,15 +365,19 @@ class SecondWriterTest : public testing::Test {
       return;
     }
     const Effect effect = disturb(topic, kind, in_motion);
-    const std::string what = std::string(topic.row->topic) + ", a second writer " + name(kind) + (in_motion ? ", in motion" : ", at rest");
-    std::printf("%-75s off %.4f rad, named after %.2f s, cleared after %.2f s, %llu violations\n", what.c_str(), effect.off,
-                effect.named_after, effect.cleared_after, static_cast<unsigned long long>(effect.violations));
+    const std::string what = std::string(topic.row->topic) + ", a second writer " + name(kind) +
+                             (in_motion ? ", in motion" : ", at rest");
+    std::printf("%-75s off %.4f rad, named after %.2f s, cleared after %.2f s, %llu violations\n",
+                what.c_str(), effect.off, effect.named_after, effect.cleared_after,
+                static_cast<unsigned long long>(effect.violations));
     std::fflush(stdout);
     EXPECT_LE(effect.off, kPlace) << what;
     EXPECT_GE(effect.named_after, 0.0) << what << ": never named";
     EXPECT_LE(effect.named_after, kNamed) << what;
-    EXPECT_NE(effect.reason.find("pid " + std::to_string(getpid())), std::string::npos) << what << ": " << effect.reason;
-    EXPECT_NE(effect.reason.find(topic.row->topic), std::string::npos) << what << ": " << effect.reason;
+    EXPECT_NE(effect.reason.find("pid " + std::to_string(getpid())), std::string::npos)
+        << what << ": " << effect.reason;
+    EXPECT_NE(effect.reason.find(topic.row->topic), std::string::npos)
+        << what << ": " << effect.reason;
     EXPECT_GE(effect.cleared_after, 0.0) << what << ": still named when gone";
     EXPECT_LE(effect.cleared_after, kNamed) << what;
     EXPECT_EQ(effect.violations, 0u) << what;
@@ -375,7 +399,8 @@ class SecondWriterTest : public testing::Test {
 TEST_F(SecondWriterTest, moves_nothing_and_is_named) {
   for (std::uint64_t run = 0; run < runs(); ++run) {
     for (const Topic& topic : all_topics()) {
-      for (const Kind kind : {Kind::same_qos, Kind::stronger, Kind::stranger}) expect_harmless(topic, kind, false);
+      for (const Kind kind : {Kind::same_qos, Kind::stronger, Kind::stranger})
+        expect_harmless(topic, kind, false);
       expect_harmless(topic, run % 2 == 0 ? Kind::same_qos : Kind::stronger, true);
     }
   }
@@ -389,10 +414,12 @@ TEST_F(SecondWriterTest, moves_nothing_and_is_named) {
   expect_harmless(topic<Go>(), Kind::stronger, true);
 }
 
-/// A controller that dies is replaced while its old writer is still in the transport's books, and the new one is accepted.
+/// A controller that dies is replaced while its old writer is still in the transport's books, and
+/// the new one is accepted.
 TEST_F(SecondWriterTest, is_not_what_a_restarted_controller_is_taken_for) {
   const std::uint64_t before = session_.snapshot().ground_truth.sample.set_points;
-  const std::uint64_t incarnation = session_.snapshot().health.at("trajectory_controller").sample.incarnation;
+  const std::uint64_t incarnation =
+      session_.snapshot().health.at("trajectory_controller").sample.incarnation;
   ASSERT_GT(system_.launcher().pid("trajectory_controller"), 0);
   const TimePoint killed = session_.bus().now();
   ::kill(system_.launcher().pid("trajectory_controller"), SIGKILL);

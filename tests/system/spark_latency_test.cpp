@@ -1,5 +1,6 @@
-// From an observation on the wire to the Scene and the HumanState that hold it, over DDS, with SPARK as a process of its own. The figures
-// are printed; what is asserted holds on a busy machine too. HANDSEL_RUNS: how many observations (100).
+// From an observation on the wire to the Scene and the HumanState that hold it, over DDS, with
+// SPARK as a process of its own. The figures are printed; what is asserted holds on a busy machine
+// too. HANDSEL_RUNS: how many observations (100).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,14 +24,17 @@ struct Delays {
   std::vector<double> milliseconds;
   double share(double q) {
     std::sort(milliseconds.begin(), milliseconds.end());
-    return milliseconds.at(static_cast<std::size_t>(q * static_cast<double>(milliseconds.size() - 1)));
+    return milliseconds.at(
+        static_cast<std::size_t>(q * static_cast<double>(milliseconds.size() - 1)));
   }
   void print(const char* what) {
-    std::printf("%-12s p50 %.2f ms, p99 %.2f ms, largest %.2f ms of %zu\n", what, share(0.5), share(0.99), share(1), milliseconds.size());
+    std::printf("%-12s p50 %.2f ms, p99 %.2f ms, largest %.2f ms of %zu\n", what, share(0.5),
+                share(0.99), share(1), milliseconds.size());
     const double edges[] = {0.25, 0.5, 1, 2, 5, 10, 20, 1e9};
     double low = 0;
     for (const double edge : edges) {
-      const auto in = std::count_if(milliseconds.begin(), milliseconds.end(), [&](double d) { return d >= low && d < edge; });
+      const auto in = std::count_if(milliseconds.begin(), milliseconds.end(),
+                                    [&](double d) { return d >= low && d < edge; });
       if (in > 0) std::printf("  %5.2f to %5.2f ms %5td\n", low, std::min(edge, 99.0), in);
       low = edge;
     }
@@ -68,7 +72,8 @@ TEST(SparkLatency, an_observation_is_in_the_scene_at_once) {
     mug = 0.5 + kStep * (i % 10);
     ObjectObservation thing;
     thing.source = "tracker";
-    thing.objects = {{"crate", "", make_pose({mug, 0, 0.8}), 0.9, {}, {PrimitiveKind::box, {0.1, 0.1, 0.1}}}};
+    thing.objects = {
+        {"crate", "", make_pose({mug, 0, 0.8}), 0.9, {}, {PrimitiveKind::box, {0.1, 0.1, 0.1}}}};
     HumanObservation body;
     body.source = "camera";
     body.coverage = {{-4, -4, -1}, {4, 4, 3}};
@@ -81,7 +86,9 @@ TEST(SparkLatency, an_observation_is_in_the_scene_at_once) {
     things->publish(thing);
     people->publish(body);
   };
-  ASSERT_TRUE(bus.run_until([&] { return things->readers() > 0 && people->readers() > 0; }, std::chrono::seconds(20))) << spark.said();
+  ASSERT_TRUE(bus.run_until([&] { return things->readers() > 0 && people->readers() > 0; },
+                            std::chrono::seconds(20)))
+      << spark.said();
   int n = 0;
   ASSERT_TRUE(bus.run_until(
       [&, next = bus.now()]() mutable {  // until both lanes are up

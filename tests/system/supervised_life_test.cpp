@@ -1,6 +1,8 @@
-// Processes that hang or die under a running system: each is replaced and useful again within 5 s, the task goes on or ends with its
-// reason, nobody is approached faster than the distance allows. By default three blows; HANDSEL_PHASES: so many random phases of SIGSTOP
-// and kill -9 for each of HANDSEL_PROCESSES (comma separated; default: every process). HANDSEL_FIRST_SEED: of the random choices.
+// Processes that hang or die under a running system: each is replaced and useful again within 5 s,
+// the task goes on or ends with its reason, nobody is approached faster than the distance allows.
+// By default three blows; HANDSEL_PHASES: so many random phases of SIGSTOP and kill -9 for each of
+// HANDSEL_PROCESSES (comma separated; default: every process). HANDSEL_FIRST_SEED: of the random
+// choices.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -45,8 +47,9 @@ struct Outcome {
 
 std::string describe(const Blow& blow, const Outcome& outcome) {
   char text[512];
-  std::snprintf(text, sizeof text, "%-8s %-22s in \"%s\": back after %.2f s, task %s%s%s", blow.signal == SIGSTOP ? "SIGSTOP" : "kill -9",
-                blow.process.c_str(), outcome.phase.c_str(), outcome.back, name(outcome.task.state),
+  std::snprintf(text, sizeof text, "%-8s %-22s in \"%s\": back after %.2f s, task %s%s%s",
+                blow.signal == SIGSTOP ? "SIGSTOP" : "kill -9", blow.process.c_str(),
+                outcome.phase.c_str(), outcome.back, name(outcome.task.state),
                 outcome.task.reason.empty() ? "" : ": ", outcome.task.reason.c_str());
   return text;
 }
@@ -54,15 +57,18 @@ std::string describe(const Blow& blow, const Outcome& outcome) {
 /// A running system in which a mug is picked up and put down again, for ever.
 class Life {
  public:
-  explicit Life(std::uint64_t seed) : system_({.domain = kDomain, .scenario = "give_mug", .seed = seed, .web_port = 0}) {
-    system_.session().observer().on_event([this](const TimelineEvent& event) { events_.push_back(event); });
+  explicit Life(std::uint64_t seed)
+      : system_({.domain = kDomain, .scenario = "give_mug", .seed = seed, .web_port = 0}) {
+    system_.session().observer().on_event(
+        [this](const TimelineEvent& event) { events_.push_back(event); });
   }
   bool ready() { return system_.wait_ready(kReadyTimeout).has_value(); }
   Outcome strike(const Blow& blow);
   /// What happened since the last task was given.
   std::string timeline() const {
     std::ostringstream out;
-    for (const TimelineEvent& event : events_) out << "  " << to_seconds(event.at - task_at_) << " s  " << event.text << "\n";
+    for (const TimelineEvent& event : events_)
+      out << "  " << to_seconds(event.at - task_at_) << " s  " << event.text << "\n";
     return out.str();
   }
   System& system() { return system_; }
@@ -84,7 +90,8 @@ class Life {
   }
   bool is_back(const std::string& process, pid_t old) {
     const auto health = now().health.find(process);
-    return health != now().health.end() && static_cast<pid_t>(health->second.sample.pid) == system_.launcher().pid(process) &&
+    return health != now().health.end() &&
+           static_cast<pid_t>(health->second.sample.pid) == system_.launcher().pid(process) &&
            system_.launcher().pid(process) != old && why_not_ready(now(), process).empty();
   }
 
@@ -107,29 +114,36 @@ void Life::give_task() {
 
 /// A supervisor that was started anew is given the task again.
 void Life::remind() {
-  if (goal_.id == 0 || task_over() || monotonic_now() - now().task.arrival < kTaskSilence || monotonic_now() - sent_ < kTaskSilence) return;
+  if (goal_.id == 0 || task_over() || monotonic_now() - now().task.arrival < kTaskSilence ||
+      monotonic_now() - sent_ < kTaskSilence)
+    return;
   system_.session().publish(goal_);
   sent_ = monotonic_now();
 }
 
 Outcome Life::strike(const Blow& blow) {
   Outcome out;
-  until(kRestPatience,
-        [&] { return !now().ground_truth.sample.robot_moving && not_ready(now()).empty() && now().execution.sample.mode < Mode::hold; });
+  until(kRestPatience, [&] {
+    return !now().ground_truth.sample.robot_moving && not_ready(now()).empty() &&
+           now().execution.sample.mode < Mode::hold;
+  });
   give_task();
   until(kPatience, [&] {
     if (task_over()) return true;
-    return blow.at < 0 ? now().ground_truth.sample.robot_moving : monotonic_now() - task_at_ > from_seconds(blow.at);
+    return blow.at < 0 ? now().ground_truth.sample.robot_moving
+                       : monotonic_now() - task_at_ > from_seconds(blow.at);
   });
   const GroundTruth before = now().ground_truth.sample;
   const pid_t old = system_.launcher().pid(blow.process);
   out.phase = phase_text(now().action.sample);
   const TimePoint struck = monotonic_now();
   ::kill(old, blow.signal);
-  if (until(from_seconds(3 * kBack), [&] { return is_back(blow.process, old); })) out.back = to_seconds(monotonic_now() - struck);
+  if (until(from_seconds(3 * kBack), [&] { return is_back(blow.process, old); }))
+    out.back = to_seconds(monotonic_now() - struck);
   out.over = until(kPatience, [&] { return task_over(); });
   out.at_rest = until(kRestPatience, [&] { return !now().ground_truth.sample.robot_moving; });
-  if (const auto task = now().tasks.find(goal_.id); task != now().tasks.end()) out.task = task->second;
+  if (const auto task = now().tasks.find(goal_.id); task != now().tasks.end())
+    out.task = task->second;
   const GroundTruth& after = now().ground_truth.sample;
   const bool new_world = after.sim_time < before.sim_time;
   out.ssm_violations = after.ssm_violations - (new_world ? 0 : before.ssm_violations);
@@ -151,7 +165,9 @@ void expect_in_order(const Blow& blow, const Outcome& outcome, const std::string
 }
 
 std::vector<Blow> three_blows() {
-  return {{"path_planner", SIGSTOP, 0.3}, {"spark", SIGSTOP, -1.0}, {"trajectory_controller", SIGKILL, -1.0}};
+  return {{"path_planner", SIGSTOP, 0.3},
+          {"spark", SIGSTOP, -1.0},
+          {"trajectory_controller", SIGKILL, -1.0}};
 }
 
 std::vector<Blow> all_blows(int phases, std::mt19937_64& random) {
@@ -166,7 +182,8 @@ std::vector<Blow> all_blows(int phases, std::mt19937_64& random) {
   for (const std::string& process : processes)
     for (int k = 0; k < phases; ++k)
       for (const int signal : {SIGSTOP, SIGKILL})
-        blows.push_back({process, signal, std::uniform_real_distribution<double>(0.0, kLongestPhase)(random)});
+        blows.push_back(
+            {process, signal, std::uniform_real_distribution<double>(0.0, kLongestPhase)(random)});
   return blows;
 }
 
@@ -187,36 +204,45 @@ TEST(SupervisedLife, whoever_hangs_or_dies_is_replaced_and_the_task_ends_in_orde
     (outcome.task.state == TaskState::succeeded ? done : given_up) += 1;
     late += outcome.back < 0.0 || outcome.back > kBack;
     slowest = std::max(slowest, outcome.back);
-    if (!outcome.over || outcome.dropped || outcome.back < 0.0) {  // the next one deserves a sound world
+    if (!outcome.over || outcome.dropped ||
+        outcome.back < 0.0) {  // the next one deserves a sound world
       life.reset();
       life = std::make_unique<Life>(random());
       ASSERT_TRUE(life->ready());
     }
   }
-  std::printf("%zu blows: %d tasks done, %d given up in order; back after at most %.2f s, %d later than %.0f s\n", blows.size(), done,
-              given_up, slowest, late, kBack);
+  std::printf(
+      "%zu blows: %d tasks done, %d given up in order; back after at most %.2f s, %d later than "
+      "%.0f s\n",
+      blows.size(), done, given_up, slowest, late, kBack);
 }
 
-/// The product in a folder of its own, where one program can be made to fail, with settings of its own.
+/// The product in a folder of its own, where one program can be made to fail, with settings of its
+/// own.
 struct Installation {
   test::TemporaryFolder folder;
   fs::path broken = folder.path() / "broken";  // while this file is there the planner ends at once
 
   Installation() {
-    const fs::path bin = folder.path() / "bin", home = folder.path() / "home", built = fs::path(HANDSEL_COMMAND).parent_path();
+    const fs::path bin = folder.path() / "bin", home = folder.path() / "home",
+                   built = fs::path(HANDSEL_COMMAND).parent_path();
     fs::create_directories(bin);
     fs::create_directories(home / "config");
-    fs::copy_file(HANDSEL_COMMAND, bin / "handsel");  // a process finds the others beside its own file
+    fs::copy_file(HANDSEL_COMMAND,
+                  bin / "handsel");  // a process finds the others beside its own file
     for (const auto& entry : fs::directory_iterator(built)) {
       const std::string program = entry.path().filename();
-      if (program.starts_with("handsel_") && program != "handsel_path_planner") fs::create_symlink(entry.path(), bin / program);
+      if (program.starts_with("handsel_") && program != "handsel_path_planner")
+        fs::create_symlink(entry.path(), bin / program);
     }
     std::ofstream(bin / "handsel_path_planner")
-        << "#!/bin/sh\nif [ -e " << broken.string() << " ]; then echo 'the library is gone' >&2; exit 3; fi\nexec "
+        << "#!/bin/sh\nif [ -e " << broken.string()
+        << " ]; then echo 'the library is gone' >&2; exit 3; fi\nexec "
         << (built / "handsel_path_planner").string() << " \"$@\"\n";
     fs::permissions(bin / "handsel_path_planner", fs::perms::owner_all);
     const fs::path deploy = fs::path(HANDSEL_SOURCE_DIR) / "deploy";
-    for (const char* part : {"robots", "hands", "objects", "dds"}) fs::create_symlink(deploy / part, home / part);
+    for (const char* part : {"robots", "hands", "objects", "dds"})
+      fs::create_symlink(deploy / part, home / part);
     fs::create_symlink(deploy.parent_path() / "sim" / "scenarios", home / "scenarios");
     for (const auto& entry : fs::directory_iterator(deploy / "config"))
       fs::copy_file(entry.path(), home / "config" / entry.path().filename());
@@ -236,37 +262,48 @@ struct Installation {
   }
 };
 
-TEST(SupervisedLife, a_planner_that_cannot_be_started_any_more_degrades_the_system_and_does_not_end_it) {
+TEST(SupervisedLife,
+     a_planner_that_cannot_be_started_any_more_degrades_the_system_and_does_not_end_it) {
   Installation installation;
   const std::string domain = std::to_string(kDomain + 1);
-  test::Background up({installation.command(), "up", "--headless", "--port", "0", "--domain", domain});
+  test::Background up(
+      {installation.command(), "up", "--headless", "--port", "0", "--domain", domain});
   ASSERT_TRUE(up.wait_for("ready after")) << up.said();
   Session session(kDomain + 1);
   const auto line = [&] {
     const SystemStatus status = make_status(session.snapshot(), session.bus().now());
-    const auto found = std::find_if(status.processes.begin(), status.processes.end(),
-                                    [](const ProcessLine& process) { return process.component == "path_planner"; });
+    const auto found = std::find_if(
+        status.processes.begin(), status.processes.end(),
+        [](const ProcessLine& process) { return process.component == "path_planner"; });
     return found == status.processes.end() ? ProcessLine{} : *found;
   };
-  ASSERT_TRUE(session.wait(from_seconds(5), [&] { return line().state == "ok" && not_ready(session.snapshot()).empty(); }));
+  ASSERT_TRUE(session.wait(from_seconds(5), [&] {
+    return line().state == "ok" && not_ready(session.snapshot()).empty();
+  }));
   std::ofstream(installation.broken) << "x";
   ASSERT_EQ(::kill(static_cast<pid_t>(line().pid), SIGKILL), 0);
   config::TaskDescription pick;
   pick.set_kind("pick");
   pick.set_object("mug");
   const TaskGoal goal = make_goal(pick, session.new_task_id());
-  EXPECT_TRUE(session.wait(from_seconds(5), [&] { return line().state == "restarting"; })) << line().state;
+  EXPECT_TRUE(session.wait(from_seconds(5), [&] { return line().state == "restarting"; }))
+      << line().state;
   ASSERT_TRUE(session.send(goal));
-  EXPECT_TRUE(session.wait(from_seconds(10), [&] { return line().state == "restarting" && line().reason.starts_with("restart 5 in "); }))
+  EXPECT_TRUE(session.wait(
+      from_seconds(10),
+      [&] { return line().state == "restarting" && line().reason.starts_with("restart 5 in "); }))
       << line().state << ": " << line().reason;
-  EXPECT_NE(line().reason.find("ended with exit code 3 (the library is gone)"), std::string::npos) << line().reason;
+  EXPECT_NE(line().reason.find("ended with exit code 3 (the library is gone)"), std::string::npos)
+      << line().reason;
 
   const auto task = [&] {
     const auto found = session.snapshot().tasks.find(goal.id);
     return found == session.snapshot().tasks.end() ? TaskStatus{} : found->second;
   };
-  EXPECT_TRUE(session.wait(from_seconds(10), [&] { return is_over(task().state); })) << "the task hangs: " << name(task().state);
-  EXPECT_NE(task().reason.find("path_planner has not been there for 3 s"), std::string::npos) << task().reason;
+  EXPECT_TRUE(session.wait(from_seconds(10), [&] { return is_over(task().state); }))
+      << "the task hangs: " << name(task().state);
+  EXPECT_NE(task().reason.find("path_planner has not been there for 3 s"), std::string::npos)
+      << task().reason;
   for (const auto& [component, seen] : session.snapshot().health) {
     if (component == "path_planner") continue;
     EXPECT_LT(to_seconds(session.bus().now() - seen.arrival), 1.0) << component << " went with it";

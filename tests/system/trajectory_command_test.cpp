@@ -1,4 +1,5 @@
-// `handsel trajectory solve | smooth | sample` as its user meets it: real process, exit codes, exact sentences.
+// `handsel trajectory solve | smooth | sample` as its user meets it: real process, exit codes,
+// exact sentences.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,23 +27,27 @@ struct Answers {
 };
 
 Answers ask(const std::string& arguments, const std::string& input) {
-  const Outcome outcome = shell("printf '%s' '" + input + "' | " + kHandsel + " trajectory " + arguments);
+  const Outcome outcome =
+      shell("printf '%s' '" + input + "' | " + kHandsel + " trajectory " + arguments);
   Answers out{outcome.exit_code, {}, outcome.err};
   std::istringstream lines(outcome.out);
-  for (std::string line; std::getline(lines, line);) out.lines.push_back(json::parse(line, nullptr, false));
+  for (std::string line; std::getline(lines, line);)
+    out.lines.push_back(json::parse(line, nullptr, false));
   return out;
 }
 
 /// Two axes at rest, one of them with something else in it.
 std::string problem(const std::string& replaced = "", const std::string& by = "") {
-  json line = json::parse(R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],"amax":[1,1],"jmax":[1,1]})");
+  json line = json::parse(
+      R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],"amax":[1,1],"jmax":[1,1]})");
   std::string text = line.dump();
   if (replaced.empty()) return text;
   const std::string now = "\"" + replaced + "\":" + line[replaced].dump();
   return text.replace(text.find(now), now.size(), "\"" + replaced + "\":" + by);
 }
 
-void expect_refusal(const std::string& command, const std::string& line, const std::string& sentence) {
+void expect_refusal(const std::string& command, const std::string& line,
+                    const std::string& sentence) {
   SCOPED_TRACE(line);
   const Answers a = ask(command, line);
   EXPECT_EQ(a.exit_code, 2);
@@ -82,8 +87,10 @@ TEST(TrajectoryCommand, each_axis_for_itself_and_imposed_durations) {
   EXPECT_EQ(imposed.exit_code, 0);
   EXPECT_NEAR(imposed.lines.at(0).at("duration").get<double>(), 6, 1e-12);
   EXPECT_EQ(imposed.lines[0].at("excess"), 0);
-  expect_refusal("solve", open + R"(,"impose":true,"duration":3.5})", "axis 1: needs 4.000000 s, imposed are 3.500000 s");
-  expect_refusal("solve", open + R"(,"impose":true,"duration":-1})", "the imposed duration must be finite and not negative");
+  expect_refusal("solve", open + R"(,"impose":true,"duration":3.5})",
+                 "axis 1: needs 4.000000 s, imposed are 3.500000 s");
+  expect_refusal("solve", open + R"(,"impose":true,"duration":-1})",
+                 "the imposed duration must be finite and not negative");
   expect_refusal("solve", open + R"(,"impose":true})", "the field \"duration\" is missing");
   expect_refusal("solve", open + R"(,"sync":"late"})", "\"sync\" must be \"time\" or \"none\"");
 }
@@ -93,22 +100,30 @@ TEST(TrajectoryCommand, every_fault_has_its_sentence) {
   expect_refusal("solve", problem("p0", "[0,Infinity]"), "this is not JSON");
   expect_refusal("solve", problem("p0", "[0,null]"), "\"p0\" must be a finite number");
   expect_refusal("solve", problem("a0", "[0,1e999]"), "this is not JSON");
-  expect_refusal("solve", problem("v0", "[0]"), "the start state has 2 positions, 1 velocities and 2 accelerations, wanted 2 of each");
-  expect_refusal("solve", problem("pf", "[1,2,3]"), "the end state has 3 positions, 2 velocities and 2 accelerations, wanted 2 of each");
+  expect_refusal(
+      "solve", problem("v0", "[0]"),
+      "the start state has 2 positions, 1 velocities and 2 accelerations, wanted 2 of each");
+  expect_refusal(
+      "solve", problem("pf", "[1,2,3]"),
+      "the end state has 3 positions, 2 velocities and 2 accelerations, wanted 2 of each");
   expect_refusal("solve", problem("vmax", "[1]"), "limits do not have 2 axes");
   expect_refusal("solve", problem("vmax", "[1,0]"), "axis 1: a limit is not positive");
   expect_refusal("solve", problem("jmax", "[-1,1]"), "axis 0: a limit is not positive");
-  expect_refusal("solve", problem("vf", "[0,3]"), "axis 1: the end state cannot be reached inside the limits");
+  expect_refusal("solve", problem("vf", "[0,3]"),
+                 "axis 1: the end state cannot be reached inside the limits");
   expect_refusal("solve", "{", "this is not JSON");
   expect_refusal("solve", "[]", "expected an object with the field \"p0\"");
   const std::string smooth = R"("vmax":[1,1],"amax":[1,1],"jmax":[1,1])";
   expect_refusal("smooth", "{\"nodes\":[]," + smooth + "}", "there are no nodes");
   expect_refusal("smooth", "{\"nodes\":[[0,0],[1]]," + smooth + "}", "node 1 has 1 axes, node 0 2");
-  expect_refusal("smooth", "{\"nodes\":[[0,0],[1,1]],\"tau\":-1," + smooth + "}", "tau must be a number that is not negative");
+  expect_refusal("smooth", "{\"nodes\":[[0,0],[1,1]],\"tau\":-1," + smooth + "}",
+                 "tau must be a number that is not negative");
   expect_refusal("smooth", R"({"nodes":[[0,0],[1,1]],"vmax":[1,1],"amax":[1,0],"jmax":[1,1]})",
                  "axis 1: limits must be positive and finite");
-  expect_refusal("sample", R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,"segments":[]}]})",
-                 "the axes do not last equally long");
+  expect_refusal(
+      "sample",
+      R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,"segments":[]}]})",
+      "the axes do not last equally long");
   expect_refusal("sample", R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[-1,1]]}]})",
                  "a segment must be [duration, jerk], the duration not negative");
 }
@@ -129,7 +144,8 @@ TEST(TrajectoryCommand, starts_beyond_the_limits_come_back_inside) {
 }
 
 TEST(TrajectoryCommand, smooths_a_node_and_says_how) {
-  const std::string line = R"({"nodes":[[0,0],[0.5,0],[0.8,0.4]],"vmax":[0.1,0.1],"amax":[0.3,0.3],"jmax":[0.9,0.9])";
+  const std::string line =
+      R"({"nodes":[[0,0],[0.5,0],[0.8,0.4]],"vmax":[0.1,0.1],"amax":[0.3,0.3],"jmax":[0.9,0.9])";
   const Answers soft = ask("smooth", line + "}"), stop = ask("smooth", line + ",\"tau\":0}");
   EXPECT_EQ(soft.exit_code, 0);
   ASSERT_EQ(soft.lines.at(0).at("corners").size(), 1u);
@@ -143,7 +159,8 @@ TEST(TrajectoryCommand, smooths_a_node_and_says_how) {
 }
 
 TEST(TrajectoryCommand, a_bad_line_does_not_stop_the_others) {
-  const Answers a = ask("solve", problem() + "\n" + problem("vmax", "[0,1]") + "\n\n" + problem() + "\n");
+  const Answers a =
+      ask("solve", problem() + "\n" + problem("vmax", "[0,1]") + "\n\n" + problem() + "\n");
   EXPECT_EQ(a.exit_code, 2);
   ASSERT_EQ(a.lines.size(), 3u);
   EXPECT_EQ(a.lines[1], (json{{"line", 2}, {"error", "axis 0: a limit is not positive"}}));
@@ -166,7 +183,8 @@ TEST(TrajectoryCommand, bad_usage_is_one_sentence) {
 }
 
 /// Answers to a file of the examples, each line changed before.
-Answers ask_example(const std::string& arguments, const std::string& file, const std::function<void(json&)>& change = {}) {
+Answers ask_example(const std::string& arguments, const std::string& file,
+                    const std::function<void(json&)>& change = {}) {
   std::ifstream in(std::string(HANDSEL_SOURCE_DIR) + "/examples/" + file);
   std::string input;
   for (std::string text; std::getline(in, text);) {
@@ -185,32 +203,38 @@ TEST(TrajectoryCommand, on_the_way_to_the_cassette_the_corner_over_the_lid_keeps
   ASSERT_TRUE(way.at("solved").get<bool>()) << way;
   ASSERT_EQ(way.at("corners").size(), 2u);
   EXPECT_EQ(way.at("corners")[0].at("method"), "stop");
-  EXPECT_NE(way.at("corners")[0].at("reason").get<std::string>().find("collides"), std::string::npos);
+  EXPECT_NE(way.at("corners")[0].at("reason").get<std::string>().find("collides"),
+            std::string::npos);
   EXPECT_NE(way.at("corners")[1].at("method"), "stop");
   const double saved = way.at("saved_s").get<double>();
   EXPECT_GT(saved, 0.3);
   EXPECT_NEAR(way.at("duration").get<double>(), way.at("duration_ptp").get<double>() - saved, 1e-9);
-  const Answers without = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
-    auto& things = line.at("obstacles");
-    things.erase(std::find_if(things.begin(), things.end(), [](const json& thing) { return thing.at("id") == "lid"; }));
-  });
+  const Answers without =
+      ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
+        auto& things = line.at("obstacles");
+        things.erase(std::find_if(things.begin(), things.end(),
+                                  [](const json& thing) { return thing.at("id") == "lid"; }));
+      });
   ASSERT_EQ(without.lines.size(), 1u);
   EXPECT_NE(without.lines[0].at("corners")[0].at("method"), "stop");
   EXPECT_LT(without.lines[0].at("duration").get<double>(), way.at("duration").get<double>() - 0.3);
 }
 
 TEST(TrajectoryCommand, what_the_tool_cannot_do_is_said_and_the_way_before_it_is_there) {
-  const auto expect = [](const char* what, std::size_t reached, const std::function<void(json&)>& change) {
-    const Answers a = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [&](json& line) {
-      line.erase("obstacles");
-      line.at("nodes").erase(2);
-      change(line.at("nodes"));
-    });
+  const auto expect = [](const char* what, std::size_t reached,
+                         const std::function<void(json&)>& change) {
+    const Answers a =
+        ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [&](json& line) {
+          line.erase("obstacles");
+          line.at("nodes").erase(2);
+          change(line.at("nodes"));
+        });
     ASSERT_EQ(a.lines.size(), 1u) << what;
     const json& way = a.lines[0];
     ASSERT_TRUE(way.contains("solved")) << way;
     EXPECT_EQ(a.exit_code, 1) << what;
-    EXPECT_NE(way.at("reason").get<std::string>().find(what), std::string::npos) << way.at("reason");
+    EXPECT_NE(way.at("reason").get<std::string>().find(what), std::string::npos)
+        << way.at("reason");
     EXPECT_EQ(way.at("reached"), reached) << what;
     EXPECT_EQ(way.at("duration").get<double>() > 0.5, reached > 0) << what;
   };
@@ -225,11 +249,12 @@ TEST(TrajectoryCommand, what_the_tool_cannot_do_is_said_and_the_way_before_it_is
     nodes[1]["p"][1] = -0.6;
   });
   // Equal nodes, and one where the tool is, are no motion.
-  const Answers same = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
-    line.erase("obstacles");
-    json& nodes = line.at("nodes");
-    nodes = {nodes[0], nodes[0], nodes[1], nodes[1]};
-  });
+  const Answers same =
+      ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
+        line.erase("obstacles");
+        json& nodes = line.at("nodes");
+        nodes = {nodes[0], nodes[0], nodes[1], nodes[1]};
+      });
   ASSERT_EQ(same.lines.size(), 1u);
   EXPECT_TRUE(same.lines[0].at("solved").get<bool>());
   EXPECT_EQ(same.lines[0].at("reached"), 4);
@@ -244,7 +269,8 @@ TEST(TrajectoryCommand, the_platform_drives_beneath_the_tool) {
     nodes[0]["p"][0] = nodes[0]["p"][0].get<double>() + 0.8;  // out of reach from where it stands
     nodes[0]["also"] = {{"platform_x", 0.8}, {"platform_y", 0.05}, {"platform_heading", 0.1}};
   };
-  const Answers a = ask_example("cartesian --robot jido --platform", "cassette/cassette.jsonl", drive);
+  const Answers a =
+      ask_example("cartesian --robot jido --platform", "cassette/cassette.jsonl", drive);
   ASSERT_EQ(a.lines.size(), 1u);
   EXPECT_EQ(a.exit_code, 0) << a.lines[0];
   EXPECT_EQ(a.lines[0].at("joint_names").size(), 10u);
@@ -273,8 +299,10 @@ TEST(TrajectoryCommand, beside_people_the_speed_follows_the_cost_of_the_way) {
   }
   EXPECT_LT(slowest[0], slowest[2] - 0.3);
   std::ifstream drawn(svg), kept(HANDSEL_SOURCE_DIR "/docs/figures/speed_beside_people.svg");
-  const std::string text((std::istreambuf_iterator<char>(drawn)), {}), shipped((std::istreambuf_iterator<char>(kept)), {});
-  EXPECT_EQ(text, shipped) << "docs/figures/speed_beside_people.svg is not what examples/beside_people draws";
+  const std::string text((std::istreambuf_iterator<char>(drawn)), {}),
+      shipped((std::istreambuf_iterator<char>(kept)), {});
+  EXPECT_EQ(text, shipped)
+      << "docs/figures/speed_beside_people.svg is not what examples/beside_people draws";
   EXPECT_EQ(ask("timed --robot jido", R"({"nodes": [{"nose": 1}]})").exit_code, 2);
 }
 

@@ -57,9 +57,12 @@ class AttentionTest : public testing::Test {
     active_.position = Vector::Zero(robot_->dof());
     active_.velocity = active_.acceleration = active_.position;
   }
-  World world() const { return {&people_, facts_known_ ? &facts_ : nullptr, &action_, &active_, nullptr, &scene_}; }
+  World world() const {
+    return {&people_, facts_known_ ? &facts_ : nullptr, &action_, &active_, nullptr, &scene_};
+  }
   void run(Attention& attention, double from, double to) {
-    for (int k = static_cast<int>(from * 100); k < static_cast<int>(to * 100); ++k) attention.step(world(), at(0.01 * k));
+    for (int k = static_cast<int>(from * 100); k < static_cast<int>(to * 100); ++k)
+      attention.step(world(), at(0.01 * k));
   }
   const BehaviourState& of(const AttentionState& state, Behaviour b) const {
     for (const BehaviourState& s : state.behaviours)
@@ -121,13 +124,18 @@ TEST(AdaptiveClock, the_fixed_law_heeds_nothing) {
     clock.fire(stimulus, at(1));
     EXPECT_EQ(clock.period(), 0.17);
   }
-  EXPECT_THROW(AdaptiveClock({ClockLaw::fixed, 0.1, 0.4, 0.1, 2.0, 1.0, 0.05}, Duration(0), "avoid"), ConfigError);
+  EXPECT_THROW(
+      AdaptiveClock({ClockLaw::fixed, 0.1, 0.4, 0.1, 2.0, 1.0, 0.05}, Duration(0), "avoid"),
+      ConfigError);
 }
 
 TEST(AdaptiveClock, refuses_settings_that_cannot_work) {
-  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.3, 0.1, 0.1, 1.0, 1.0}, Duration(0), "give"), ConfigError);
-  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.0, 0.1, 0.1, 1.0, 1.0}, Duration(0), "give"), ConfigError);
-  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.1, 0.2, 1.0, 1.0, 1.0}, Duration(0), "give"), ConfigError);
+  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.3, 0.1, 0.1, 1.0, 1.0}, Duration(0), "give"),
+               ConfigError);
+  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.0, 0.1, 0.1, 1.0, 1.0}, Duration(0), "give"),
+               ConfigError);
+  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.1, 0.2, 1.0, 1.0, 1.0}, Duration(0), "give"),
+               ConfigError);
 }
 
 TEST(Zones, nearing_counts_at_once_and_leaving_needs_margin_and_time) {
@@ -161,7 +169,8 @@ TEST_F(AttentionTest, a_person_standing_still_at_arms_length_slows_nothing_and_i
   EXPECT_NEAR(advice.gaze_target.x(), people_.people[0].joints[0].position.x(), 1e-9);
   EXPECT_FALSE(of(attention.state(), Behaviour::search).released);
   EXPECT_TRUE(of(attention.state(), Behaviour::track).released);
-  EXPECT_LE(of(attention.state(), Behaviour::search).activations, 4u) << "who is seen is not searched for";
+  EXPECT_LE(of(attention.state(), Behaviour::search).activations, 4u)
+      << "who is seen is not searched for";
 }
 
 TEST_F(AttentionTest, the_nearer_the_person_the_slower_the_arm_and_the_faster_the_clock) {
@@ -184,16 +193,19 @@ TEST_F(AttentionTest, a_person_who_comes_fast_is_answered_sooner_than_one_who_st
   Attention attention(settings(), body_);
   people_.people = {standing(1.5, 0)};
   run(attention, 0, 1);
-  const double still = attention.advice().speed_factor, period = of(attention.state(), Behaviour::avoid).period;
+  const double still = attention.advice().speed_factor,
+               period = of(attention.state(), Behaviour::avoid).period;
   move(people_.people[0], Vector3::Zero(), Vector3(-1.5, 0, 0));
   run(attention, 1, 2);
   EXPECT_LT(attention.advice().speed_factor, still);
   EXPECT_LT(of(attention.state(), Behaviour::avoid).period, period);
 }
 
-TEST_F(AttentionTest, who_takes_part_in_an_exchange_may_be_nearer_than_others_before_the_arm_slows) {
+TEST_F(AttentionTest,
+       who_takes_part_in_an_exchange_may_be_nearer_than_others_before_the_arm_slows) {
   people_.people = {standing(1.5, 0)};
-  const double distance = body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance;
+  const double distance =
+      body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance;
   ASSERT_GT(distance, 0.40);
   ASSERT_LT(distance, 0.60);
   Attention passing(settings(), body_);
@@ -215,7 +227,8 @@ TEST_F(AttentionTest, recoils_only_when_running_back_leads_away) {
   Attention attention(settings(), body_);
   people_.people = {standing(0.6, 0.36)};
   move(people_.people[0], Vector3::Zero(), Vector3(-0.5, -0.5, 0));
-  ASSERT_LT(body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance, 0.06);
+  ASSERT_LT(body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance,
+            0.06);
   point_arm_at_person_with_trajectory(0.0);
   run(attention, 0, 0.5);
   EXPECT_GE(attention.advice().speed_factor, 0.0);
@@ -276,7 +289,8 @@ TEST_F(AttentionTest, the_exchanging_hand_does_not_stop_the_robot_once_engaged) 
   Attention engaged(settings(), body_);
   run(engaged, 0, 1);
   EXPECT_LT(of(before.state(), Behaviour::avoid).speed_factor, 0.35);
-  EXPECT_GT(of(engaged.state(), Behaviour::avoid).speed_factor, of(before.state(), Behaviour::avoid).speed_factor);
+  EXPECT_GT(of(engaged.state(), Behaviour::avoid).speed_factor,
+            of(before.state(), Behaviour::avoid).speed_factor);
   EXPECT_TRUE(of(engaged.state(), Behaviour::give).released);
   EXPECT_GT(engaged.advice().speed_factor, 0.0);
   EXPECT_FALSE(engaged.advice().has_target_shift);
@@ -322,13 +336,15 @@ TEST_F(AttentionTest, clocks_save_work_when_nothing_is_near_and_not_when_it_matt
   people_.people = {standing(4.0, 0)};
   run(calm, 0, 10);
   const BehaviourState relaxed = of(calm.state(), Behaviour::avoid);
-  EXPECT_LT(static_cast<double>(relaxed.activations), 0.3 * static_cast<double>(relaxed.activations_at_fastest));
+  EXPECT_LT(static_cast<double>(relaxed.activations),
+            0.3 * static_cast<double>(relaxed.activations_at_fastest));
   EXPECT_GT(relaxed.activations, 40u);
   Attention close(settings(), body_);
   people_.people = {standing(1.05, 0)};
   run(close, 0, 10);
   const BehaviourState alert = of(close.state(), Behaviour::avoid);
-  EXPECT_GT(static_cast<double>(alert.activations), 0.8 * static_cast<double>(alert.activations_at_fastest));
+  EXPECT_GT(static_cast<double>(alert.activations),
+            0.8 * static_cast<double>(alert.activations_at_fastest));
 }
 
 TEST_F(AttentionTest, both_laws_run_every_behaviour) {
@@ -366,14 +382,16 @@ TEST_F(AttentionTest, missing_samples_hurt_nothing) {
   EXPECT_FALSE(attention.advice().has_gaze_target);
 }
 
-TEST_F(AttentionTest, who_reaches_for_what_is_put_down_is_to_be_given_it_and_who_only_stands_there_is_not) {
+TEST_F(AttentionTest,
+       who_reaches_for_what_is_put_down_is_to_be_given_it_and_who_only_stands_there_is_not) {
   Attention attention(settings(), body_);
   action_.kind = ActionKind::place;
   action_.state = ActionState::running;
   action_.object = "mug";
   action_.holding = true;
   Person anna = standing(2, 0);
-  anna.joints[11].position = body_.grasp_point(active_.position, active_.T_world_base) + Vector3(0.4, 0, 0);
+  anna.joints[11].position =
+      body_.grasp_point(active_.position, active_.T_world_base) + Vector3(0.4, 0, 0);
   people_.people = {anna};
   facts_known_ = true;
   run(attention, 0, 2);
@@ -422,16 +440,20 @@ TEST_F(AttentionTest, work_is_as_urgent_as_the_most_urgent_behaviour_it_serves) 
   EXPECT_EQ(attention.advice().replan_period, 0.5) << "fixed";
 }
 
-TEST_F(AttentionTest, a_behaviour_that_is_only_described_watches_slows_and_waits_for_what_it_names) {
+TEST_F(AttentionTest,
+       a_behaviour_that_is_only_described_watches_slows_and_waits_for_what_it_names) {
   AttentionSettings s = settings();
-  BehaviourSettings mind{Behaviour::watch, {ClockLaw::linear, 0.04, 0.3, 0.1, 1.0, 1.0}, "mind_the_hand"};
+  BehaviourSettings mind{
+      Behaviour::watch, {ClockLaw::linear, 0.04, 0.3, 0.1, 1.0, 1.0}, "mind_the_hand"};
   mind.watch = {Input::hand_distance, 0.6, 0.1, 0.2, GazeAt::hand, "a hand is near"};
   mind.conditions = {parse_condition("behaviour track"), parse_condition("not holding")};
-  std::erase_if(s.behaviours, [](const BehaviourSettings& b) { return b.behaviour == Behaviour::avoid; });
+  std::erase_if(s.behaviours,
+                [](const BehaviourSettings& b) { return b.behaviour == Behaviour::avoid; });
   s.behaviours.insert(s.behaviours.begin(), mind);
   Attention attention(s, body_);
   Person anna = standing(3, 0);
-  anna.joints[11].position = body_.grasp_point(active_.position, active_.T_world_base) + Vector3(0.35, 0, 0);
+  anna.joints[11].position =
+      body_.grasp_point(active_.position, active_.T_world_base) + Vector3(0.35, 0, 0);
   people_.people = {anna};
   run(attention, 0, 1);
   EXPECT_EQ(attention.advice().limiting, "mind_the_hand");
@@ -461,8 +483,10 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   EXPECT_THAT(order, HasSubstr("behaviour avoid: p_max must not be below p_min"));
   const std::string stranger = refusal_of(shipped, "\"give\"", "\"hug\"");
   EXPECT_THAT(stranger, HasSubstr("attention.txtpb:33"));
-  EXPECT_THAT(stranger, HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
-  EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"), HasSubstr("behaviour search: period must be from p_min to p_max"));
+  EXPECT_THAT(stranger,
+              HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
+  EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"),
+              HasSubstr("behaviour search: period must be from p_min to p_max"));
 }
 
 TEST(AttentionSettingsFile, what_a_user_adds_is_refused_where_it_is_wrong) {
@@ -480,18 +504,30 @@ TEST(AttentionSettingsFile, what_a_user_adds_is_refused_where_it_is_wrong) {
   const std::string input = added(begin + "name: \"mind\" input: \"mood\" " + clock + "}");
   EXPECT_THAT(input, HasSubstr("attention.txtpb:" + line + ":input"));
   EXPECT_THAT(input, HasSubstr("\"mood\" is none of human_distance, hand_distance"));
-  EXPECT_THAT(added(begin + "name: \"mind\" input: \"hand_distance\" released_when: \"fact bored\" " + clock + "}"),
-              HasSubstr("attention.txtpb:" + line + ":released_when: \"bored\" is no fact"));
-  EXPECT_THAT(added(begin + "name: \"mind\" input: \"hand_distance\" released_when: \"behaviour other\" " + clock + "}\n" + begin +
-                    "name: \"other\" input: \"hand_distance\" released_when: \"not behaviour mind\" " + clock + "}"),
-              testing::AllOf(HasSubstr("attention.txtpb:" + line + ":released_when"), HasSubstr("mind -> other -> mind")));
-  EXPECT_THAT(added(begin + "name: \"mind\" released_when: \"behaviour nobody\" input: \"clearance\" " + clock + "}"),
-              HasSubstr("\"nobody\", which is not described"));
+  EXPECT_THAT(
+      added(begin + "name: \"mind\" input: \"hand_distance\" released_when: \"fact bored\" " +
+            clock + "}"),
+      HasSubstr("attention.txtpb:" + line + ":released_when: \"bored\" is no fact"));
+  EXPECT_THAT(
+      added(begin + "name: \"mind\" input: \"hand_distance\" released_when: \"behaviour other\" " +
+            clock + "}\n" + begin +
+            "name: \"other\" input: \"hand_distance\" released_when: \"not behaviour mind\" " +
+            clock + "}"),
+      testing::AllOf(HasSubstr("attention.txtpb:" + line + ":released_when"),
+                     HasSubstr("mind -> other -> mind")));
+  EXPECT_THAT(
+      added(begin + "name: \"mind\" released_when: \"behaviour nobody\" input: \"clearance\" " +
+            clock + "}"),
+      HasSubstr("\"nobody\", which is not described"));
   std::string many;
-  for (int i = 0; i < 17; ++i) many += begin + "name: \"mind" + std::to_string(i) + "\" input: \"hand_distance\" " + clock + "}\n";
+  for (int i = 0; i < 17; ++i)
+    many +=
+        begin + "name: \"mind" + std::to_string(i) + "\" input: \"hand_distance\" " + clock + "}\n";
   EXPECT_THAT(added(many), HasSubstr("at most 16 are allowed"));
-  EXPECT_THAT(added("works {\nname: \"weather\" p_min: 1 p_max: 2 serves: \"avoid\" }"),
-              HasSubstr("attention.txtpb:" + line + ":name: \"weather\" is none of people, objects, forecast, cost_map, replan"));
+  EXPECT_THAT(
+      added("works {\nname: \"weather\" p_min: 1 p_max: 2 serves: \"avoid\" }"),
+      HasSubstr("attention.txtpb:" + line +
+                ":name: \"weather\" is none of people, objects, forecast, cost_map, replan"));
   EXPECT_THAT(added("works {\nname: \"people\" p_min: 3 p_max: 2 serves: \"avoid\" }"),
               HasSubstr("attention.txtpb:" + line + ":p_max: p_max must not be below p_min"));
 }
@@ -503,7 +539,8 @@ TEST(AttentionSettingsFile, the_example_is_a_behaviour_that_can_be) {
   };
   const test::TemporaryFolder folder;
   const AttentionSettings settings = load_settings(folder.write(
-      "attention.txtpb", text(resource("config/attention.txtpb")) + text(HANDSEL_SOURCE_DIR "/examples/attention/mind_the_hand.txtpb")));
+      "attention.txtpb", text(resource("config/attention.txtpb")) +
+                             text(HANDSEL_SOURCE_DIR "/examples/attention/mind_the_hand.txtpb")));
   ASSERT_EQ(settings.behaviours.back().name, "mind_the_hand");
   EXPECT_EQ(settings.behaviours.back().conditions.size(), 3u);
   const auto robot = test::small_robot();

@@ -41,16 +41,30 @@ struct BridgeServer : testing::Test {
     folder.write("web/.hidden", "hidden");
     folder.write("secret.txt", "secret");
     std::filesystem::create_symlink(folder.path() / "secret.txt", folder.path() / "web/link.txt");
-    server = std::make_unique<Server>(settings(), Site(folder.path() / "web", resource_root()), catalogue(), R"({"robot":"jido"})");
+    server = std::make_unique<Server>(settings(), Site(folder.path() / "web", resource_root()),
+                                      catalogue(), R"({"robot":"jido"})");
   }
   static ServerSettings settings() {
-    return {.port = 0, .max_clients = 4, .request_timeout = 0.5, .stall_timeout = 0.5, .allowed_origins = {}};
+    return {.port = 0,
+            .max_clients = 4,
+            .request_timeout = 0.5,
+            .stall_timeout = 0.5,
+            .allowed_origins = {}};
   }
   static Catalogue catalogue() {
     Catalogue c;
     c.name = "handsel test";
-    c.channels = {{.topic = "fast", .encoding = "cdr", .schema_name = "A", .schema = "a", .schema_encoding = "omgidl"},
-                  {.topic = "kept", .encoding = "cdr", .schema_name = "B", .schema = "b", .schema_encoding = "omgidl", .kept = true}};
+    c.channels = {{.topic = "fast",
+                   .encoding = "cdr",
+                   .schema_name = "A",
+                   .schema = "a",
+                   .schema_encoding = "omgidl"},
+                  {.topic = "kept",
+                   .encoding = "cdr",
+                   .schema_name = "B",
+                   .schema = "b",
+                   .schema_encoding = "omgidl",
+                   .kept = true}};
     return c;
   }
 
@@ -83,17 +97,26 @@ struct BridgeServer : testing::Test {
     return client;
   }
   void subscribe(WebSocketClient& client, int channel) {
-    client.frame(WebSocketClient::kText, R"({"op":"subscribe","subscriptions":[{"id":)" + std::to_string(channel) + R"(,"channelId":)" +
+    client.frame(WebSocketClient::kText, R"({"op":"subscribe","subscriptions":[{"id":)" +
+                                             std::to_string(channel) + R"(,"channelId":)" +
                                              std::to_string(channel) + "}]}");
-    const std::string id = "after " + std::to_string(channel);  // messages are taken in order: its answer comes after the subscription
-    client.frame(WebSocketClient::kText, R"({"op":"getParameters","parameterNames":[],"id":")" + id + R"("})");
+    const std::string id =
+        "after " +
+        std::to_string(
+            channel);  // messages are taken in order: its answer comes after the subscription
+    client.frame(WebSocketClient::kText,
+                 R"({"op":"getParameters","parameterNames":[],"id":")" + id + R"("})");
     EXPECT_THAT(client.read(id), HasSubstr(id));
     EXPECT_TRUE(server->wanted(static_cast<std::size_t>(channel - 1)));
   }
   void publish(std::size_t channel, const std::string& text, std::size_t size = 0) {
     std::vector<std::uint8_t> bytes(text.begin(), text.end());
     bytes.resize(std::max(size, text.size()), 'x');
-    server->publish({{.channel = channel, .instance = 1, .gone = false, .stamp = 7, .bytes = std::make_shared<decltype(bytes)>(bytes)}});
+    server->publish({{.channel = channel,
+                      .instance = 1,
+                      .gone = false,
+                      .stamp = 7,
+                      .bytes = std::make_shared<decltype(bytes)>(bytes)}});
   }
 };
 
@@ -136,7 +159,8 @@ TEST_F(BridgeServer, gives_no_file_but_its_own) {
                              "\\..\\secret.txt",
                              "/page.js/../../secret.txt"}) {
     const std::string answer = ask("GET", target);
-    EXPECT_THAT(answer, testing::AnyOf(StartsWith("HTTP/1.1 404"), StartsWith("HTTP/1.1 400"))) << target;
+    EXPECT_THAT(answer, testing::AnyOf(StartsWith("HTTP/1.1 404"), StartsWith("HTTP/1.1 400")))
+        << target;
     EXPECT_THAT(answer, Not(testing::ContainsRegex("secret\n|root:|hidden\n"))) << target;
   }
   EXPECT_THAT(ask("GET", "/" + std::string(3000, 'a')), StartsWith("HTTP/1.1 404"));
@@ -155,18 +179,24 @@ TEST_F(BridgeServer, a_handshake_without_its_subprotocol_path_or_place_is_refuse
   for (const char* good : {"foxglove.sdk.v1", "foxglove.websocket.v1", "other, foxglove.sdk.v1"})
     EXPECT_THAT(WebSocketClient(server->port(), good).read("serverInfo"), HasSubstr("101")) << good;
   for (const char* bad : {"", "foxglove.websocket.v2", "foxglove"})
-    EXPECT_THAT(WebSocketClient(server->port(), bad).read("\n\n"), StartsWith("HTTP/1.1 400")) << bad;
-  EXPECT_THAT(WebSocketClient(server->port(), "foxglove.sdk.v1", {}, "/page.js").read(), StartsWith("HTTP/1.1 400"));
+    EXPECT_THAT(WebSocketClient(server->port(), bad).read("\n\n"), StartsWith("HTTP/1.1 400"))
+        << bad;
+  EXPECT_THAT(WebSocketClient(server->port(), "foxglove.sdk.v1", {}, "/page.js").read(),
+              StartsWith("HTTP/1.1 400"));
   const std::string own = "Origin: http://127.0.0.1:" + std::to_string(server->port()) + "\r\n";
-  EXPECT_THAT(WebSocketClient(server->port(), "foxglove.sdk.v1", own).read("serverInfo"), HasSubstr("101"));
-  EXPECT_THAT(WebSocketClient(server->port(), "foxglove.sdk.v1", "Origin: https://example.org\r\n").read(), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(WebSocketClient(server->port(), "foxglove.sdk.v1", own).read("serverInfo"),
+              HasSubstr("101"));
+  EXPECT_THAT(
+      WebSocketClient(server->port(), "foxglove.sdk.v1", "Origin: https://example.org\r\n").read(),
+      StartsWith("HTTP/1.1 403"));
 }
 
 TEST_F(BridgeServer, passes_samples_on_and_gives_what_is_kept_to_who_comes_late) {
   const auto first = viewer();
   subscribe(*first, 2);
   publish(1, "one");
-  EXPECT_THAT(first->read("one"), HasSubstr(std::string("\x01\x02\0\0\0\x07\0\0\0\0\0\0\0one", 16)));
+  EXPECT_THAT(first->read("one"),
+              HasSubstr(std::string("\x01\x02\0\0\0\x07\0\0\0\0\0\0\0one", 16)));
   const auto late = viewer();
   late->forget();
   subscribe(*late, 2);
@@ -178,8 +208,10 @@ TEST_F(BridgeServer, passes_samples_on_and_gives_what_is_kept_to_who_comes_late)
 
 TEST_F(BridgeServer, garbage_and_oversized_requests_close_the_connection_and_nothing_else) {
   for (const std::string& bytes :
-       {std::string("\x16\x03\x01\x02"), std::string(200000, 'a'), "GET / HTTP/1.1\r\n" + std::string(20000, 'h') + ": x\r\n\r\n",
-        std::string("GET /\r\n\r\n"), std::string("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000000\r\n\r\n")}) {
+       {std::string("\x16\x03\x01\x02"), std::string(200000, 'a'),
+        "GET / HTTP/1.1\r\n" + std::string(20000, 'h') + ": x\r\n\r\n",
+        std::string("GET /\r\n\r\n"),
+        std::string("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000000\r\n\r\n")}) {
     HttpClient client(server->port());
     client.send(bytes);
     EXPECT_THAT(client.read(), Not(StartsWith("HTTP/1.1 200")));
@@ -218,7 +250,8 @@ TEST_F(BridgeServer, garbage_frames_are_answered_or_cut_counted_and_cost_others_
 TEST_F(BridgeServer, more_clients_than_allowed_are_refused_with_a_reason) {
   std::deque<std::unique_ptr<WebSocketClient>> viewers;
   for (int i = 0; i < 4; ++i) viewers.push_back(viewer());
-  EXPECT_THAT(WebSocketClient(server->port()).read(), testing::AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("4 viewers already")));
+  EXPECT_THAT(WebSocketClient(server->port()).read(),
+              testing::AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("4 viewers already")));
   viewers.pop_back();
   ASSERT_TRUE(comes_true([&] { return counters()["clients"].get<std::uint64_t>() <= 3; }));
   EXPECT_THAT(WebSocketClient(server->port()).read("serverInfo"), HasSubstr("101"));
@@ -233,7 +266,9 @@ TEST_F(BridgeServer, many_connections_and_floods_leave_memory_flat) {
     // The server notices one by one that they are gone.
     ASSERT_TRUE(comes_true([&] { return !ask("GET", "/").starts_with("HTTP/1.1 503"); }));
     const auto flooder = viewer();
-    for (int i = 0; i < 3000; ++i) flooder->frame(WebSocketClient::kText, R"({"op":"getParameters","parameterNames":[],"id":"x"})");
+    for (int i = 0; i < 3000; ++i)
+      flooder->frame(WebSocketClient::kText,
+                     R"({"op":"getParameters","parameterNames":[],"id":"x"})");
     flooder->read();
   };
   storm();
@@ -271,7 +306,8 @@ TEST_F(BridgeServer, a_taken_port_is_named) {
     const Server other(second, Site({}, resource_root()), catalogue(), "{}");
     FAIL() << "two servers on one port";
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("port " + std::to_string(server->port()) + " on 127.0.0.1 cannot be used"));
+    EXPECT_THAT(error.what(), HasSubstr("port " + std::to_string(server->port()) +
+                                        " on 127.0.0.1 cannot be used"));
   }
 }
 

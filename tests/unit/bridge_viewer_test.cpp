@@ -26,8 +26,12 @@ namespace {
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-Bytes bytes(const std::string& text) { return std::make_shared<const std::vector<std::uint8_t>>(text.begin(), text.end()); }
-std::string body(const Frame& frame) { return frame.body ? std::string(frame.body->begin(), frame.body->end()) : std::string(); }
+Bytes bytes(const std::string& text) {
+  return std::make_shared<const std::vector<std::uint8_t>>(text.begin(), text.end());
+}
+std::string body(const Frame& frame) {
+  return frame.body ? std::string(frame.body->begin(), frame.body->end()) : std::string();
+}
 Frame with(const std::string& text) { return {nullptr, {}, bytes(text)}; }
 
 TEST(Outbox, keeps_only_the_newest_of_each_instance_in_its_place) {
@@ -108,14 +112,28 @@ struct ViewerTest : testing::Test {
             c.name = "handsel test";
             c.metadata = {{"robot", "jido"}};
             c.parameters = {{"robot", "jido"}, {"domain", "5"}};
-            c.channels = {
-                {.topic = "newest", .encoding = "cdr", .schema_name = "A", .schema = "a", .schema_encoding = "omgidl"},
-                {.topic = "queued", .encoding = "cdr", .schema_name = "B", .schema = "b", .schema_encoding = "omgidl", .queued = true},
-                {.topic = "kept", .encoding = "cdr", .schema_name = "C", .schema = "c", .schema_encoding = "omgidl", .kept = true}};
+            c.channels = {{.topic = "newest",
+                           .encoding = "cdr",
+                           .schema_name = "A",
+                           .schema = "a",
+                           .schema_encoding = "omgidl"},
+                          {.topic = "queued",
+                           .encoding = "cdr",
+                           .schema_name = "B",
+                           .schema = "b",
+                           .schema_encoding = "omgidl",
+                           .queued = true},
+                          {.topic = "kept",
+                           .encoding = "cdr",
+                           .schema_name = "C",
+                           .schema = "c",
+                           .schema_encoding = "omgidl",
+                           .kept = true}};
             return c;
           }(),
           [](const std::string& uri) {
-            return uri == "package://there" ? Asset{bytes("mesh"), {}} : Asset{nullptr, "there is no such asset"};
+            return uri == "package://there" ? Asset{bytes("mesh"), {}}
+                                            : Asset{nullptr, "there is no such asset"};
           }};
   Viewer viewer{hub};
   TimePoint now{std::chrono::seconds(10)};
@@ -133,10 +151,15 @@ struct ViewerTest : testing::Test {
     viewer.text(text, now += std::chrono::milliseconds(10));
     if (viewer.outbox().empty()) return "silence";
     const Json status = next();
-    return status["op"] == "status" && status["level"] == 2 ? status["message"].get<std::string>() : "no refusal";
+    return status["op"] == "status" && status["level"] == 2 ? status["message"].get<std::string>()
+                                                            : "no refusal";
   }
   Sample sample(std::size_t channel, const std::string& text, std::uint64_t instance = 1) {
-    return {.channel = channel, .instance = instance, .gone = false, .stamp = 0x0102030405060708, .bytes = bytes(text)};
+    return {.channel = channel,
+            .instance = instance,
+            .gone = false,
+            .stamp = 0x0102030405060708,
+            .bytes = bytes(text)};
   }
 };
 
@@ -149,9 +172,12 @@ TEST_F(ViewerTest, is_greeted_with_the_server_and_its_channels) {
     EXPECT_THAT(server["capabilities"].dump(), HasSubstr(capability));
   EXPECT_THAT(server["capabilities"].dump(), testing::Not(HasSubstr("clientPublish")));
   EXPECT_EQ(channels["op"], "advertise");
-  EXPECT_EQ(
-      channels["channels"][1],
-      (Json{{"id", 2}, {"topic", "queued"}, {"encoding", "cdr"}, {"schemaName", "B"}, {"schema", "b"}, {"schemaEncoding", "omgidl"}}));
+  EXPECT_EQ(channels["channels"][1], (Json{{"id", 2},
+                                           {"topic", "queued"},
+                                           {"encoding", "cdr"},
+                                           {"schemaName", "B"},
+                                           {"schema", "b"},
+                                           {"schemaEncoding", "omgidl"}}));
 }
 
 TEST_F(ViewerTest, gets_only_what_it_subscribed_to_and_the_bytes_as_they_were) {
@@ -176,14 +202,16 @@ TEST_F(ViewerTest, a_late_one_gets_what_is_kept_of_living_instances) {
   hub.keep(sample(2, "dead", 2));
   hub.keep({.channel = 2, .instance = 2, .gone = true, .stamp = 0, .bytes = nullptr});
   hub.keep(sample(0, "not kept"));
-  say({{"op", "subscribe"}, {"subscriptions", {{{"id", 1}, {"channelId", 3}}, {{"id", 2}, {"channelId", 1}}}}});
+  say({{"op", "subscribe"},
+       {"subscriptions", {{{"id", 1}, {"channelId", 3}}, {{"id", 2}, {"channelId", 1}}}}});
   EXPECT_EQ(body(viewer.outbox().pop()), "new");
   EXPECT_TRUE(viewer.outbox().empty());
 }
 
 TEST_F(ViewerTest, queued_topics_keep_order_and_newest_topics_the_newest) {
   skip_greeting();
-  say({{"op", "subscribe"}, {"subscriptions", {{{"id", 1}, {"channelId", 1}}, {{"id", 2}, {"channelId", 2}}}}});
+  say({{"op", "subscribe"},
+       {"subscriptions", {{{"id", 1}, {"channelId", 1}}, {{"id", 2}, {"channelId", 2}}}}});
   for (const char* text : {"1", "2", "3"}) {
     viewer.sample(sample(0, text));
     viewer.sample(sample(1, text));
@@ -198,27 +226,37 @@ TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
   EXPECT_THAT(refusal("\xff\xfe"), HasSubstr("JSON object"));
   EXPECT_THAT(refusal(std::string(60000, '[')), HasSubstr("JSON object"));
   EXPECT_THAT(refusal("{}"), HasSubstr("\"op\""));
-  EXPECT_THAT(refusal(R"({"op":"advertise","channels":[]})"), HasSubstr("\"advertise\" is not offered"));
+  EXPECT_THAT(refusal(R"({"op":"advertise","channels":[]})"),
+              HasSubstr("\"advertise\" is not offered"));
   EXPECT_THAT(refusal(R"({"op":"setParameters","parameters":[]})"), HasSubstr("only shows"));
   EXPECT_THAT(refusal(R"({"op":"subscribe"})"), HasSubstr("the field subscriptions is missing"));
   EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[7]})"), HasSubstr("list of objects"));
-  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"), HasSubstr("id must be a whole number"));
-  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})"), HasSubstr("no channel 0"));
-  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4}]})"), HasSubstr("no channel 4"));
-  EXPECT_THAT(refusal(R"({"op":"unsubscribe","subscriptionIds":[9]})"), HasSubstr("no subscription 9"));
-  EXPECT_THAT(refusal(R"({"op":"fetchAsset","uri":7,"requestId":1})"), HasSubstr("uri must be a text"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"),
+              HasSubstr("id must be a whole number"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})"),
+              HasSubstr("no channel 0"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4}]})"),
+              HasSubstr("no channel 4"));
+  EXPECT_THAT(refusal(R"({"op":"unsubscribe","subscriptionIds":[9]})"),
+              HasSubstr("no subscription 9"));
+  EXPECT_THAT(refusal(R"({"op":"fetchAsset","uri":7,"requestId":1})"),
+              HasSubstr("uri must be a text"));
   EXPECT_EQ(viewer.refused(), 14u);
   EXPECT_EQ(viewer.cut(), "");
-  for (unsigned i = 0; i < Viewer::kMaxErrors; ++i) viewer.binary(now += std::chrono::milliseconds(10));
+  for (unsigned i = 0; i < Viewer::kMaxErrors; ++i)
+    viewer.binary(now += std::chrono::milliseconds(10));
   EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
 }
 
-/// Messages of a client, damaged at random: none is fatal, and what is refused is answered as long as the viewer is not cut.
+/// Messages of a client, damaged at random: none is fatal, and what is refused is answered as long
+/// as the viewer is not cut.
 TEST_F(ViewerTest, damaged_messages_are_never_fatal) {
   const std::vector<std::string> good{
       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":3}]})",
-      R"({"op":"unsubscribe","subscriptionIds":[1,2]})", R"({"op":"getParameters","parameterNames":["robot"],"id":"x"})",
-      R"({"op":"fetchAsset","uri":"package://there","requestId":5})", R"({"op":"subscribeConnectionGraph"})"};
+      R"({"op":"unsubscribe","subscriptionIds":[1,2]})",
+      R"({"op":"getParameters","parameterNames":["robot"],"id":"x"})",
+      R"({"op":"fetchAsset","uri":"package://there","requestId":5})",
+      R"({"op":"subscribeConnectionGraph"})"};
   const std::string letters = "{}[]\":,\\0123456789-.eE truefalsn\xff\x80\x01/";
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
@@ -250,11 +288,14 @@ TEST_F(ViewerTest, subscriptions_messages_and_answers_are_bounded) {
   skip_greeting();
   Json many = Json::array();
   for (unsigned i = 0; i < 300; ++i) many.push_back({{"id", i}, {"channelId", 1}});
-  EXPECT_THAT(refusal(Json{{"op", "subscribe"}, {"subscriptions", many}}.dump()), HasSubstr("more than 256"));
-  for (int i = 0; i < 1200 && viewer.cut().empty(); ++i) say({{"op", "getParameters"}, {"parameterNames", Json::array()}});
+  EXPECT_THAT(refusal(Json{{"op", "subscribe"}, {"subscriptions", many}}.dump()),
+              HasSubstr("more than 256"));
+  for (int i = 0; i < 1200 && viewer.cut().empty(); ++i)
+    say({{"op", "getParameters"}, {"parameterNames", Json::array()}});
   EXPECT_THAT(viewer.cut(), HasSubstr("does not read"));
   Viewer other(hub);
-  for (unsigned i = 0; i < Viewer::kMaxMessages + 1; ++i) other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
+  for (unsigned i = 0; i < Viewer::kMaxMessages + 1; ++i)
+    other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
   EXPECT_THAT(other.cut(), HasSubstr("messages in a second"));
 }
 
@@ -269,7 +310,9 @@ TEST_F(ViewerTest, answers_with_assets_and_parameters) {
   EXPECT_EQ(bad.head[5], 1);
   EXPECT_EQ(std::string(bad.head.begin() + 10, bad.head.end()), "there is no such asset");
   say({{"op", "getParameters"}, {"parameterNames", {"domain"}}, {"id", "q"}});
-  EXPECT_EQ(next(), (Json{{"op", "parameterValues"}, {"id", "q"}, {"parameters", {{{"name", "domain"}, {"value", "5"}}}}}));
+  EXPECT_EQ(next(), (Json{{"op", "parameterValues"},
+                          {"id", "q"},
+                          {"parameters", {{{"name", "domain"}, {"value", "5"}}}}}));
 }
 
 TEST_F(ViewerTest, learns_what_changed_in_the_graph) {
@@ -313,8 +356,12 @@ TEST(Drawing, is_what_a_panel_needs_to_draw_robot_person_and_object) {
   people.people[0].joints = standing_body(Vector3(3, 0, 0), M_PI, 1.75);
   drawing.take(people);
   Scene scene;
-  scene.objects.push_back(
-      {.id = "cup", .model = "mug", .T_world_object = Pose::Identity(), .holder = Holder::nobody, .holder_id = {}, .age = 0});
+  scene.objects.push_back({.id = "cup",
+                           .model = "mug",
+                           .T_world_object = Pose::Identity(),
+                           .holder = Holder::nobody,
+                           .holder_id = {},
+                           .age = 0});
   scene.objects.back().T_world_object.translation() = Vector3(0.5, 0, 0.8);
   drawing.take(scene);
 
@@ -329,20 +376,24 @@ TEST(Drawing, is_what_a_panel_needs_to_draw_robot_person_and_object) {
     ASSERT_TRUE(T_world.contains(t.parent_frame_id())) << t.child_frame_id();
     Pose T = Pose::Identity();
     T.translation() = Vector3(t.translation().x(), t.translation().y(), t.translation().z());
-    T.linear() = Eigen::Quaterniond(t.rotation().w(), t.rotation().x(), t.rotation().y(), t.rotation().z()).toRotationMatrix();
+    T.linear() =
+        Eigen::Quaterniond(t.rotation().w(), t.rotation().x(), t.rotation().y(), t.rotation().z())
+            .toRotationMatrix();
     T_world[t.child_frame_id()] = T_world[t.parent_frame_id()] * T;
   }
   std::vector<Pose> T_root_link;
   robot->forward(state.position, T_root_link);
   for (std::size_t i = 0; i < T_root_link.size(); ++i)
-    EXPECT_TRUE(T_world[robot->links()[i].name].isApprox(state.T_world_base * T_root_link[i], 1e-9)) << robot->links()[i].name;
+    EXPECT_TRUE(T_world[robot->links()[i].name].isApprox(state.T_world_base * T_root_link[i], 1e-9))
+        << robot->links()[i].name;
 
   foxglove::SceneUpdate update;
   ASSERT_TRUE(update.ParseFromString(drawing.scene(1)));
   std::map<std::string, int> primitives;
   for (const auto& entity : update.entities()) {
     EXPECT_TRUE(T_world.contains(entity.frame_id())) << entity.id();
-    primitives[entity.id().substr(0, entity.id().find('/'))] += entity.cubes_size() + entity.spheres_size() + entity.cylinders_size();
+    primitives[entity.id().substr(0, entity.id().find('/'))] +=
+        entity.cubes_size() + entity.spheres_size() + entity.cylinders_size();
   }
   EXPECT_GT(primitives["robot"], 20);
   EXPECT_EQ(primitives["person"], 3 * kBodyCapsules);
@@ -356,29 +407,34 @@ struct CatalogueTest : testing::Test {
 
 TEST_F(CatalogueTest, has_a_self_contained_schema_for_every_topic) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
-  const Catalogue catalogue = make_catalogue(robot, resource_root(), {.scenario = "s", .domain = 3, .version = "1", .session = "x"});
+  const Catalogue catalogue = make_catalogue(
+      robot, resource_root(), {.scenario = "s", .domain = 3, .version = "1", .session = "x"});
   ASSERT_EQ(catalogue.channels.size(), topics().size());
   for (std::size_t i = 0; i < topics().size(); ++i) {
     const Channel& channel = catalogue.channels[i];
     EXPECT_EQ(channel.schema_name, std::string("handsel::") + topics()[i].type);
     EXPECT_THAT(channel.schema, HasSubstr(std::string("struct ") + topics()[i].type + " {"));
     EXPECT_THAT(channel.schema, testing::Not(HasSubstr("#")));
-    for (const char* unreadable : {"@optional", "@external", "union ", "wchar", "wstring", "long double"})
+    for (const char* unreadable :
+         {"@optional", "@external", "union ", "wchar", "wstring", "long double"})
       EXPECT_THAT(channel.schema, testing::Not(HasSubstr(unreadable))) << channel.topic;
-    EXPECT_EQ(channel.schema.find("struct Vector3 {"), channel.schema.rfind("struct Vector3 {")) << channel.topic;
+    EXPECT_EQ(channel.schema.find("struct Vector3 {"), channel.schema.rfind("struct Vector3 {"))
+        << channel.topic;
   }
   EXPECT_THAT(catalogue.parameters.at("/robot_description"), HasSubstr("<robot"));
 }
 
 TEST_F(CatalogueTest, the_page_learns_where_things_are) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
-  const Json config =
-      Json::parse(config_json(robot, resource_root(), {.scenario = "give_mug", .domain = 3, .version = "1", .session = "x"}));
+  const Json config = Json::parse(
+      config_json(robot, resource_root(),
+                  {.scenario = "give_mug", .domain = 3, .version = "1", .session = "x"}));
   const Site site({}, resource_root());
   EXPECT_TRUE(site.find(config["urdf"].get<std::string>()));
   EXPECT_EQ(config["axes"].size(), robot.axes().size());
   EXPECT_EQ(config["topics"].size(), topics().size());
-  for (const auto& [name, object] : config["objects"].items()) EXPECT_TRUE(site.find(object["mesh"].get<std::string>())) << name;
+  for (const auto& [name, object] : config["objects"].items())
+    EXPECT_TRUE(site.find(object["mesh"].get<std::string>())) << name;
   EXPECT_TRUE(config["objects"].contains("mug"));
 }
 
@@ -392,13 +448,15 @@ TEST_F(CatalogueTest, a_drawn_robot_stands_as_its_model) {
   Vector q(again.dof());
   for (int i = 0; i < again.dof(); ++i)
     for (int k = 0; k < robot.dof(); ++k)
-      if (again.axes()[static_cast<std::size_t>(i)].name == robot.axes()[static_cast<std::size_t>(k)].name)
+      if (again.axes()[static_cast<std::size_t>(i)].name ==
+          robot.axes()[static_cast<std::size_t>(k)].name)
         q[i] = robot.rest_configuration()[k] + 0.01 * k;
   Vector original(robot.dof());
   for (int k = 0; k < robot.dof(); ++k) original[k] = robot.rest_configuration()[k] + 0.01 * k;
   for (std::size_t l = 0; l < robot.links().size(); ++l) {
     const Pose T = again.link_pose(q, again.link_index(robot.links()[l].name));
-    EXPECT_LT((T.matrix() - robot.link_pose(original, static_cast<int>(l)).matrix()).norm(), 1e-5) << robot.links()[l].name;
+    EXPECT_LT((T.matrix() - robot.link_pose(original, static_cast<int>(l)).matrix()).norm(), 1e-5)
+        << robot.links()[l].name;
   }
 }
 
@@ -409,9 +467,11 @@ TEST_F(CatalogueTest, assets_are_of_robots_and_hands_only) {
   EXPECT_THAT(std::string(urdf.bytes->begin(), urdf.bytes->end()), HasSubstr("<robot"));
   EXPECT_TRUE(site.fetch("package://handsel/hands/sah/sah.urdf").bytes);
   for (const char* uri :
-       {"package://handsel/objects/mug/mug.obj", "package://handsel/config/bridge.txtpb", "package://handsel/robots/../config/bridge.txtpb",
-        "package://handsel/robots/jido/../../../README.md", "package://other/robots/jido/jido.urdf", "file:///etc/passwd", "/etc/passwd",
-        "", "package://handsel/robots/jido/jido.txtpb", "package://handsel/robots//jido/jido.urdf"}) {
+       {"package://handsel/objects/mug/mug.obj", "package://handsel/config/bridge.txtpb",
+        "package://handsel/robots/../config/bridge.txtpb",
+        "package://handsel/robots/jido/../../../README.md", "package://other/robots/jido/jido.urdf",
+        "file:///etc/passwd", "/etc/passwd", "", "package://handsel/robots/jido/jido.txtpb",
+        "package://handsel/robots//jido/jido.urdf"}) {
     const Asset refused = site.fetch(uri);
     EXPECT_FALSE(refused.bytes) << uri;
     EXPECT_FALSE(refused.reason.empty()) << uri;
@@ -421,7 +481,8 @@ TEST_F(CatalogueTest, assets_are_of_robots_and_hands_only) {
 TEST(Subprotocol, is_one_of_two) {
   EXPECT_EQ(choose_subprotocol("foxglove.websocket.v1"), "foxglove.websocket.v1");
   EXPECT_EQ(choose_subprotocol("x, foxglove.sdk.v1 ,foxglove.websocket.v1"), "foxglove.sdk.v1");
-  for (const char* none : {"", ",", "foxglove.websocket.v10", "foxglove"}) EXPECT_EQ(choose_subprotocol(none), "");
+  for (const char* none : {"", ",", "foxglove.websocket.v10", "foxglove"})
+    EXPECT_EQ(choose_subprotocol(none), "");
 }
 
 TEST(SystemGraph, shows_a_component_until_its_health_stays_away) {

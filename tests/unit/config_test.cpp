@@ -46,7 +46,8 @@ std::string refusal(const std::string& text) {
 TEST(TextProto, reads_what_is_written) {
   const TemporaryFolder folder;
   config::RobotDescription out;
-  load_text_proto(folder.write("r.txtpb", "# a robot\nname: \"r\"\nrest { key: \"a\" value: 0.5 }\n"), out);
+  load_text_proto(
+      folder.write("r.txtpb", "# a robot\nname: \"r\"\nrest { key: \"a\" value: 0.5 }\n"), out);
   EXPECT_EQ(out.name(), "r");
   EXPECT_EQ(out.rest().at("a"), 0.5);
 }
@@ -60,12 +61,14 @@ TEST(TextProto, names_file_line_and_column_of_what_is_wrong) {
 }
 
 TEST(TextProto, a_urdf_in_its_place_is_called_one) {
-  EXPECT_THAT(refusal("<?xml version=\"1.0\"?>\n<robot name=\"r\"/>\n"), HasSubstr("r.txtpb is XML, e.g. a URDF"));
+  EXPECT_THAT(refusal("<?xml version=\"1.0\"?>\n<robot name=\"r\"/>\n"),
+              HasSubstr("r.txtpb is XML, e.g. a URDF"));
 }
 
 TEST(TextProto, a_file_that_is_not_there_is_missing) {
   config::RobotDescription out;
-  EXPECT_THAT(message_of<MissingError>([&] { load_text_proto("/nowhere/x.txtpb", out); }), HasSubstr("/nowhere/x.txtpb"));
+  EXPECT_THAT(message_of<MissingError>([&] { load_text_proto("/nowhere/x.txtpb", out); }),
+              HasSubstr("/nowhere/x.txtpb"));
 }
 
 using google::protobuf::Descriptor;
@@ -101,15 +104,17 @@ std::vector<const Descriptor*> texts() {
 
 struct NumericKey {
   const Descriptor* type;
-  std::string before, key, after;  ///< of a text on two lines that gives the key a value; the key stands on the second
+  std::string before, key,
+      after;  ///< of a text on two lines that gives the key a value; the key stands on the second
 };
 
-void add_numeric_keys(const Descriptor* root, const Descriptor* type, const std::string& before, const std::string& after,
-                      std::vector<NumericKey>& out) {
+void add_numeric_keys(const Descriptor* root, const Descriptor* type, const std::string& before,
+                      const std::string& after, std::vector<NumericKey>& out) {
   for (int i = 0; i < type->field_count(); ++i) {
     const FieldDescriptor& field = *type->field(i);
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
-      add_numeric_keys(root, field.message_type(), before + field.name() + " { ", " }" + after, out);
+      add_numeric_keys(root, field.message_type(), before + field.name() + " { ", " }" + after,
+                       out);
     else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE)
       out.push_back({root, before, field.name(), after});
   }
@@ -142,24 +147,32 @@ TEST(TextProto, every_numeric_key_of_every_file_refuses_nan_inf_and_huge_values)
 TEST(TextProto, a_number_out_of_its_range_is_refused_and_the_range_is_named) {
   const TemporaryFolder folder;
   config::SparkSettings spark;
-  EXPECT_THAT(
-      message_of<ConfigError>([&] { load_text_proto(folder.write("spark.txtpb", "human_period: 0.05\npublish_period: 0\n"), spark); }),
-      HasSubstr("spark.txtpb:2:publish_period: is 0, must be a number in (0, 10]"));
-  EXPECT_THAT(message_of<ConfigError>([&] { load_text_proto(folder.write("spark.txtpb", "stretched: -0.1\n"), spark); }),
+  EXPECT_THAT(message_of<ConfigError>([&] {
+                load_text_proto(
+                    folder.write("spark.txtpb", "human_period: 0.05\npublish_period: 0\n"), spark);
+              }),
+              HasSubstr("spark.txtpb:2:publish_period: is 0, must be a number in (0, 10]"));
+  EXPECT_THAT(message_of<ConfigError>([&] {
+                load_text_proto(folder.write("spark.txtpb", "stretched: -0.1\n"), spark);
+              }),
               HasSubstr("spark.txtpb:1:stretched: is -0.1, must be a number in [0, 2]"));
   config::SupervisorSettings supervisor;
-  EXPECT_THAT(message_of<ConfigError>([&] { load_text_proto(folder.write("s.txtpb", "plan_nodes: 0\n"), supervisor); }),
+  EXPECT_THAT(message_of<ConfigError>(
+                  [&] { load_text_proto(folder.write("s.txtpb", "plan_nodes: 0\n"), supervisor); }),
               HasSubstr("s.txtpb:1:plan_nodes: is 0, must be a number in [1, 1e+06]"));
-  EXPECT_THAT(
-      message_of<ConfigError>([&] { load_text_proto(folder.write("s.txtpb", "payload { key: \"jido\" value: nan }\n"), supervisor); }),
-      HasSubstr("s.txtpb:1:value: is nan, must be a number in [0, 1000]"));
+  EXPECT_THAT(message_of<ConfigError>([&] {
+                load_text_proto(folder.write("s.txtpb", "payload { key: \"jido\" value: nan }\n"),
+                                supervisor);
+              }),
+              HasSubstr("s.txtpb:1:value: is nan, must be a number in [0, 1000]"));
   load_text_proto(folder.write("spark.txtpb", "grip_force: -0\n"), spark);  // minus zero is zero
 }
 
 TEST(TextProto, names_that_are_no_text_and_keys_given_twice_are_refused) {
   EXPECT_THAT(refusal("name: \"\\377\\376\"\n"), HasSubstr("r.txtpb:1:name: is no text in UTF-8"));
   EXPECT_THAT(refusal("name: \"a\\000b\"\n"), HasSubstr("r.txtpb:1:name: is no text in UTF-8"));
-  EXPECT_THAT(refusal("name: \"" + std::string(5000, 'a') + "\"\n"), HasSubstr("is 5000 bytes long, must be at most 4096"));
+  EXPECT_THAT(refusal("name: \"" + std::string(5000, 'a') + "\"\n"),
+              HasSubstr("is 5000 bytes long, must be at most 4096"));
   EXPECT_THAT(refusal("rest { key: \"a\" value: 1 }\nrest { key: \"a\" value: 2 }\n"),
               HasSubstr("r.txtpb:2:rest: has the key \"a\" twice"));
   EXPECT_EQ(refusal("name: \"Zo\303\253\"\n"), "no error");
@@ -174,12 +187,16 @@ TEST(People, profiles_are_read_and_those_that_cannot_be_are_refused) {
     folder.write("people.txtpb", text);
     return message_of<ConfigError>([&] { load_people(folder.path()); });
   };
-  folder.write("people.txtpb", "people { id: \"anna\" handed: LEFT height: 1.66 preferred_distance: 0.6 }");
+  folder.write("people.txtpb",
+               "people { id: \"anna\" handed: LEFT height: 1.66 preferred_distance: 0.6 }");
   EXPECT_DOUBLE_EQ(load_people(folder.path()).people(0).height(), 1.66);
   EXPECT_THAT(refused("people { height: 1.7 }"), HasSubstr("a profile needs the person's id"));
-  EXPECT_THAT(refused("people { id: \"a\" } people { id: \"a\" }"), HasSubstr("a has two profiles"));
-  EXPECT_THAT(refused("people { id: \"a\" height: 17 }"), HasSubstr("height: is 17, must be a number in [0, 2.5]"));
-  EXPECT_THAT(refused("people { id: \"a\" preferred_distance: -1 }"), HasSubstr("preferred_distance: is -1, must be a number in [0, 2]"));
+  EXPECT_THAT(refused("people { id: \"a\" } people { id: \"a\" }"),
+              HasSubstr("a has two profiles"));
+  EXPECT_THAT(refused("people { id: \"a\" height: 17 }"),
+              HasSubstr("height: is 17, must be a number in [0, 2.5]"));
+  EXPECT_THAT(refused("people { id: \"a\" preferred_distance: -1 }"),
+              HasSubstr("preferred_distance: is -1, must be a number in [0, 2]"));
 }
 
 TEST(Resources, finds_the_descriptions_of_the_project) {
@@ -192,7 +209,8 @@ TEST(Resources, finds_the_descriptions_of_the_project) {
 TEST(Resources, lists_what_there_is_when_a_name_is_unknown) {
   EXPECT_THAT(message_of<MissingError>([] { robot_description("jodi"); }), HasSubstr("jido"));
   EXPECT_THAT(message_of<MissingError>([] { object_description("mugg"); }), HasSubstr("bottle, "));
-  EXPECT_THAT(message_of<MissingError>([] { robot_description("./nothing.txtpb"); }), HasSubstr("nothing.txtpb"));
+  EXPECT_THAT(message_of<MissingError>([] { robot_description("./nothing.txtpb"); }),
+              HasSubstr("nothing.txtpb"));
   EXPECT_THAT(message_of<MissingError>([] { resource("robots/none"); }), HasSubstr("robots/none"));
 }
 

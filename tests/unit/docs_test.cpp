@@ -24,7 +24,8 @@ std::string text_of(const fs::path& file) {
 std::set<std::string> matches(const std::string& text, const std::string& pattern) {
   std::set<std::string> found;
   const std::regex expression(pattern);
-  for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it) found.insert((*it)[1]);
+  for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it)
+    found.insert((*it)[1]);
   return found;
 }
 
@@ -36,7 +37,8 @@ TEST(Docs, every_library_the_build_asks_for_has_its_reason) {
   }
   const auto libraries = matches(asked, R"(find_package\((\w+))");
   ASSERT_GE(libraries.size(), 10u);
-  for (const std::string& library : libraries) EXPECT_THAT(reasons, testing::ContainsRegex("`" + library + "`"));
+  for (const std::string& library : libraries)
+    EXPECT_THAT(reasons, testing::ContainsRegex("`" + library + "`"));
 }
 
 TEST(Docs, every_package_of_the_set_up_has_its_reason) {
@@ -46,7 +48,8 @@ TEST(Docs, every_package_of_the_set_up_has_its_reason) {
   for (const std::string& name : matches(setup, R"(\n(\w*packages)=")")) {
     const std::size_t begin = setup.find('"', setup.find("\n" + name + "=")) + 1;
     std::istringstream packages(setup.substr(begin, setup.find('"', begin) - begin));
-    for (std::string package; packages >> package; ++count) EXPECT_NE(reasons.find(package), std::string::npos) << package;
+    for (std::string package; packages >> package; ++count)
+      EXPECT_NE(reasons.find(package), std::string::npos) << package;
   }
   EXPECT_GT(count, 10);
 }
@@ -75,10 +78,13 @@ TEST(Docs, the_project_speaks_of_itself_only) {
     if (!fs::exists(kRoot / folder)) continue;
     for (fs::recursive_directory_iterator at(kRoot / folder), end; at != end; ++at) {
       const fs::directory_entry& entry = *at;
-      if (entry.path().filename() == "node_modules") at.disable_recursion_pending();  // fetched, not ours
-      const std::set<std::string> read{".hpp", ".cpp", ".md", ".proto", ".txtpb", ".idl", ".txt", ".cmake", ".sh", ".story", ".js"};
+      if (entry.path().filename() == "node_modules")
+        at.disable_recursion_pending();  // fetched, not ours
+      const std::set<std::string> read{".hpp", ".cpp",   ".md", ".proto", ".txtpb", ".idl",
+                                       ".txt", ".cmake", ".sh", ".story", ".js"};
       if (!entry.is_regular_file() || !read.count(entry.path().extension())) continue;
-      EXPECT_FALSE(std::regex_search(text_of(entry.path()), unfinished)) << entry.path() << " is unfinished";
+      EXPECT_FALSE(std::regex_search(text_of(entry.path()), unfinished))
+          << entry.path() << " is unfinished";
     }
   }
 }

@@ -1,4 +1,5 @@
-// Dependencies point one way, and only wire and bus know DDS: read from the #include lines of the whole tree.
+// Dependencies point one way, and only wire and bus know DDS: read from the #include lines of the
+// whole tree.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +20,9 @@ struct Include {
   std::string target;  ///< as written
 };
 
-bool is_source(const fs::path& path) { return path.extension() == ".hpp" || path.extension() == ".cpp" || path.extension() == ".h"; }
+bool is_source(const fs::path& path) {
+  return path.extension() == ".hpp" || path.extension() == ".cpp" || path.extension() == ".h";
+}
 
 std::vector<Include> includes_below(const std::string& folder) {
   const fs::path root = HANDSEL_SOURCE_DIR;
@@ -33,14 +36,19 @@ std::vector<Include> includes_below(const std::string& folder) {
     for (std::string line; std::getline(in, line);) {
       ++number;
       std::smatch match;
-      if (std::regex_search(line, match, pattern)) found.push_back({fs::relative(entry.path(), root).string(), number, match[1]});
+      if (std::regex_search(line, match, pattern))
+        found.push_back({fs::relative(entry.path(), root).string(), number, match[1]});
     }
   }
   return found;
 }
 
-bool starts_with(const std::string& text, const std::string& begin) { return text.rfind(begin, 0) == 0; }
-std::string where(const Include& include) { return include.file + ":" + std::to_string(include.line) + " includes " + include.target; }
+bool starts_with(const std::string& text, const std::string& begin) {
+  return text.rfind(begin, 0) == 0;
+}
+std::string where(const Include& include) {
+  return include.file + ":" + std::to_string(include.line) + " includes " + include.target;
+}
 
 /// "components/spark/node.hpp" -> "spark"
 std::string second_part(const std::string& path) {
@@ -52,13 +60,15 @@ TEST(Includes, the_tree_is_read) { EXPECT_GT(includes_below("common").size(), 10
 
 TEST(Includes, common_knows_neither_components_nor_sim_nor_the_command) {
   for (const Include& include : includes_below("common")) {
-    for (const char* above : {"components/", "sim/", "deploy/"}) EXPECT_FALSE(starts_with(include.target, above)) << where(include);
+    for (const char* above : {"components/", "sim/", "deploy/"})
+      EXPECT_FALSE(starts_with(include.target, above)) << where(include);
   }
 }
 
 TEST(Includes, no_component_includes_another_or_what_is_above_it) {
   for (const Include& include : includes_below("components")) {
-    for (const char* above : {"sim/", "deploy/"}) EXPECT_FALSE(starts_with(include.target, above)) << where(include);
+    for (const char* above : {"sim/", "deploy/"})
+      EXPECT_FALSE(starts_with(include.target, above)) << where(include);
     if (starts_with(include.target, "components/")) {
       EXPECT_EQ(second_part(include.target), second_part(include.file)) << where(include);
     }
@@ -67,7 +77,8 @@ TEST(Includes, no_component_includes_another_or_what_is_above_it) {
 
 TEST(Includes, the_simulator_stands_alone) {
   for (const Include& include : includes_below("sim")) {
-    for (const char* other : {"components/", "deploy/"}) EXPECT_FALSE(starts_with(include.target, other)) << where(include);
+    for (const char* other : {"components/", "deploy/"})
+      EXPECT_FALSE(starts_with(include.target, other)) << where(include);
   }
 }
 
@@ -81,7 +92,8 @@ TEST(Includes, only_wire_and_bus_know_dds) {
   const std::regex dds(R"(^(dds/|ddsc/|dds\.h|idl/|handsel_idl|.*\.idl|generated/idl))");
   for (const char* folder : {"common", "components", "sim", "deploy"}) {
     for (const Include& include : includes_below(folder)) {
-      if (starts_with(include.file, "common/wire/") || starts_with(include.file, "common/bus/")) continue;
+      if (starts_with(include.file, "common/wire/") || starts_with(include.file, "common/bus/"))
+        continue;
       EXPECT_FALSE(std::regex_search(include.target, dds)) << where(include);
     }
   }
@@ -91,7 +103,8 @@ TEST(Includes, only_the_simulator_knows_physics_and_only_the_bridge_knows_http) 
   for (const char* folder : {"common", "components", "sim", "deploy"}) {
     for (const Include& include : includes_below(folder)) {
       if (!starts_with(include.file, "sim/")) {
-        EXPECT_FALSE(starts_with(include.target, "bullet/") || starts_with(include.target, "bt") || starts_with(include.target, "Bullet"))
+        EXPECT_FALSE(starts_with(include.target, "bullet/") || starts_with(include.target, "bt") ||
+                     starts_with(include.target, "Bullet"))
             << where(include);
       }
       if (!starts_with(include.file, "components/bridge/")) {
@@ -103,12 +116,16 @@ TEST(Includes, only_the_simulator_knows_physics_and_only_the_bridge_knows_http) 
 
 /// Inside common: bus -> wire -> the rest -> geometry.
 TEST(Includes, rooms_of_common_point_downward) {
-  const std::map<std::string, int> height{{"base", 0},  {"geometry", 1}, {"grasp", 2},      {"trajectory", 2}, {"messages", 3},
-                                          {"model", 4}, {"config", 4},   {"collision", 5},  {"cost", 5},       {"record", 1},
-                                          {"wire", 6},  {"bus", 7},      {"robot_side", 5}, {"topics", 0}};
+  const std::map<std::string, int> height{
+      {"base", 0},  {"geometry", 1}, {"grasp", 2},      {"trajectory", 2}, {"messages", 3},
+      {"model", 4}, {"config", 4},   {"collision", 5},  {"cost", 5},       {"record", 1},
+      {"wire", 6},  {"bus", 7},      {"robot_side", 5}, {"topics", 0}};
   for (const Include& include : includes_below("common")) {
-    if (!starts_with(include.target, "common/") || include.target.find(".pb.h") != std::string::npos) continue;
-    const auto from = height.find(second_part(include.file)), to = height.find(second_part(include.target));
+    if (!starts_with(include.target, "common/") ||
+        include.target.find(".pb.h") != std::string::npos)
+      continue;
+    const auto from = height.find(second_part(include.file)),
+               to = height.find(second_part(include.target));
     ASSERT_NE(from, height.end()) << include.file << " is in a room that is not placed";
     ASSERT_NE(to, height.end()) << where(include) << ", a room that is not placed";
     EXPECT_GE(from->second, to->second) << where(include);
@@ -116,13 +133,21 @@ TEST(Includes, rooms_of_common_point_downward) {
 }
 
 TEST(Includes, cores_know_no_clock_thread_or_logger) {
-  const std::set<std::string> outside{"thread", "mutex", "condition_variable", "spdlog/spdlog.h", "unistd.h", "time.h", "ctime"};
+  const std::set<std::string> outside{
+      "thread", "mutex", "condition_variable", "spdlog/spdlog.h", "unistd.h", "time.h", "ctime"};
   // Processes, their nodes and what binds a part to the bus, and the files that are there for the
   // outside: the page's server, the file of found grasps, the file of the safety state.
-  const std::set<std::string> thin{
-      "node.cpp",        "node.hpp",         "main.cpp",       "server.cpp",
-      "server.hpp",      "server_state.hpp", "ros_topics.hpp", "trajectory_link.hpp",
-      "grasp_store.cpp", "state_store.cpp",  "list_preparation.hpp"};
+  const std::set<std::string> thin{"node.cpp",
+                                   "node.hpp",
+                                   "main.cpp",
+                                   "server.cpp",
+                                   "server.hpp",
+                                   "server_state.hpp",
+                                   "ros_topics.hpp",
+                                   "trajectory_link.hpp",
+                                   "grasp_store.cpp",
+                                   "state_store.cpp",
+                                   "list_preparation.hpp"};
   for (const Include& include : includes_below("components")) {
     if (thin.count(fs::path(include.file).filename())) continue;
     EXPECT_FALSE(outside.count(include.target)) << where(include);

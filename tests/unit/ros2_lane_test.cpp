@@ -17,7 +17,8 @@ namespace {
 using testing::HasSubstr;
 
 template <class M>
-ros2::Transform frame(const std::string& parent, const std::string& child, const M& at, Stamp stamp = 1) {
+ros2::Transform frame(const std::string& parent, const std::string& child, const M& at,
+                      Stamp stamp = 1) {
   return {stamp, parent, child, make_pose(at)};
 }
 
@@ -36,10 +37,15 @@ TEST(Ros2Wire, is_called_as_ros_calls_it_and_keeps_every_value) {
   const auto type = ros2_type<ros2::JointState>("joint_states", Profile::goal);
   EXPECT_STREQ(type->row().topic, "rt/joint_states");
   EXPECT_STREQ(type->row().type, "sensor_msgs::msg::dds_::JointState_");
-  ros2::JointState joints{1'700'000'000'123'456'789, {"a", "b"}, Vector::Constant(2, 0.5), Vector::Constant(2, -1.5), Vector()};
+  ros2::JointState joints{1'700'000'000'123'456'789,
+                          {"a", "b"},
+                          Vector::Constant(2, 0.5),
+                          Vector::Constant(2, -1.5),
+                          Vector()};
   const auto wire = type->new_wire();
   std::string why;
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(type->to_wire(&joints, 0, wire.get(), why)) << "written again into the same sample";
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(type->to_wire(&joints, 0, wire.get(), why)) << "written again into the same sample";
   ros2::JointState back;
   ASSERT_TRUE(type->from_wire(wire.get(), &back, why)) << why;
   EXPECT_EQ(back.stamp, joints.stamp);
@@ -50,7 +56,8 @@ TEST(Ros2Wire, is_called_as_ros_calls_it_and_keeps_every_value) {
 
   const auto tf = ros2_type<ros2::Transforms>("tf", Profile::goal);
   EXPECT_STREQ(tf->row().type, "tf2_msgs::msg::dds_::TFMessage_");
-  const ros2::Transforms frames{{{7, "world", "/it", make_pose({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5))}}};
+  const ros2::Transforms frames{
+      {{7, "world", "/it", make_pose({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5))}}};
   const auto sample = tf->new_wire();
   ASSERT_TRUE(tf->to_wire(&frames, 0, sample.get(), why));
   ros2::Transforms again;
@@ -61,11 +68,16 @@ TEST(Ros2Wire, is_called_as_ros_calls_it_and_keeps_every_value) {
 
 TEST(Ros2Wire, rejects_what_is_malformed_in_one_sentence) {
   const double nan = std::nan("");
-  EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, Vector::Constant(1, nan), {}, {}}), "rt/x: position[0] is not finite");
-  EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, Vector::Constant(2, 0), {}, {}}), "rt/x: position has 2 elements for 1 names");
-  EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, {}, Vector::Constant(1, 1e5), {}}), "rt/x: velocity[0] is out of range");
-  EXPECT_THAT(rejected(ros2::JointState{1, std::vector<std::string>(200, "a"), {}, {}, {}}), HasSubstr("name has 200 elements"));
-  EXPECT_THAT(rejected(ros2::JointState{1, {std::string(300, 'a')}, {}, {}, {}}), HasSubstr("name is longer than 256 bytes"));
+  EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, Vector::Constant(1, nan), {}, {}}),
+            "rt/x: position[0] is not finite");
+  EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, Vector::Constant(2, 0), {}, {}}),
+            "rt/x: position has 2 elements for 1 names");
+  EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, {}, Vector::Constant(1, 1e5), {}}),
+            "rt/x: velocity[0] is out of range");
+  EXPECT_THAT(rejected(ros2::JointState{1, std::vector<std::string>(200, "a"), {}, {}, {}}),
+              HasSubstr("name has 200 elements"));
+  EXPECT_THAT(rejected(ros2::JointState{1, {std::string(300, 'a')}, {}, {}, {}}),
+              HasSubstr("name is longer than 256 bytes"));
   EXPECT_THAT(rejected(ros2::JointState{1, {"a\x01"}, {}, {}, {}}), HasSubstr("name holds bytes"));
   ros2::Transforms frames{{frame("world", "a", Vector3(0, nan, 0))}};
   EXPECT_THAT(rejected(frames), HasSubstr("transforms[0].translation is not finite"));
@@ -74,7 +86,8 @@ TEST(Ros2Wire, rejects_what_is_malformed_in_one_sentence) {
   frames = {{frame("world", "a", Vector3::Zero())}};
   frames.transforms[0].T_parent_child.linear() *= 0.0;
   EXPECT_THAT(rejected(frames), HasSubstr("no unit quaternion"));
-  ros2::JointTrajectory motion{0, {"a"}, {{Vector::Constant(1, 0), 2.0}, {Vector::Constant(1, 0.1), 1.0}}};
+  ros2::JointTrajectory motion{
+      0, {"a"}, {{Vector::Constant(1, 0), 2.0}, {Vector::Constant(1, 0.1), 1.0}}};
   EXPECT_THAT(rejected(motion), HasSubstr("points[1].time_from_start is not between"));
   motion.points[1] = {Vector(), 3.0};
   EXPECT_THAT(rejected(motion), HasSubstr("points[1].positions are missing"));
@@ -83,9 +96,13 @@ TEST(Ros2Wire, rejects_what_is_malformed_in_one_sentence) {
 TEST(TfTree, when_it_is_full_frames_not_sent_for_long_make_room) {
   TfTree tree;
   tree.set(frame("world", "mast", Vector3::Zero()), TimePoint{}, true);
-  for (int i = 1; i < 4096; ++i) ASSERT_TRUE(tree.set(frame("mast", "head_" + std::to_string(i), Vector3::Zero()), TimePoint{}, false));
-  EXPECT_FALSE(tree.set(frame("mast", "head_new", Vector3::Zero()), TimePoint(from_seconds(5)), false));
-  EXPECT_TRUE(tree.set(frame("mast", "head_new", Vector3::Zero()), TimePoint(from_seconds(11)), false));
+  for (int i = 1; i < 4096; ++i)
+    ASSERT_TRUE(
+        tree.set(frame("mast", "head_" + std::to_string(i), Vector3::Zero()), TimePoint{}, false));
+  EXPECT_FALSE(
+      tree.set(frame("mast", "head_new", Vector3::Zero()), TimePoint(from_seconds(5)), false));
+  EXPECT_TRUE(
+      tree.set(frame("mast", "head_new", Vector3::Zero()), TimePoint(from_seconds(11)), false));
   EXPECT_TRUE(tree.find("head_new", "world")) << "a static frame is not forgotten";
   EXPECT_FALSE(tree.find("head_1", "world"));
 }
@@ -94,11 +111,14 @@ TEST(TfTree, follows_the_way_to_the_world_and_knows_how_old_it_is) {
   TfTree tree;
   const TimePoint t(from_seconds(10));
   tree.set(frame("world", "mast", Vector3(0, 0, 2)), t, true);
-  tree.set({5, "mast", "camera", make_pose({0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Vector3::UnitX())))}, t, false);
+  tree.set({5, "mast", "camera",
+            make_pose({0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Vector3::UnitX())))},
+           t, false);
   tree.set(frame("camera", "head_1", Vector3(1, 0, 0.3), 9), t + from_seconds(1), false);
   const auto head = tree.find("head_1", "world");
   ASSERT_TRUE(head);
-  EXPECT_TRUE(head->T_root_frame.translation().isApprox(Vector3(1, 0, 1.7))) << head->T_root_frame.translation();
+  EXPECT_TRUE(head->T_root_frame.translation().isApprox(Vector3(1, 0, 1.7)))
+      << head->T_root_frame.translation();
   EXPECT_EQ(head->stamp, 9);
   EXPECT_EQ(head->arrival, t) << "as old as the oldest part";
   EXPECT_FALSE(tree.find("head_1", "map"));
@@ -112,7 +132,8 @@ TEST(BodyFrame, is_named_as_ros4hri_does) {
   EXPECT_EQ(body_frame("r_wrist_7f")->joint, "r_wrist");
   EXPECT_EQ(body_frame("r_wrist_7f")->body, "7f");
   EXPECT_EQ(body_frame("head_anna_2")->body, "anna_2");
-  for (const char* other : {"r_wrist", "r_y_shoulder_7f", "world", "camera_head", "head_"}) EXPECT_FALSE(body_frame(other)) << other;
+  for (const char* other : {"r_wrist", "r_y_shoulder_7f", "world", "camera_head", "head_"})
+    EXPECT_FALSE(body_frame(other)) << other;
 }
 
 class Lane : public testing::Test {
@@ -130,7 +151,9 @@ class Lane : public testing::Test {
   template <class M>
   void read(const std::string& name, std::vector<M>& into) {
     types.push_back(ros2_type<M>(name, Profile::goal));
-    ros.subscribe_any(*types.back(), [&into](const void* m, const Receipt&) { into.push_back(*static_cast<const M*>(m)); }, {});
+    ros.subscribe_any(
+        *types.back(),
+        [&into](const void* m, const Receipt&) { into.push_back(*static_cast<const M*>(m)); }, {});
   }
   void run(double seconds) { network.run_for(from_seconds(seconds)); }
 
@@ -143,16 +166,20 @@ class Lane : public testing::Test {
 
 TEST_F(Lane, turns_frames_of_a_body_into_an_observation) {
   std::vector<HumanObservation> seen;
-  ours.subscribe<HumanObservation>([&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
+  ours.subscribe<HumanObservation>(
+      [&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
   const auto tf = write<ros2::Transforms>("tf");
   const auto tracked = write<ros2::Ids>("humans/bodies/tracked");
   run(0.5);
   EXPECT_TRUE(seen.empty()) << "nothing is known: nothing is said";
   for (int i = 1; i <= 10; ++i) {
     const Stamp now = ros.stamp_now();
-    tf->publish({{frame("mast", "waist_7", Vector3(0, 0, 1), now), frame("waist_7", "torso_7", Vector3(0, 0, 0.45), now),
-                  frame("torso_7", "head_7", Vector3(0, 0, 0.25 + 0.001 * i), now), frame("head_7", "l_eye_7", Vector3(0, 0, 0), now),
-                  frame("world", "mast", Vector3(2, 0.5, 0), now), frame("world", "head_tilt", Vector3(0, 0, 1.5), now)}});
+    tf->publish({{frame("mast", "waist_7", Vector3(0, 0, 1), now),
+                  frame("waist_7", "torso_7", Vector3(0, 0, 0.45), now),
+                  frame("torso_7", "head_7", Vector3(0, 0, 0.25 + 0.001 * i), now),
+                  frame("head_7", "l_eye_7", Vector3(0, 0, 0), now),
+                  frame("world", "mast", Vector3(2, 0.5, 0), now),
+                  frame("world", "head_tilt", Vector3(0, 0, 1.5), now)}});
     run(0.034);
   }
   ASSERT_GE(seen.size(), 8u);
@@ -164,7 +191,8 @@ TEST_F(Lane, turns_frames_of_a_body_into_an_observation) {
   for (const ObservedJoint& joint : last.people[0].joints) joints[joint.name] = joint.position;
   ASSERT_EQ(joints.size(), 3u);
   EXPECT_TRUE(joints["waist"].isApprox(Vector3(2, 0.5, 1)));
-  EXPECT_TRUE(joints["neck"].isApprox(Vector3(2, 0.5, 1.45))) << "ROS4HRI's torso is between the shoulders";
+  EXPECT_TRUE(joints["neck"].isApprox(Vector3(2, 0.5, 1.45)))
+      << "ROS4HRI's torso is between the shoulders";
   EXPECT_NEAR(joints["head"].z(), 1.71, 0.002);
   EXPECT_GT(last.stamp, 0);
 
@@ -179,24 +207,31 @@ TEST_F(Lane, turns_frames_of_a_body_into_an_observation) {
 
 TEST_F(Lane, leaves_out_a_frame_from_outside_that_is_called_like_a_link_of_our_robot) {
   std::vector<HumanObservation> seen;
-  ours.subscribe<HumanObservation>([&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
+  ours.subscribe<HumanObservation>(
+      [&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
   const auto tf = write<ros2::Transforms>("tf");
   const auto state_out = ours.advertise<RobotState>();
   RobotState state;
   state.robot = "jido";
   state.position = context.robot->rest_configuration();
   state.velocity = Vector::Zero(context.robot->dof());
-  const std::string link = context.robot->links()[static_cast<std::size_t>(context.robot->tool_link())].name;
+  const std::string link =
+      context.robot->links()[static_cast<std::size_t>(context.robot->tool_link())].name;
   for (int i = 0; i < 20; ++i) {
     state.stamp = ros.stamp_now();
     state_out->publish(state);
-    tf->publish({{frame("world", link, Vector3(9, 9, 0), state.stamp), frame(link, "waist_7", Vector3(0, 0, 1), state.stamp),
-                  frame(link, "neck_7", Vector3(0, 0, 1.5), state.stamp), frame(link, "head_7", Vector3(0, 0, 1.7), state.stamp)}});
+    tf->publish({{frame("world", link, Vector3(9, 9, 0), state.stamp),
+                  frame(link, "waist_7", Vector3(0, 0, 1), state.stamp),
+                  frame(link, "neck_7", Vector3(0, 0, 1.5), state.stamp),
+                  frame(link, "head_7", Vector3(0, 0, 1.7), state.stamp)}});
     run(0.034);
-    EXPECT_THAT(lane->trouble(), HasSubstr("TF tells frame " + link + " below world from outside, and robot jido has a link of that name"));
+    EXPECT_THAT(lane->trouble(),
+                HasSubstr("TF tells frame " + link +
+                          " below world from outside, and robot jido has a link of that name"));
   }
   ASSERT_FALSE(seen.empty());
-  for (const ObservedJoint& joint : seen.back().people.at(0).joints) EXPECT_LT(joint.position.x(), 5) << "our link is where our robot is";
+  for (const ObservedJoint& joint : seen.back().people.at(0).joints)
+    EXPECT_LT(joint.position.x(), 5) << "our link is where our robot is";
   run(10);
   EXPECT_EQ(lane->trouble(), "");
 }
@@ -226,7 +261,8 @@ TEST_F(Lane, tells_joints_and_frames_of_our_robot) {
   ASSERT_GE(joints.size(), 8u);
   ASSERT_EQ(joints.back().names.size(), context.robot->axes().size());
   for (int i = 0; i < context.robot->dof(); ++i)
-    EXPECT_EQ(joints.back().names[static_cast<std::size_t>(i)], context.robot->axes()[static_cast<std::size_t>(i)].name);
+    EXPECT_EQ(joints.back().names[static_cast<std::size_t>(i)],
+              context.robot->axes()[static_cast<std::size_t>(i)].name);
   EXPECT_EQ(joints.back().position, state.position);
   EXPECT_EQ(joints.back().velocity, state.velocity);
   EXPECT_EQ(joints.back().stamp, state.stamp);
@@ -236,17 +272,21 @@ TEST_F(Lane, tells_joints_and_frames_of_our_robot) {
   const int tool = context.robot->tool_link();
   const auto told = tree.find(context.robot->links()[static_cast<std::size_t>(tool)].name, "world");
   ASSERT_TRUE(told);
-  EXPECT_TRUE(told->T_root_frame.isApprox(state.T_world_base * context.robot->link_pose(state.position, tool), 1e-9));
+  EXPECT_TRUE(told->T_root_frame.isApprox(
+      state.T_world_base * context.robot->link_pose(state.position, tool), 1e-9));
   ASSERT_TRUE(tree.find("object_mug", "world"));
-  EXPECT_TRUE(tree.find("object_mug", "world")->T_root_frame.translation().isApprox(Vector3(0.7, -0.4, 0.8)));
+  EXPECT_TRUE(tree.find("object_mug", "world")
+                  ->T_root_frame.translation()
+                  .isApprox(Vector3(0.7, -0.4, 0.8)));
 }
 
 TEST_F(Lane, sends_no_robot_state_while_the_place_of_the_base_is_old) {
   const test::TemporaryFolder folder;
-  folder.write("ros2_lane.txtpb",
-               "world_frame: \"world\" tf: \"tf\" people: true people_source: \"ros2\" people_rate: 30 "
-               "people_age: 0.2 objects_rate: 30 joint_age: 0.1 start_tolerance: 0.05 check_step: 0.05 "
-               "joint_states_rate: 50 tf_rate: 30 robot_in: \"joints\" base_frame: \"base\"");
+  folder.write(
+      "ros2_lane.txtpb",
+      "world_frame: \"world\" tf: \"tf\" people: true people_source: \"ros2\" people_rate: 30 "
+      "people_age: 0.2 objects_rate: 30 joint_age: 0.1 start_tolerance: 0.05 check_step: 0.05 "
+      "joint_states_rate: 50 tf_rate: 30 robot_in: \"joints\" base_frame: \"base\"");
   context.settings = folder.path();
   const auto moving = std::make_shared<Node>(network.add("moving ros2_lane"), context);
   int states = 0;
@@ -277,7 +317,8 @@ TEST(JointGatherer, gathers_axes_from_several_messages_and_says_what_is_missing)
   JointGatherer gatherer(*context.robot, 0.1);
   const TimePoint t(from_seconds(5));
   ros2::JointState first, second;
-  for (const Axis& axis : context.robot->axes()) (first.names.size() < 4 ? first : second).names.push_back(axis.name);
+  for (const Axis& axis : context.robot->axes())
+    (first.names.size() < 4 ? first : second).names.push_back(axis.name);
   const auto fill = [](ros2::JointState& m, double at, Stamp stamp) {
     m.position = Vector::Constant(static_cast<Eigen::Index>(m.names.size()), at);
     m.stamp = stamp;
@@ -317,7 +358,9 @@ class Executor : public testing::Test {
     executor->on(status);
   }
   const Group& arm() const { return robot->require_group("arm"); }
-  std::string joint(int i) const { return robot->axes()[static_cast<std::size_t>(arm().axes[static_cast<std::size_t>(i)])].name; }
+  std::string joint(int i) const {
+    return robot->axes()[static_cast<std::size_t>(arm().axes[static_cast<std::size_t>(i)])].name;
+  }
   double here(int i) const { return active.position[arm().axes[static_cast<std::size_t>(i)]]; }
   /// Of the first arm joint, by this much.
   ros2::JointTrajectory by(double angle, double time = 1.0) const {
@@ -397,7 +440,8 @@ TEST_F(Executor, refuses_with_the_reason) {
   wanted.joint_names = {"elbow_of_somebody"};
   EXPECT_EQ(asked(wanted), "refused: joint elbow_of_somebody is no joint of the arm of jido");
   EXPECT_THAT(asked(by(100)), HasSubstr("refused: point 0 has " + joint(0) + " at "));
-  EXPECT_EQ(asked(by(0.4, 0)), "refused: its first point, at time 0, is 0.400 rad from where the arm is");
+  EXPECT_EQ(asked(by(0.4, 0)),
+            "refused: its first point, at time 0, is 0.400 rad from where the arm is");
   EXPECT_EQ(asked(by(0)), "refused: it ends where the arm is");
   wanted = by(0.2);
   wanted.joint_names.push_back(joint(0));

@@ -30,7 +30,9 @@ TrajectoryRequest request_over(const std::vector<Vector3>& nodes) {
 
 class Planning : public ::testing::Test {
  protected:
-  Result run(const TrajectoryRequest& request) { return plan(robot_, world_, cost_, around_, request, {}); }
+  Result run(const TrajectoryRequest& request) {
+    return plan(robot_, world_, cost_, around_, request, {});
+  }
   void beside(const HumanState& people) {
     around_ = {people, make_pose({0, 0, 1.1})};
     cost_.set_base(around_.T_world_base);
@@ -109,12 +111,16 @@ TEST_F(Planning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhe
         slowest.back() = x;
       }
       least = std::min(least, share), most = std::max(most, share);
-      sum_c += cost, sum_v += share, sum_cc += cost * cost, sum_vv += share * share, sum_cv += cost * share, ++count;
+      sum_c += cost, sum_v += share, sum_cc += cost * cost, sum_vv += share * share,
+          sum_cv += cost * share, ++count;
     }
     const double correlation =
-        (count * sum_cv - sum_c * sum_v) / std::sqrt((count * sum_cc - sum_c * sum_c) * (count * sum_vv - sum_v * sum_v));
-    std::printf("person at (%.1f, %.1f): speed %.2f to %.2f of the limits, correlation with the cost %.3f\n", place.x(), place.y(), least,
-                most, correlation);
+        (count * sum_cv - sum_c * sum_v) /
+        std::sqrt((count * sum_cc - sum_c * sum_c) * (count * sum_vv - sum_v * sum_v));
+    std::printf(
+        "person at (%.1f, %.1f): speed %.2f to %.2f of the limits, correlation with the cost "
+        "%.3f\n",
+        place.x(), place.y(), least, most, correlation);
     EXPECT_LT(correlation, -0.9);
     EXPECT_GT(most, least + 0.05);
   }
@@ -143,7 +149,8 @@ TEST_F(Planning, who_comes_nearer_or_does_not_look_makes_it_slower) {
   for (BodyJoint& joint : anna.joints) joint.velocity = Vector3(0.8, 0, 0);
   EXPECT_DOUBLE_EQ(factor().first, watching);
   for (BodyJoint& joint : anna.joints) joint.velocity.setZero();
-  cost_ = HumanCost(robot_, {1.0, 3.0, 1.0, 0.0, 0.0});  // no cost of visibility, so that only what she does differs
+  cost_ = HumanCost(robot_, {1.0, 3.0, 1.0, 0.0,
+                             0.0});  // no cost of visibility, so that only what she does differs
   const double seen = factor().first;
   anna.gaze_direction = Vector3::UnitX();
   EXPECT_LT(factor().first, seen - 0.05);
@@ -175,7 +182,8 @@ TEST(TrajectoryPlannerNode, answers_once_planned_requests_again_and_waits_for_a_
   Node node(network.add("trajectory_planner"), context);
   Bus& tester = network.add("manipulation_planner");
   std::vector<TrajectoryReply> replies;
-  tester.subscribe<TrajectoryReply>([&](const TrajectoryReply& reply, const Receipt&) { replies.push_back(reply); });
+  tester.subscribe<TrajectoryReply>(
+      [&](const TrajectoryReply& reply, const Receipt&) { replies.push_back(reply); });
   const auto requests = tester.advertise<TrajectoryRequest>();
   Bus& world = network.add("spark");
   const auto scenes = world.advertise<Scene>();
@@ -215,7 +223,8 @@ class ToolMotions : public ::testing::Test {
     context_.description = HANDSEL_SOURCE_DIR "/deploy/robots/jido/jido.txtpb";
     node_ = std::make_unique<Node>(network_.add("trajectory_planner"), context_);
     Bus& tester = network_.add("manipulation_planner");
-    tester.subscribe<TrajectoryReply>([this](const TrajectoryReply& reply, const Receipt&) { reply_ = reply; });
+    tester.subscribe<TrajectoryReply>(
+        [this](const TrajectoryReply& reply, const Receipt&) { reply_ = reply; });
     requests_ = tester.advertise<TrajectoryRequest>();
     Bus& world = network_.add("spark");
     scenes_ = world.advertise<Scene>();
@@ -243,20 +252,24 @@ class ToolMotions : public ::testing::Test {
     network_.run_for(std::chrono::milliseconds(20));
     ++request_.id.number;
     requests_->publish(request_);
-    for (int k = 0; k < 100 && reply_.id.number != request_.id.number; ++k) network_.run_for(std::chrono::milliseconds(20));
+    for (int k = 0; k < 100 && reply_.id.number != request_.id.number; ++k)
+      network_.run_for(std::chrono::milliseconds(20));
     EXPECT_EQ(reply_.id, request_.id);
     return reply_;
   }
   Pose end() const {
     Vector q = request_.start;
     const Vector at = final_state(reply_.trajectory).position;
-    for (std::size_t i = 0; i < reply_.axes.size(); ++i) q[reply_.axes[i]] = at[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < reply_.axes.size(); ++i)
+      q[reply_.axes[i]] = at[static_cast<Eigen::Index>(i)];
     return T_world_base_ * robot_->link_pose(q, robot_->require_group("arm").tip);
   }
-  bool reached(std::size_t node) const { return (end().matrix() - request_.poses[node].T_world_tip.matrix()).norm() < 1e-5; }
+  bool reached(std::size_t node) const {
+    return (end().matrix() - request_.poses[node].T_world_tip.matrix()).norm() < 1e-5;
+  }
 
-  std::shared_ptr<const RobotModel> robot_{
-      std::make_shared<const RobotModel>(RobotModel::load(HANDSEL_SOURCE_DIR "/deploy/robots/jido/jido.txtpb"))};
+  std::shared_ptr<const RobotModel> robot_{std::make_shared<const RobotModel>(
+      RobotModel::load(HANDSEL_SOURCE_DIR "/deploy/robots/jido/jido.txtpb"))};
   NodeContext context_;
   LocalNetwork network_{4};
   std::unique_ptr<Node> node_;
@@ -265,13 +278,15 @@ class ToolMotions : public ::testing::Test {
   std::unique_ptr<Publisher<HumanState>> people_;
   TrajectoryRequest request_;
   TrajectoryReply reply_;
-  Pose T_world_base_{make_pose({0.7, -0.4, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.6, Vector3::UnitZ())))};
+  Pose T_world_base_{
+      make_pose({0.7, -0.4, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.6, Vector3::UnitZ())))};
   Pose home_;
 };
 
 TEST_F(ToolMotions, are_those_of_22_axes_wherever_the_robot_stands) {
   for (const char* group : {"hand", "head"})
-    for (const int axis : robot_->require_group(group).axes) request_.also.push_back(static_cast<std::uint32_t>(axis));
+    for (const int axis : robot_->require_group(group).axes)
+      request_.also.push_back(static_cast<std::uint32_t>(axis));
   to({0, 0.1, 0});
   to({0, 0.1, 0.08}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3::UnitX())));
   request_.poses[1].also[request_.poses[1].also.size() - 1] += 0.2;
@@ -287,13 +302,15 @@ TEST_F(ToolMotions, are_those_of_22_axes_wherever_the_robot_stands) {
 
 TEST_F(ToolMotions, move_the_platform_as_three_more_axes) {
   for (const char* group : {"hand", "head"})
-    for (const int axis : robot_->require_group(group).axes) request_.also.push_back(static_cast<std::uint32_t>(axis));
+    for (const int axis : robot_->require_group(group).axes)
+      request_.also.push_back(static_cast<std::uint32_t>(axis));
   const Vector mobile = with_platform(request_.start, T_world_base_);
   to({0.3, 0.1, 0.05});
   Vector& also = request_.poses[0].also;
   also.conservativeResize(also.size() + 3);
   also.tail(3) = mobile.tail(3) + Vector3(0.3, 0.1, 0.15);
-  for (int i = 0; i < 3; ++i) request_.also.push_back(static_cast<std::uint32_t>(robot_->dof() + i));
+  for (int i = 0; i < 3; ++i)
+    request_.also.push_back(static_cast<std::uint32_t>(robot_->dof() + i));
   ask();
   ASSERT_TRUE(reply_.solved) << reply_.reason;
   ASSERT_EQ(reply_.axes.size(), 25u);
@@ -301,11 +318,13 @@ TEST_F(ToolMotions, move_the_platform_as_three_more_axes) {
   for (int i = 0; i <= 20; ++i) {
     Vector q = mobile;
     const Vector at = reply_.trajectory.at(reply_.trajectory.duration() * i / 20).position;
-    for (std::size_t k = 0; k < reply_.axes.size(); ++k) q[reply_.axes[k]] = at[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0; k < reply_.axes.size(); ++k)
+      q[reply_.axes[k]] = at[static_cast<Eigen::Index>(k)];
     const Vector3 tool = whole->link_pose(q, whole->require_group("arm").tip).translation();
     // On the straight way while the platform drives beneath.
     const Vector3 way = request_.poses[0].T_world_tip.translation() - home_.translation();
-    const Vector3 off = (tool - home_.translation()) - way * (tool - home_.translation()).dot(way) / way.squaredNorm();
+    const Vector3 off = (tool - home_.translation()) -
+                        way * (tool - home_.translation()).dot(way) / way.squaredNorm();
     EXPECT_LT(off.norm(), 1e-3);
     if (i < 20) continue;
     EXPECT_LT((tool - request_.poses[0].T_world_tip.translation()).norm(), 1e-5);
@@ -340,7 +359,8 @@ TEST_F(ToolMotions, that_cannot_be_say_why_and_go_as_far_as_they_can) {
   request_.upright = true;
   request_.upright_axis = home_.linear().transpose() * Vector3::UnitZ();
   request_.max_tilt = 0.05;
-  to({0, 0.1, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.5, request_.upright_axis.unitOrthogonal())));
+  to({0, 0.1, 0},
+     Eigen::Quaterniond(Eigen::AngleAxisd(0.5, request_.upright_axis.unitOrthogonal())));
   expect(1, "leans over");
   request_.upright = false;
   // Equal nodes, and one where it is, are no motion.

@@ -1,5 +1,6 @@
-// samples DOMAIN SEED: publishes one random valid sample of every message type over DDS, again and again, until its input ends. Prints one
-// line of JSON a type before: {"topic", "type", "leaves": {"path": value}}, integers of 64 bits as text.
+// samples DOMAIN SEED: publishes one random valid sample of every message type over DDS, again and
+// again, until its input ends. Prints one line of JSON a type before: {"topic", "type", "leaves":
+// {"path": value}}, integers of 64 bits as text.
 #include <poll.h>
 #include <unistd.h>
 
@@ -51,7 +52,8 @@ class Dice {
         std::string text;
         const std::size_t length = whole() % leaf.size;
         const char* letters[] = {"a", "Z", "7", "_", "\xc3\xa9", "\xe2\x82\xac", " ", "\"", "\\"};
-        for (std::size_t most = attempt == 0 ? 9 : 4; text.size() + 3 < length;) text += letters[whole() % most];
+        for (std::size_t most = attempt == 0 ? 9 : 4; text.size() + 3 < length;)
+          text += letters[whole() % most];
         std::memset(leaf.value, 0, leaf.size);
         std::memcpy(leaf.value, text.c_str(), text.size());
       }
@@ -73,7 +75,8 @@ void rotate(const Leaves& leaves, std::size_t w, Dice& dice) {
     value = 2 * dice.share() - 1;
     norm += value * value;
   }
-  for (std::size_t i = 0; i < 4; ++i) *static_cast<double*>(leaves[w - 3 + i].value) = q[i] / std::sqrt(norm);
+  for (std::size_t i = 0; i < 4; ++i)
+    *static_cast<double*>(leaves[w - 3 + i].value) = q[i] / std::sqrt(norm);
 }
 
 /// Every leaf as random as its message allows: what breaks a rule is taken back.
@@ -82,7 +85,8 @@ std::shared_ptr<void> random_message(const MessageType& type, Dice& dice) {
   type.fill(wire.get(), false);
   const Leaves leaves = leaves_of(type, wire.get());
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    std::vector<char> before(static_cast<char*>(leaves[i].value), static_cast<char*>(leaves[i].value) + leaves[i].size);
+    std::vector<char> before(static_cast<char*>(leaves[i].value),
+                             static_cast<char*>(leaves[i].value) + leaves[i].size);
     bool accepted = false;
     for (int attempt = 0; attempt < 4 && !accepted; ++attempt) {
       dice.throw_leaf(leaves[i], attempt);
@@ -126,7 +130,8 @@ std::string printed(const MessageType& type, const void* message) {
   if (!type.to_wire(message, 1, wire.get(), why)) throw std::runtime_error(why);
   nlohmann::json values;
   for (const NamedLeaf& leaf : leaves_of(type, wire.get())) values[leaf.name] = value_of(leaf);
-  return nlohmann::json{{"topic", type.row().topic}, {"type", type.row().type}, {"leaves", values}}.dump();
+  return nlohmann::json{{"topic", type.row().topic}, {"type", type.row().type}, {"leaves", values}}
+      .dump();
 }
 
 }  // namespace
@@ -134,9 +139,10 @@ std::string printed(const MessageType& type, const void* message) {
 int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "usage: samples DOMAIN SEED\n"), 2;
   try {
-    DdsBus bus({.component = "samples sim spark supervisor manipulation_planner trajectory_controller",
-                .domain = static_cast<std::uint32_t>(std::stoul(argv[1])),
-                .health = false});
+    DdsBus bus(
+        {.component = "samples sim spark supervisor manipulation_planner trajectory_controller",
+         .domain = static_cast<std::uint32_t>(std::stoul(argv[1])),
+         .health = false});
     Dice dice(std::stoull(argv[2]));
     std::vector<std::unique_ptr<AnyPublisher>> publishers;
     std::vector<std::shared_ptr<void>> messages;

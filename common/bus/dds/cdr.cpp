@@ -10,12 +10,16 @@
 namespace handsel {
 namespace {
 
-/// Without a network no port of the machine is needed, so none can be taken. Above the domains that a system may have.
+/// Without a network no port of the machine is needed, so none can be taken. Above the domains that
+/// a system may have.
 constexpr dds_domainid_t kOwn = 231;
-constexpr const char* kNoNetwork = "<CycloneDDS><Domain><General><Transport>none</Transport></General></Domain></CycloneDDS>";
+constexpr const char* kNoNetwork =
+    "<CycloneDDS><Domain><General><Transport>none</Transport></General></Domain></CycloneDDS>";
 
 dds_entity_t need(dds_entity_t entity, const char* what) {
-  if (entity < 0) throw MissingError(std::string("DDS makes no ") + what + " without a network: " + dds_strretcode(entity));
+  if (entity < 0)
+    throw MissingError(std::string("DDS makes no ") + what +
+                       " without a network: " + dds_strretcode(entity));
   return entity;
 }
 
@@ -23,7 +27,8 @@ dds_entity_t need(dds_entity_t entity, const char* what) {
 
 struct CdrCodec::Impl {
   dds_entity_t domain{}, participant{};
-  std::map<const MessageType*, ddsi_serdata*> samples;  ///< one of each type met, for the sake of what it knows of the type
+  std::map<const MessageType*, ddsi_serdata*>
+      samples;  ///< one of each type met, for the sake of what it knows of the type
 
   ~Impl() {
     for (const auto& [type, sample] : samples) ddsi_serdata_unref(sample);
@@ -35,16 +40,22 @@ struct CdrCodec::Impl {
     ddsi_serdata*& sample = samples[&type];
     if (sample) return sample->type;
     const auto* description = static_cast<const dds_topic_descriptor_t*>(type.descriptor());
-    const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(), &dds_delete_qos);
+    const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(),
+                                                                    &dds_delete_qos);
     dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
-    const dds_entity_t topic = need(dds_create_topic(participant, description, type.row().topic, qos.get(), nullptr), "topic");
-    const dds_entity_t reader = need(dds_create_reader(participant, topic, qos.get(), nullptr), "reader");
-    const dds_entity_t writer = need(dds_create_writer(participant, topic, qos.get(), nullptr), "writer");
+    const dds_entity_t topic = need(
+        dds_create_topic(participant, description, type.row().topic, qos.get(), nullptr), "topic");
+    const dds_entity_t reader =
+        need(dds_create_reader(participant, topic, qos.get(), nullptr), "reader");
+    const dds_entity_t writer =
+        need(dds_create_writer(participant, topic, qos.get(), nullptr), "writer");
     const auto wire = type.new_wire();
     type.fill(wire.get(), false);
     dds_sample_info_t info{};
-    if (dds_write(writer, wire.get()) != DDS_RETCODE_OK || dds_takecdr(reader, &sample, 1, &info, DDS_ANY_STATE) != 1)
-      throw MissingError(std::string("DDS does not pass on a ") + type.row().type + " without a network");
+    if (dds_write(writer, wire.get()) != DDS_RETCODE_OK ||
+        dds_takecdr(reader, &sample, 1, &info, DDS_ANY_STATE) != 1)
+      throw MissingError(std::string("DDS does not pass on a ") + type.row().type +
+                         " without a network");
     return sample->type;
   }
 };
@@ -72,7 +83,8 @@ bool CdrCodec::decode(const MessageType& type, const std::vector<std::uint8_t>& 
   ddsrt_iovec_t bytes{};
   bytes.iov_base = const_cast<std::uint8_t*>(cdr.data());  // only read
   bytes.iov_len = cdr.size();
-  ddsi_serdata* data = ddsi_serdata_from_ser_iov(impl_->sertype(type), SDK_DATA, 1, &bytes, cdr.size());
+  ddsi_serdata* data =
+      ddsi_serdata_from_ser_iov(impl_->sertype(type), SDK_DATA, 1, &bytes, cdr.size());
   if (!data) return false;
   const bool whole = ddsi_serdata_to_sample(data, wire, nullptr, nullptr);
   ddsi_serdata_unref(data);

@@ -53,8 +53,11 @@ dds_entity_t need(dds_entity_t entity, const std::string& what) {
 void use_default_dds_configuration() { use_dds_configuration(resource("dds")); }
 
 struct Reader {
-  Reader(DdsBus::Impl& owner, const MessageType& type, Intake::Callback callback, Duration period, Intake::Log log)
-      : bus(owner), intake(type, std::move(callback), period, std::move(log)), sample(type.new_wire()) {}
+  Reader(DdsBus::Impl& owner, const MessageType& type, Intake::Callback callback, Duration period,
+         Intake::Log log)
+      : bus(owner),
+        intake(type, std::move(callback), period, std::move(log)),
+        sample(type.new_wire()) {}
   DdsBus::Impl& bus;
   Intake intake;
   std::shared_ptr<void> sample;
@@ -66,7 +69,10 @@ struct Reader {
 };
 
 struct DdsBus::Impl {
-  explicit Impl(const DdsBusSettings& s) : settings(s), executor([this](const std::string& what) { log(what); }), start(monotonic_now()) {
+  explicit Impl(const DdsBusSettings& s)
+      : settings(s),
+        executor([this](const std::string& what) { log(what); }),
+        start(monotonic_now()) {
     incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
   }
   ~Impl() {
@@ -82,9 +88,10 @@ struct DdsBus::Impl {
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
-  std::uint64_t simulator{};                   // that gives the pace, its incarnation
-  Reader* pace{};                              // of sim_clock, where that is followed
-  std::unique_ptr<WriterDiscovery> discovery;  // from the first reader of a topic with one writer on
+  std::uint64_t simulator{};  // that gives the pace, its incarnation
+  Reader* pace{};             // of sim_clock, where that is followed
+  std::unique_ptr<WriterDiscovery>
+      discovery;  // from the first reader of a topic with one writer on
   std::atomic<bool> discovery_news{false};
   std::uint64_t incarnation{};
   HealthState state{HealthState::starting};
@@ -98,17 +105,21 @@ struct DdsBus::Impl {
   std::unique_ptr<Publisher<ClockReached>> reached;
   ClockReached reached_message;
 
-  void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str()); }
+  void log(const std::string& what) const {
+    std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str());
+  }
   /// The system clock, standing still while this component's time does.
   Stamp stamp_now() { return system_now() - (monotonic_now() - executor.now()).count(); }
   dds_entity_t new_topic(const MessageType& type) const {
     const Qos qos = topic_qos(type.row());
     return need(
-        dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), type.row().topic, qos.get(), nullptr),
+        dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()),
+                         type.row().topic, qos.get(), nullptr),
         std::string("topic ") + type.row().topic);
   }
   dds_entity_t topic(const MessageType& type) {
-    dds_entity_t& entity = in_table(type.row()) ? topic_entities[&type.row() - kTopics] : foreign_topics[&type];
+    dds_entity_t& entity =
+        in_table(type.row()) ? topic_entities[&type.row() - kTopics] : foreign_topics[&type];
     if (entity == 0) entity = new_topic(type);
     return entity;
   }
@@ -144,9 +155,11 @@ void on_matching(Reader& reader) {
 
 class DdsPublisher final : public AnyPublisher {
  public:
-  DdsPublisher(DdsBus::Impl& bus, const MessageType& type) : bus_(bus), type_(type), sample_(type.new_wire()) {
+  DdsPublisher(DdsBus::Impl& bus, const MessageType& type)
+      : bus_(bus), type_(type), sample_(type.new_wire()) {
     const Qos qos = writer_qos(type.row());
-    writer_ = need(dds_create_writer(bus.participant, bus.topic(type), qos.get(), nullptr), std::string("writer of ") + type.row().topic);
+    writer_ = need(dds_create_writer(bus.participant, bus.topic(type), qos.get(), nullptr),
+                   std::string("writer of ") + type.row().topic);
   }
   ~DdsPublisher() override {
     alive_->store(false);
@@ -159,13 +172,16 @@ class DdsPublisher final : public AnyPublisher {
     if (!queue_.empty()) return enqueue();
     const dds_return_t result = dds_write(writer_, sample_.get());
     if (result == DDS_RETCODE_OK) return true;
-    const bool queued = type_.row().profile == Profile::request || type_.row().profile == Profile::reply;
+    const bool queued =
+        type_.row().profile == Profile::request || type_.row().profile == Profile::reply;
     if (result == DDS_RETCODE_TIMEOUT && queued) return enqueue();
     return refuse(std::string(type_.row().topic) + " has no room: " + dds_strretcode(-result));
   }
   int readers() const override {
     dds_publication_matched_status_t status{};
-    return dds_get_publication_matched_status(writer_, &status) == DDS_RETCODE_OK ? static_cast<int>(status.current_count) : 0;
+    return dds_get_publication_matched_status(writer_, &status) == DDS_RETCODE_OK
+               ? static_cast<int>(status.current_count)
+               : 0;
   }
 
  private:
@@ -175,7 +191,8 @@ class DdsPublisher final : public AnyPublisher {
     return false;
   }
   bool enqueue() {
-    if (queue_.size() >= kQueueBound) return refuse(std::string(type_.row().topic) + " has no room: its queue is full");
+    if (queue_.size() >= kQueueBound)
+      return refuse(std::string(type_.row().topic) + " has no room: its queue is full");
     queue_.push_back(std::move(sample_));
     sample_ = type_.new_wire();
     if (queue_.size() == 1) retry_later();
@@ -187,7 +204,8 @@ class DdsPublisher final : public AnyPublisher {
     });
   }
   void retry() {
-    while (!queue_.empty() && dds_write(writer_, queue_.front().get()) == DDS_RETCODE_OK) queue_.pop_front();
+    while (!queue_.empty() && dds_write(writer_, queue_.front().get()) == DDS_RETCODE_OK)
+      queue_.pop_front();
     if (!queue_.empty()) retry_later();
   }
 
@@ -235,16 +253,17 @@ void DdsBus::Impl::mark(Reader& reader) {
 /// Takes the news of who writes the topics with one writer to their readers.
 void DdsBus::Impl::discover_writers() {
   if (!discovery) return;
-  discovery->take([this](std::uint64_t writer, const TopicRow& row, const WriterDiscovery::Found* found) {
-    for (const auto& reader : readers) {
-      if (&reader->intake.type().row() != &row) continue;
-      if (found != nullptr)
-        reader->intake.writer_appeared(writer, found->identity, executor.now());
-      else
-        reader->intake.writer_left(writer, executor.now());
-      reader->gate.open_for(reader->intake.pinned());
-    }
-  });
+  discovery->take(
+      [this](std::uint64_t writer, const TopicRow& row, const WriterDiscovery::Found* found) {
+        for (const auto& reader : readers) {
+          if (&reader->intake.type().row() != &row) continue;
+          if (found != nullptr)
+            reader->intake.writer_appeared(writer, found->identity, executor.now());
+          else
+            reader->intake.writer_left(writer, executor.now());
+          reader->gate.open_for(reader->intake.pinned());
+        }
+      });
 }
 
 /// Tells a new reader who writes its topic.
@@ -258,12 +277,14 @@ void DdsBus::Impl::follow_writers(Reader& reader) {
   }
   discover_writers();
   for (const auto& [writer, found] : discovery->writers())
-    if (found.row == &reader.intake.type().row()) reader.intake.writer_appeared(writer, found.identity, executor.now());
+    if (found.row == &reader.intake.type().row())
+      reader.intake.writer_appeared(writer, found.identity, executor.now());
   reader.gate.open_for(reader.intake.pinned());
 }
 
-/// Returns whether this component knows how far time has advanced. A process that has been stopped does so with the next grant; what has
-/// arrived is not taken before: it would have arrived in the past, and everything later would count as late.
+/// Returns whether this component knows how far time has advanced. A process that has been stopped
+/// does so with the next grant; what has arrived is not taken before: it would have arrived in the
+/// past, and everything later would count as late.
 bool DdsBus::Impl::knows_time() {
   if (pace == nullptr || !executor.stale()) return true;
   pace->pending.store(false, std::memory_order_release);
@@ -280,7 +301,8 @@ void DdsBus::Impl::drain() {
   }
   for (Reader* reader : draining) {
     reader->pending.store(false, std::memory_order_release);
-    if (reader->matching_changed.exchange(false, std::memory_order_acq_rel)) look_at_matching(*reader);
+    if (reader->matching_changed.exchange(false, std::memory_order_acq_rel))
+      look_at_matching(*reader);
     reader->gate.report_refusals(reader->intake, executor.now());
     take(*reader);
   }
@@ -316,7 +338,9 @@ void DdsBus::Impl::look_at_matching(Reader& reader) {
 
 /// Answers every grant, so that the simulator knows this component has had its turn.
 void DdsBus::Impl::follow_pace(const SimClock& clock) {
-  if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)), from_seconds(clock.waited)})) return;
+  if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)),
+                       from_seconds(clock.waited)}))
+    return;
   if (clock.incarnation != simulator) {
     simulator = clock.incarnation;
     for (const auto& reader : readers) reader->intake.forget_ages();
@@ -338,7 +362,8 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
   m.uptime = to_seconds(wall - start);
   m.memory_mb = resident_mb();
   const double cpu = process_cpu_seconds();
-  if (last_health != TimePoint{} && wall > last_health) m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(wall - last_health));
+  if (last_health != TimePoint{} && wall > last_health)
+    m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(wall - last_health));
   last_cpu = cpu;
   last_health = wall;
   SecondWriters others;
@@ -353,7 +378,9 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
   for (const std::string& reason : {others.reason(), degraded})
     if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
   if (m.reason.empty()) m.reason = refusal.text(wall);
-  m.state = state != HealthState::ok ? state : m.reason.empty() ? HealthState::ok : HealthState::degraded;
+  m.state = state != HealthState::ok ? state
+            : m.reason.empty()       ? HealthState::ok
+                                     : HealthState::degraded;
   m.topics.clear();
   m.left_out = left_out.counts();
   for (const auto& reader : readers) {
@@ -366,10 +393,13 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
 DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   use_default_dds_configuration();
   // First: the transport's own threads inherit the priority.
-  impl_->realtime_note = enter_realtime({.cpu = settings.cpu, .wanted = settings.realtime, .priority = static_cast<int>(settings.urgency)});
+  impl_->realtime_note = enter_realtime({.cpu = settings.cpu,
+                                         .wanted = settings.realtime,
+                                         .priority = static_cast<int>(settings.urgency)});
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_entity_name(qos.get(), settings.component.c_str());
-  impl_->participant = need(create_participant(settings.domain, qos.get()), "domain " + std::to_string(settings.domain));
+  impl_->participant = need(create_participant(settings.domain, qos.get()),
+                            "domain " + std::to_string(settings.domain));
   impl_->executor.on_wake([this] { impl_->drain(); });
   if (settings.health) {
     impl_->health = advertise<ComponentHealth>();
@@ -380,7 +410,8 @@ DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(se
   }
   if (settings.sim_time) {
     impl_->reached = advertise<ClockReached>();
-    subscribe<SimClock>([this](const SimClock& clock, const Receipt&) { impl_->follow_pace(clock); });
+    subscribe<SimClock>(
+        [this](const SimClock& clock, const Receipt&) { impl_->follow_pace(clock); });
     impl_->pace = impl_->readers.back().get();
   }
 }
@@ -394,9 +425,13 @@ DdsBus::~DdsBus() {
 void DdsBus::run() { impl_->executor.run(); }
 void DdsBus::stop() noexcept { impl_->executor.stop(); }
 bool DdsBus::end_jobs(Duration limit) { return impl_->executor.end_jobs(limit); }
-bool DdsBus::run_until(const std::function<bool()>& done, Duration limit) { return impl_->executor.run_until(done, limit); }
+bool DdsBus::run_until(const std::function<bool()>& done, Duration limit) {
+  return impl_->executor.run_until(done, limit);
+}
 const std::string& DdsBus::realtime_note() const { return impl_->realtime_note; }
-DomainView DdsBus::discovered_domain() const { return handsel::discovered_domain(impl_->participant); }
+DomainView DdsBus::discovered_domain() const {
+  return handsel::discovered_domain(impl_->participant);
+}
 std::uint64_t DdsBus::incarnation() const { return impl_->incarnation; }
 
 void DdsBus::set_ready() {
@@ -412,7 +447,9 @@ void DdsBus::set_stopping() {
 bool DdsBus::has_twin(Duration wait) {
   bool twin = false;
   subscribe<ComponentHealth>([&](const ComponentHealth& health, const Receipt&) {
-    if (health.component != component() || health.incarnation == incarnation() || health.state == HealthState::stopping) return;
+    if (health.component != component() || health.incarnation == incarnation() ||
+        health.state == HealthState::stopping)
+      return;
     twin = twin || health.state != HealthState::starting || health.incarnation < incarnation();
   });
   const std::unique_ptr<Reader> reader = std::move(impl_->readers.back());
@@ -424,25 +461,32 @@ bool DdsBus::has_twin(Duration wait) {
   return twin;
 }
 
-std::unique_ptr<AnyPublisher> DdsBus::advertise_any(const MessageType& type, int) { return std::make_unique<DdsPublisher>(*impl_, type); }
+std::unique_ptr<AnyPublisher> DdsBus::advertise_any(const MessageType& type, int) {
+  return std::make_unique<DdsPublisher>(*impl_, type);
+}
 
-const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
-                                                const SubscribeOptions& options) {
-  impl_->readers.push_back(std::make_unique<Reader>(*impl_, type, std::move(on_sample), options.period,
-                                                    [impl = impl_.get()](const std::string& what) { impl->log(what); }));
+const SubscriptionStatus& DdsBus::subscribe_any(
+    const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+    const SubscribeOptions& options) {
+  impl_->readers.push_back(
+      std::make_unique<Reader>(*impl_, type, std::move(on_sample), options.period,
+                               [impl = impl_.get()](const std::string& what) { impl->log(what); }));
   Reader* reader = impl_->readers.back().get();
   const bool polled = options.period > Duration::zero();
   dds_listener_t* listener = dds_create_listener(reader);
   if (!polled) dds_lset_data_available(listener, &on_data);
-  dds_lset_liveliness_changed(
-      listener, [](dds_entity_t, const dds_liveliness_changed_status_t, void* arg) { on_matching(*static_cast<Reader*>(arg)); });
+  dds_lset_liveliness_changed(listener, [](dds_entity_t, const dds_liveliness_changed_status_t,
+                                           void* arg) { on_matching(*static_cast<Reader*>(arg)); });
   const Qos qos = reader_qos(type.row());
-  const dds_entity_t topic = has_one_writer(type.row()) ? impl_->gated_topic(*reader) : impl_->topic(type);
+  const dds_entity_t topic =
+      has_one_writer(type.row()) ? impl_->gated_topic(*reader) : impl_->topic(type);
   reader->entity = dds_create_reader(impl_->participant, topic, qos.get(), nullptr);
   need(reader->entity, std::string("reader of ") + type.row().topic);
   dds_set_listener(reader->entity, listener);
   dds_delete_listener(listener);
-  if (polled) impl_->executor.every(options.period, [impl = impl_.get(), reader](TimePoint) { impl->take(*reader); });
+  if (polled)
+    impl_->executor.every(options.period,
+                          [impl = impl_.get(), reader](TimePoint) { impl->take(*reader); });
   reader->matching_changed.store(true);
   impl_->follow_writers(*reader);
   impl_->mark(*reader);
@@ -452,7 +496,8 @@ const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::fu
 std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type, RawDepth depth) {
   const Qos qos = depth == RawDepth::many ? recorder_qos(type.row()) : observer_qos(type.row());
   return std::make_unique<DdsRawReader>(
-      need(dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr), std::string("reader of ") + type.row().topic));
+      need(dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr),
+           std::string("reader of ") + type.row().topic));
 }
 
 std::uint32_t DdsBus::domain() const { return impl_->settings.domain; }
@@ -460,21 +505,27 @@ std::uint32_t DdsBus::domain() const { return impl_->settings.domain; }
 Duration DdsBus::lag_any(const MessageType& type) const {
   Duration least = Duration::max();
   for (const auto& reader : impl_->readers)
-    if (&reader->intake.type() == &type) least = std::min(least, reader->intake.status().age(now()));
+    if (&reader->intake.type() == &type)
+      least = std::min(least, reader->intake.status().age(now()));
   return least;
 }
 
 const TimerStatus& DdsBus::every(Duration period, std::function<void(TimePoint)> on_tick) {
   return impl_->executor.every(period, std::move(on_tick));
 }
-void DdsBus::after(Duration delay, std::function<void(TimePoint)> on_time) { impl_->executor.after(delay, std::move(on_time)); }
-CancelToken DdsBus::run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) {
+void DdsBus::after(Duration delay, std::function<void(TimePoint)> on_time) {
+  impl_->executor.after(delay, std::move(on_time));
+}
+CancelToken DdsBus::run_job(std::function<Duration(const CancelToken&)> work,
+                            std::function<void()> done) {
   return impl_->executor.run_job(std::move(work), std::move(done));
 }
 TimePoint DdsBus::now() const { return impl_->executor.now(); }
 Stamp DdsBus::stamp_now() const { return impl_->stamp_now(); }
 void DdsBus::set_degraded(const std::string& reason) { impl_->degraded = reason; }
-void DdsBus::count_left_out(const std::string& what, std::uint64_t more) { impl_->left_out.add(what, more); }
+void DdsBus::count_left_out(const std::string& what, std::uint64_t more) {
+  impl_->left_out.add(what, more);
+}
 const std::string& DdsBus::component() const { return impl_->settings.component; }
 
 }  // namespace handsel

@@ -17,9 +17,9 @@ namespace handsel {
 enum class Urgency : int { perceive = 20, control = 40 };
 
 struct DdsBusSettings {
-  std::string component;               ///< entity name of the participant and key of its ComponentHealth
-  std::uint32_t domain{0};             ///< DDS domain, 0 to 230
-  bool realtime{false};                ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
+  std::string component;    ///< entity name of the participant and key of its ComponentHealth
+  std::uint32_t domain{0};  ///< DDS domain, 0 to 230
+  bool realtime{false};     ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
   Urgency urgency{Urgency::perceive};  ///< scheduling priority where `realtime` is in force
   int cpu{-1};                         ///< pins the executor; -1: none
   bool health{true};                   ///< publishes ComponentHealth (tools do not)
@@ -63,14 +63,17 @@ class DdsBus : public Bus, public RawBus {
   DomainView discovered_domain() const;
 
   std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;
-  const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
-                                          const SubscribeOptions& options) override;
+  const SubscriptionStatus& subscribe_any(
+      const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+      const SubscribeOptions& options) override;
   Duration lag_any(const MessageType& type) const override;
-  std::unique_ptr<RawReader> read_raw(const MessageType& type, RawDepth depth = RawDepth::newest) override;
+  std::unique_ptr<RawReader> read_raw(const MessageType& type,
+                                      RawDepth depth = RawDepth::newest) override;
   std::uint32_t domain() const override;
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) override;
   void after(Duration delay, std::function<void(TimePoint)> on_time) override;
-  CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) override;
+  CancelToken run_job(std::function<Duration(const CancelToken&)> work,
+                      std::function<void()> done) override;
   TimePoint now() const override;
   Stamp stamp_now() const override;
   void set_degraded(const std::string& reason) override;

@@ -25,7 +25,8 @@ bool same(const char* a, const char* b) { return strcasecmp(a, b) == 0; }
 
 template <class Visit>
 void each_child(const XMLElement& parent, const char* name, Visit visit) {
-  for (const XMLElement* child = parent.FirstChildElement(); child; child = child->NextSiblingElement())
+  for (const XMLElement* child = parent.FirstChildElement(); child;
+       child = child->NextSiblingElement())
     if (same(child->Name(), name)) visit(*child);
 }
 
@@ -38,7 +39,9 @@ const char* attribute(const XMLElement& element, const char* name) {
 std::string text_of(const XMLElement& element) {
   const std::string text = element.GetText() ? element.GetText() : "";
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+  return first == std::string::npos
+             ? std::string()
+             : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
 std::optional<std::uint64_t> bytes_of(const std::string& text) {
@@ -48,16 +51,19 @@ std::optional<std::uint64_t> bytes_of(const std::string& text) {
   if (error != std::errc() || !(value >= 0 && value <= kMost)) return std::nullopt;
   std::string unit(end, text.data() + text.size());
   std::erase(unit, ' ');
-  constexpr std::pair<const char*, double> kUnits[] = {{"", 1},         {"B", 1},         {"kB", 1024},    {"KiB", 1024},
-                                                       {"MB", 1 << 20}, {"MiB", 1 << 20}, {"GB", 1 << 30}, {"GiB", 1 << 30}};
+  constexpr std::pair<const char*, double> kUnits[] = {
+      {"", 1},         {"B", 1},         {"kB", 1024},    {"KiB", 1024},
+      {"MB", 1 << 20}, {"MiB", 1 << 20}, {"GB", 1 << 30}, {"GiB", 1 << 30}};
   for (const auto& [name, factor] : kUnits)
-    if (same(unit.c_str(), name)) return static_cast<std::uint64_t>(std::min(value * factor, kMost));
+    if (same(unit.c_str(), name))
+      return static_cast<std::uint64_t>(std::min(value * factor, kMost));
   return std::nullopt;
 }
 
 class Configuration {
  public:
-  Configuration(DdsConfiguration& out, std::uint32_t domain) : out_(out), domain_(std::to_string(domain)) {}
+  Configuration(DdsConfiguration& out, std::uint32_t domain)
+      : out_(out), domain_(std::to_string(domain)) {}
 
   void read(const std::string& item) {
     tinyxml2::XMLDocument document;
@@ -73,10 +79,12 @@ class Configuration {
       document.LoadFile(out_.source.c_str());
     }
     if (document.Error()) {
-      out_.error = "the DDS configuration in " + out_.source + " is no XML (line " + std::to_string(document.ErrorLineNum()) + ")";
+      out_.error = "the DDS configuration in " + out_.source + " is no XML (line " +
+                   std::to_string(document.ErrorLineNum()) + ")";
       return;
     }
-    for (const XMLElement* root = document.FirstChildElement(); root; root = root->NextSiblingElement()) {
+    for (const XMLElement* root = document.FirstChildElement(); root;
+         root = root->NextSiblingElement()) {
       if (same(root->Name(), "Domain")) read_domain(*root);
       each_child(*root, "Domain", [this](const XMLElement& domain) { read_domain(domain); });
     }
@@ -87,8 +95,11 @@ class Configuration {
     const char* id = attribute(domain, "Id");
     if (id && !same(id, "any") && id != domain_) return;
     each_child(domain, "General", [this](const XMLElement& general) {
-      each_child(general, "AllowMulticast", [this](const XMLElement& e) { out_.multicast = !same(text_of(e).c_str(), "false"); });
-      each_child(general, "NetworkInterfaceAddress", [this](const XMLElement& e) { out_.interfaces = {text_of(e)}; });
+      each_child(general, "AllowMulticast", [this](const XMLElement& e) {
+        out_.multicast = !same(text_of(e).c_str(), "false");
+      });
+      each_child(general, "NetworkInterfaceAddress",
+                 [this](const XMLElement& e) { out_.interfaces = {text_of(e)}; });
       each_child(general, "Interfaces", [this](const XMLElement& all) {
         out_.interfaces.clear();
         each_child(all, "NetworkInterface", [this](const XMLElement& e) {
@@ -98,8 +109,10 @@ class Configuration {
       });
     });
     each_child(domain, "Discovery", [this](const XMLElement& discovery) {
-      each_child(discovery, "ParticipantIndex", [this](const XMLElement& e) { out_.participant_index = text_of(e); });
-      each_child(discovery, "MaxAutoParticipantIndex", [this](const XMLElement& e) { e.QueryIntText(&out_.max_auto_index); });
+      each_child(discovery, "ParticipantIndex",
+                 [this](const XMLElement& e) { out_.participant_index = text_of(e); });
+      each_child(discovery, "MaxAutoParticipantIndex",
+                 [this](const XMLElement& e) { e.QueryIntText(&out_.max_auto_index); });
       each_child(discovery, "Peers", [this](const XMLElement& peers) {
         each_child(peers, "Peer", [this](const XMLElement& e) {
           if (const char* address = attribute(e, "address")) out_.peers.emplace_back(address);
@@ -107,7 +120,8 @@ class Configuration {
       });
     });
     each_child(domain, "Internal", [this](const XMLElement& internal) {
-      each_child(internal, "MaxSampleSize", [this](const XMLElement& e) { out_.max_sample_size = bytes_of(text_of(e)); });
+      each_child(internal, "MaxSampleSize",
+                 [this](const XMLElement& e) { out_.max_sample_size = bytes_of(text_of(e)); });
     });
   }
 
@@ -121,10 +135,12 @@ DdsConfiguration read_dds_configuration(const std::string& uri, std::uint32_t do
   DdsConfiguration out;
   Configuration configuration(out, domain);
   for (std::size_t begin = 0; begin < uri.size() && out.error.empty();) {
-    // A comma ends an item; inline XML ends with its last closing bracket, commas inside it are its own.
+    // A comma ends an item; inline XML ends with its last closing bracket, commas inside it are its
+    // own.
     std::size_t end = uri.find(',', begin);
     if (uri[begin] == '<') {
-      while (end != std::string::npos && uri[uri.find_last_not_of(" \t\r\n", end - 1)] != '>') end = uri.find(',', end + 1);
+      while (end != std::string::npos && uri[uri.find_last_not_of(" \t\r\n", end - 1)] != '>')
+        end = uri.find(',', end + 1);
     }
     end = std::min(end, uri.size());
     if (end > begin) configuration.read(uri.substr(begin, end - begin));
@@ -155,7 +171,8 @@ class Log {
 
 int create_participant(std::uint32_t domain, const ::dds_qos* qos) {
   const char* uri = std::getenv("CYCLONEDDS_URI");
-  if (const DdsConfiguration read = read_dds_configuration(uri != nullptr ? uri : "", domain); !read.error.empty()) {
+  if (const DdsConfiguration read = read_dds_configuration(uri != nullptr ? uri : "", domain);
+      !read.error.empty()) {
     if (read.error.ends_with("is not there")) throw MissingError(read.error);
     throw ConfigError(read.error);
   }
@@ -169,8 +186,8 @@ int create_participant(std::uint32_t domain, const ::dds_qos* qos) {
   const std::size_t about = logged.find("config: ");
   if (participant < 0 && about != std::string::npos) {
     std::string line = logged.substr(about + 8, logged.find('\n', about) - about - 8);
-    throw ConfigError("the DDS configuration cannot be used: " + line + " (CYCLONEDDS_URI is " + std::string(uri != nullptr ? uri : "") +
-                      ")");
+    throw ConfigError("the DDS configuration cannot be used: " + line + " (CYCLONEDDS_URI is " +
+                      std::string(uri != nullptr ? uri : "") + ")");
   }
   std::fputs(logged.c_str(), stderr);
   return participant;
@@ -182,7 +199,8 @@ TransportLibrary transport_library() {
   Dl_info info{};
   void* symbol = dlsym(RTLD_DEFAULT, "dds_create_participant");
   std::error_code error;
-  if (symbol && dladdr(symbol, &info) != 0 && info.dli_fname) out.file = std::filesystem::canonical(info.dli_fname, error);
+  if (symbol && dladdr(symbol, &info) != 0 && info.dli_fname)
+    out.file = std::filesystem::canonical(info.dli_fname, error);
   out.agrees = out.file.ends_with(DDS_VERSION);
   return out;
 }

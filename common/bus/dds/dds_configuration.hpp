@@ -12,8 +12,8 @@ struct dds_qos;
 namespace handsel {
 
 struct DdsConfiguration {
-  std::string source;                            ///< file or "CYCLONEDDS_URI" that was read last; empty: none, all defaults
-  std::string error;                             ///< empty, or one sentence: which file is not there or not XML
+  std::string source;  ///< file or "CYCLONEDDS_URI" that was read last; empty: none, all defaults
+  std::string error;   ///< empty, or one sentence: which file is not there or not XML
   std::vector<std::string> interfaces;           ///< named ones; empty: Cyclone chooses
   std::vector<std::string> peers;                ///< unicast discovery asks them
   bool multicast{true};                          ///< AllowMulticast is not false
@@ -43,6 +43,8 @@ TransportLibrary transport_library();
 
 /// Returns the first of the two UDP ports of participant `index` in `domain` (DDSI-RTPS 9.6.1.1);
 /// the other is one above.
-constexpr int participant_port(std::uint32_t domain, int index) { return 7400 + 250 * static_cast<int>(domain) + 10 + 2 * index; }
+constexpr int participant_port(std::uint32_t domain, int index) {
+  return 7400 + 250 * static_cast<int>(domain) + 10 + 2 * index;
+}
 
 }  // namespace handsel

@@ -25,7 +25,9 @@ void require_address(const std::string& host) {
   addrinfo wanted{}, *found = nullptr;
   wanted.ai_family = AF_INET;
   const int result = getaddrinfo(host.c_str(), nullptr, &wanted, &found);
-  if (result != 0) throw MissingError("HANDSEL_PEERS names the host \"" + host + "\", which has no address: " + gai_strerror(result));
+  if (result != 0)
+    throw MissingError("HANDSEL_PEERS names the host \"" + host +
+                       "\", which has no address: " + gai_strerror(result));
   freeaddrinfo(found);
 }
 
@@ -55,7 +57,9 @@ void use_dds_configuration(const std::filesystem::path& folder) {
     require_address(host);
     peers += "<Peer address=\"" + host + "\"/>";
   }
-  if (!peers.empty()) uri += ",<CycloneDDS><Domain Id=\"any\"><Discovery><Peers>" + peers + "</Peers></Discovery></Domain></CycloneDDS>";
+  if (!peers.empty())
+    uri += ",<CycloneDDS><Domain Id=\"any\"><Discovery><Peers>" + peers +
+           "</Peers></Discovery></Domain></CycloneDDS>";
   setenv("CYCLONEDDS_URI", uri.c_str(), 0);
 }
 

@@ -23,7 +23,8 @@ void each(dds_entity_t participant, dds_entity_t topic, Visit visit) {
   dds_sample_info_t infos[kMost];
   const dds_return_t n = dds_read(reader, samples, infos, kMost, kMost);
   for (dds_return_t i = 0; i < n; ++i)
-    if (infos[i].valid_data && infos[i].instance_state == DDS_IST_ALIVE) visit(*static_cast<const Sample*>(samples[i]));
+    if (infos[i].valid_data && infos[i].instance_state == DDS_IST_ALIVE)
+      visit(*static_cast<const Sample*>(samples[i]));
   if (n > 0) dds_return_loan(reader, samples, n);
   dds_delete(reader);
 }
@@ -39,7 +40,9 @@ std::string property(const dds_qos_t* qos, const char* name) {
   return dds_qget_prop(qos, name, &value) ? taken(value) : std::string();
 }
 
-std::string key_of(const dds_guid_t& guid) { return {reinterpret_cast<const char*>(guid.v), sizeof guid.v}; }
+std::string key_of(const dds_guid_t& guid) {
+  return {reinterpret_cast<const char*>(guid.v), sizeof guid.v};
+}
 
 }  // namespace
 
@@ -55,26 +58,34 @@ DomainParticipant described(const dds_qos_t* qos) {
 
 DomainView discovered_domain(dds_entity_t participant) {
   std::map<std::string, DomainParticipant> known;
-  each<dds_builtintopic_participant_t>(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, [&](const dds_builtintopic_participant_t& sample) {
-    known[key_of(sample.key)] = described(sample.qos);
-  });
+  each<dds_builtintopic_participant_t>(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT,
+                                       [&](const dds_builtintopic_participant_t& sample) {
+                                         known[key_of(sample.key)] = described(sample.qos);
+                                       });
   DomainView view;
   for (const auto& [key, one] : known) view.participants.push_back(one);
   dds_guid_t self{};
   dds_get_guid(participant, &self);
   for (const bool writes : {true, false}) {
-    const dds_entity_t topic = writes ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION;
-    each<dds_builtintopic_endpoint_t>(participant, topic, [&](const dds_builtintopic_endpoint_t& sample) {
-      if (writes && std::strcmp(sample.topic_name, TopicOf<JointCommand>::row.topic) == 0)
-        view.commanders.push_back(known[key_of(sample.participant_key)]);
-      if (key_of(sample.participant_key) == key_of(self)) return;
-      DomainEndpoint endpoint{writes, sample.topic_name, sample.type_name, known[key_of(sample.participant_key)], {}};
-      if (const TopicRow* row = find_topic(sample.topic_name)) {
-        const Qos ours = writes ? reader_qos(*row) : writer_qos(*row);
-        endpoint.unmatched = writes ? why_unmatched(sample.qos, ours.get()) : why_unmatched(ours.get(), sample.qos);
-      }
-      view.endpoints.push_back(std::move(endpoint));
-    });
+    const dds_entity_t topic =
+        writes ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION;
+    each<dds_builtintopic_endpoint_t>(
+        participant, topic, [&](const dds_builtintopic_endpoint_t& sample) {
+          if (writes && std::strcmp(sample.topic_name, TopicOf<JointCommand>::row.topic) == 0)
+            view.commanders.push_back(known[key_of(sample.participant_key)]);
+          if (key_of(sample.participant_key) == key_of(self)) return;
+          DomainEndpoint endpoint{writes,
+                                  sample.topic_name,
+                                  sample.type_name,
+                                  known[key_of(sample.participant_key)],
+                                  {}};
+          if (const TopicRow* row = find_topic(sample.topic_name)) {
+            const Qos ours = writes ? reader_qos(*row) : writer_qos(*row);
+            endpoint.unmatched = writes ? why_unmatched(sample.qos, ours.get())
+                                        : why_unmatched(ours.get(), sample.qos);
+          }
+          view.endpoints.push_back(std::move(endpoint));
+        });
   }
   return view;
 }

@@ -44,8 +44,10 @@ constexpr Meaning meaning(Profile profile) {
 Qos common(const TopicRow& row) {
   const Meaning m = meaning(row.profile);
   Qos qos(dds_create_qos(), &dds_delete_qos);
-  dds_qset_reliability(qos.get(), m.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
-  dds_qset_durability(qos.get(), m.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_reliability(qos.get(),
+                       m.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_durability(qos.get(),
+                      m.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   if (m.depth > 0) {
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, m.depth);
     dds_qset_resource_limits(qos.get(), kInstances * m.depth, kInstances, m.depth);
@@ -54,9 +56,11 @@ Qos common(const TopicRow& row) {
     dds_qset_resource_limits(qos.get(), kKeepAllBound, 1, kKeepAllBound);
   }
   dds_qset_ownership(qos.get(), DDS_OWNERSHIP_SHARED);
-  if (row.deadline > 0) dds_qset_deadline(qos.get(), static_cast<dds_duration_t>(std::llround(row.deadline * 1e9)));
+  if (row.deadline > 0)
+    dds_qset_deadline(qos.get(), static_cast<dds_duration_t>(std::llround(row.deadline * 1e9)));
   dds_qset_destination_order(qos.get(), DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP);
-  if (row.profile == Profile::health) dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, kHealthLease);
+  if (row.profile == Profile::health)
+    dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, kHealthLease);
   return qos;
 }
 
@@ -87,7 +91,8 @@ std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t
   const auto text = [&](const char* policy, const std::string& has, const std::string& wants) {
     out.push_back(std::string(policy) + " is " + has + ", asked for is " + wants);
   };
-  dds_reliability_kind_t r_offered = DDS_RELIABILITY_RELIABLE, r_requested = DDS_RELIABILITY_BEST_EFFORT;
+  dds_reliability_kind_t r_offered = DDS_RELIABILITY_RELIABLE,
+                         r_requested = DDS_RELIABILITY_BEST_EFFORT;
   dds_qget_reliability(offered, &r_offered, nullptr);
   dds_qget_reliability(requested, &r_requested, nullptr);
   if (r_offered < r_requested) text("RELIABILITY", "best effort", "reliable");
@@ -98,36 +103,46 @@ std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t
   dds_duration_t offered_time = DDS_INFINITY, requested_time = DDS_INFINITY;
   dds_qget_deadline(offered, &offered_time);
   dds_qget_deadline(requested, &requested_time);
-  if (offered_time > requested_time) text("DEADLINE", in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
+  if (offered_time > requested_time)
+    text("DEADLINE", in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
   offered_time = requested_time = 0;
   dds_qget_latency_budget(offered, &offered_time);
   dds_qget_latency_budget(requested, &requested_time);
-  if (offered_time > requested_time) text("LATENCY_BUDGET", in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
+  if (offered_time > requested_time)
+    text("LATENCY_BUDGET", in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
   dds_ownership_kind_t o_offered = DDS_OWNERSHIP_SHARED, o_requested = DDS_OWNERSHIP_SHARED;
   dds_qget_ownership(offered, &o_offered);
   dds_qget_ownership(requested, &o_requested);
-  const auto owner = [](dds_ownership_kind_t kind) { return kind == DDS_OWNERSHIP_SHARED ? "shared" : "exclusive"; };
+  const auto owner = [](dds_ownership_kind_t kind) {
+    return kind == DDS_OWNERSHIP_SHARED ? "shared" : "exclusive";
+  };
   if (o_offered != o_requested) text("OWNERSHIP", owner(o_offered), owner(o_requested));
-  dds_liveliness_kind_t l_offered = DDS_LIVELINESS_AUTOMATIC, l_requested = DDS_LIVELINESS_AUTOMATIC;
+  dds_liveliness_kind_t l_offered = DDS_LIVELINESS_AUTOMATIC,
+                        l_requested = DDS_LIVELINESS_AUTOMATIC;
   offered_time = requested_time = DDS_INFINITY;
   dds_qget_liveliness(offered, &l_offered, &offered_time);
   dds_qget_liveliness(requested, &l_requested, &requested_time);
   if (l_offered < l_requested) text("LIVELINESS", "automatic", "manual");
   if (offered_time > requested_time)
-    text("LIVELINESS", "a lease of " + in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
-  dds_destination_order_kind_t s_offered = DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP, s_requested = s_offered;
+    text("LIVELINESS", "a lease of " + in_seconds(offered_time),
+         in_seconds(requested_time) + " or shorter");
+  dds_destination_order_kind_t s_offered = DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP,
+                               s_requested = s_offered;
   dds_qget_destination_order(offered, &s_offered);
   dds_qget_destination_order(requested, &s_requested);
   if (s_offered < s_requested) text("DESTINATION_ORDER", "by reception", "by source");
   const auto ours = partitions(requested), theirs = partitions(offered);
   if (ours != theirs)
-    text("PARTITION", theirs.empty() ? "none" : "\"" + theirs.front() + "\"", ours.empty() ? "none" : "\"" + ours.front() + "\"");
+    text("PARTITION", theirs.empty() ? "none" : "\"" + theirs.front() + "\"",
+         ours.empty() ? "none" : "\"" + ours.front() + "\"");
   return out;
 }
 
 Qos reader_qos(const TopicRow& row) {
   Qos qos = common(row);
-  if (in_table(row)) dds_qset_type_consistency(qos.get(), DDS_TYPE_CONSISTENCY_DISALLOW_TYPE_COERCION, false, false, false, false, true);
+  if (in_table(row))
+    dds_qset_type_consistency(qos.get(), DDS_TYPE_CONSISTENCY_DISALLOW_TYPE_COERCION, false, false,
+                              false, false, true);
   return qos;
 }
 
@@ -152,14 +167,17 @@ Qos recorder_qos(const TopicRow& row) {
 Qos writer_qos(const TopicRow& row) {
   const Meaning m = meaning(row.profile);
   Qos qos = common(row);
-  if (m.transient_local) dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, kInstances, kInstances, 1);
+  if (m.transient_local)
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, kInstances, kInstances, 1);
   dds_qset_writer_data_lifecycle(qos.get(), true);
   return qos;
 }
 
 Qos topic_qos(const TopicRow& row) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
-  dds_qset_reliability(qos.get(), meaning(row.profile).reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_reliability(
+      qos.get(),
+      meaning(row.profile).reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
   return qos;
 }
 

@@ -40,7 +40,8 @@ class RawBus {
   virtual ~RawBus() = default;
   /// Creates a reader of serialised samples. On the bus's own thread; the bus must outlive the
   /// reader. Throws MissingError when the transport refuses.
-  virtual std::unique_ptr<RawReader> read_raw(const MessageType& type, RawDepth depth = RawDepth::newest) = 0;
+  virtual std::unique_ptr<RawReader> read_raw(const MessageType& type,
+                                              RawDepth depth = RawDepth::newest) = 0;
   /// Returns the DDS domain the bus has entered.
   virtual std::uint32_t domain() const = 0;
 };

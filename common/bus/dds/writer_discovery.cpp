@@ -14,7 +14,8 @@
 namespace handsel {
 namespace {
 
-constexpr std::size_t kMaxWriters = 1024;  // followed; further ones stay unknown, and their samples are refused
+constexpr std::size_t kMaxWriters =
+    1024;  // followed; further ones stay unknown, and their samples are refused
 
 std::string own_host() {
   char host[256] = {};
@@ -22,7 +23,8 @@ std::string own_host() {
   return host;
 }
 
-/// When a process of this host started [clock ticks since boot]; 0: it has ended, or cannot be seen.
+/// When a process of this host started [clock ticks since boot]; 0: it has ended, or cannot be
+/// seen.
 std::uint64_t start_of(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string text;
@@ -50,22 +52,30 @@ std::string hexadecimal(const dds_guid_t& guid) {
 }
 
 std::string name_of(const DomainParticipant& owner, const dds_guid_t& participant) {
-  std::string name = !owner.component.empty() ? owner.component : !owner.process.empty() ? "process " + owner.process : "";
+  std::string name = !owner.component.empty() ? owner.component
+                     : !owner.process.empty() ? "process " + owner.process
+                                              : "";
   if (name.empty() && owner.pid == 0) return "participant " + hexadecimal(participant);
   if (owner.pid == 0) return name + " (participant " + hexadecimal(participant) + ")";
-  return name + (name.empty() ? "" : " ") + "(pid " + std::to_string(owner.pid) + " on host " + owner.host + ")";
+  return name + (name.empty() ? "" : " ") + "(pid " + std::to_string(owner.pid) + " on host " +
+         owner.host + ")";
 }
 
 }  // namespace
 
-WriterDiscovery::WriterDiscovery(dds_entity_t participant, std::function<void()> on_news) : on_news_(std::move(on_news)) {
-  participants_ = dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);
+WriterDiscovery::WriterDiscovery(dds_entity_t participant, std::function<void()> on_news)
+    : on_news_(std::move(on_news)) {
+  participants_ =
+      dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);
   dds_listener_t* listener = dds_create_listener(this);
-  dds_lset_data_available(listener, [](dds_entity_t, void* self) { static_cast<WriterDiscovery*>(self)->on_news_(); });
-  publications_ = dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, listener);
+  dds_lset_data_available(
+      listener, [](dds_entity_t, void* self) { static_cast<WriterDiscovery*>(self)->on_news_(); });
+  publications_ =
+      dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, listener);
   dds_delete_listener(listener);
   for (const dds_entity_t reader : {participants_, publications_})
-    if (reader < 0) throw MissingError(std::string("DDS: reader of discovery: ") + dds_strretcode(-reader));
+    if (reader < 0)
+      throw MissingError(std::string("DDS: reader of discovery: ") + dds_strretcode(-reader));
 }
 
 WriterDiscovery::~WriterDiscovery() {
@@ -73,12 +83,15 @@ WriterDiscovery::~WriterDiscovery() {
   dds_delete(participants_);
 }
 
-WriterIdentity WriterDiscovery::identity_of(const dds_builtintopic_endpoint_t& endpoint, const TopicRow& row) const {
+WriterIdentity WriterDiscovery::identity_of(const dds_builtintopic_endpoint_t& endpoint,
+                                            const TopicRow& row) const {
   DomainParticipant owner;
   void* samples[1] = {};
   dds_sample_info_t info{};
-  const dds_return_t n = dds_read_instance(participants_, samples, &info, 1, 1, endpoint.participant_instance_handle);
-  if (n > 0 && info.valid_data) owner = described(static_cast<const dds_builtintopic_participant_t*>(samples[0])->qos);
+  const dds_return_t n =
+      dds_read_instance(participants_, samples, &info, 1, 1, endpoint.participant_instance_handle);
+  if (n > 0 && info.valid_data)
+    owner = described(static_cast<const dds_builtintopic_participant_t*>(samples[0])->qos);
   if (n > 0) dds_return_loan(participants_, samples, n);
 
   WriterIdentity out;
@@ -88,13 +101,16 @@ WriterIdentity WriterDiscovery::identity_of(const dds_builtintopic_endpoint_t& e
   out.matches = why_unmatched(endpoint.qos, requested.get()).empty();
   if (owner.pid == getpid() && owner.host == own_host()) {
     out.ended = [] { return false; };
-  } else if (const std::uint64_t start = owner.pid > 0 && owner.host == own_host() ? start_of(owner.pid) : 0; start != 0) {
+  } else if (const std::uint64_t start =
+                 owner.pid > 0 && owner.host == own_host() ? start_of(owner.pid) : 0;
+             start != 0) {
     out.ended = [pid = owner.pid, start] { return start_of(pid) != start; };
   }
   return out;
 }
 
-void WriterDiscovery::take(const std::function<void(std::uint64_t, const TopicRow&, const Found*)>& visit) {
+void WriterDiscovery::take(
+    const std::function<void(std::uint64_t, const TopicRow&, const Found*)>& visit) {
   for (;;) {
     void* samples[1] = {};
     dds_sample_info_t info{};
@@ -107,9 +123,11 @@ void WriterDiscovery::take(const std::function<void(std::uint64_t, const TopicRo
         writers_.erase(known);
         visit(writer, row, nullptr);
       }
-    } else if (const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[0]); endpoint.topic_name != nullptr) {
+    } else if (const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[0]);
+               endpoint.topic_name != nullptr) {
       const TopicRow* row = find_topic(endpoint.topic_name);
-      const bool followed = row != nullptr && has_one_writer(*row) && std::string(row->topic) == endpoint.topic_name;
+      const bool followed =
+          row != nullptr && has_one_writer(*row) && std::string(row->topic) == endpoint.topic_name;
       if (followed && (writers_.size() < kMaxWriters || writers_.contains(writer))) {
         Found& found = writers_[writer];
         found = {row, identity_of(endpoint, *row)};

@@ -26,12 +26,14 @@ class WriterDiscovery {
   WriterDiscovery& operator=(const WriterDiscovery&) = delete;
 
   /// Takes the news and calls with each: `found` is null for a writer that is gone.
-  void take(const std::function<void(std::uint64_t writer, const TopicRow& row, const Found* found)>& visit);
+  void take(const std::function<void(std::uint64_t writer, const TopicRow& row,
+                                     const Found* found)>& visit);
   /// Writers known by the last take(), by handle (as in dds_sample_info_t::publication_handle).
   const std::map<std::uint64_t, Found>& writers() const { return writers_; }
 
  private:
-  WriterIdentity identity_of(const dds_builtintopic_endpoint_t& endpoint, const TopicRow& row) const;
+  WriterIdentity identity_of(const dds_builtintopic_endpoint_t& endpoint,
+                             const TopicRow& row) const;
 
   std::function<void()> on_news_;
   dds_entity_t participants_{0}, publications_{0};

@@ -23,21 +23,24 @@ struct UrdfOptions {
 class RobotModelBuilder {
  public:
   /// Reads links and joints; no axes yet. Throws ConfigError / MissingError with file and line.
-  RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes, const UrdfOptions& options = {});
+  RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes,
+                    const UrdfOptions& options = {});
 
   /// Joins another tree to a link, rigidly; before the axes are set. Throws ConfigError when a name
   /// is in both.
-  void mount(RobotModelBuilder other, const config::HandMount& at, const std::filesystem::path& source);
+  void mount(RobotModelBuilder other, const config::HandMount& at,
+             const std::filesystem::path& source);
 
   /// Actuated joints in document order.
   std::vector<std::string> actuated() const;
   /// Makes these joints the axes. The other actuated joints are held at `held` (0 if not named).
   /// `source` is the file the names stand in.
-  void set_axes(const std::vector<std::string>& joints, const std::map<std::string, double>& held, const std::filesystem::path& source);
+  void set_axes(const std::vector<std::string>& joints, const std::map<std::string, double>& held,
+                const std::filesystem::path& source);
   /// Adds a group of axes; `joints` must be axes, an empty `tip` is none. Throws ConfigError when
   /// the name is taken or the tip is no link.
-  void add_group(const std::string& name, const std::vector<std::string>& joints, const std::string& tip,
-                 const std::filesystem::path& source);
+  void add_group(const std::string& name, const std::vector<std::string>& joints,
+                 const std::string& tip, const std::filesystem::path& source);
   /// Groups (when wanted) and disabled pairs. Unknown names are errors when strict, else passed
   /// over.
   void read_srdf(const std::filesystem::path& srdf, bool groups, bool strict);
@@ -61,9 +64,10 @@ class RobotModelBuilder {
   friend class SrdfReader;
   int joint_index(const std::string& name) const;
   int axis_of(const std::string& joint) const;
-  int require_link(const std::string& name, const std::string& field, const std::filesystem::path& source) const;
-  KinematicLimits limits(const google::protobuf::RepeatedPtrField<config::AxisLimits>& entries, const std::string& field,
-                         const std::filesystem::path& source) const;
+  int require_link(const std::string& name, const std::string& field,
+                   const std::filesystem::path& source) const;
+  KinematicLimits limits(const google::protobuf::RepeatedPtrField<config::AxisLimits>& entries,
+                         const std::string& field, const std::filesystem::path& source) const;
   void disable(int a, int b);
 
   std::filesystem::path urdf_;
@@ -77,9 +81,11 @@ RobotModelBuilder described_urdf(const std::filesystem::path& file, const Descri
                                  const google::protobuf::RepeatedPtrField<std::string>& without) {
   if (text.urdf().empty()) throw ConfigError(file.string() + ": urdf is missing");
   const std::filesystem::path urdf = described_path(file, text.urdf());
-  if (!std::filesystem::exists(urdf)) throw MissingError(locate(file, text.urdf()) + ": no file " + urdf.string());
+  if (!std::filesystem::exists(urdf))
+    throw MissingError(locate(file, text.urdf()) + ": no file " + urdf.string());
   UrdfOptions options;
-  for (const std::string& folder : text.packages()) options.packages.push_back(described_path(file, folder));
+  for (const std::string& folder : text.packages())
+    options.packages.push_back(described_path(file, folder));
   options.without.assign(without.begin(), without.end());
   return {urdf, Meshes::load, options};
 }

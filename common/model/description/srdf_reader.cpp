@@ -16,7 +16,9 @@ std::string attribute(const XMLElement& e, const char* key) {
 
 template <class Visit>
 void each_child(const XMLElement& parent, const char* name, const Visit& visit) {
-  for (const auto* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) visit(*e);
+  for (const auto* e = parent.FirstChildElement(name); e != nullptr;
+       e = e->NextSiblingElement(name))
+    visit(*e);
 }
 
 }  // namespace
@@ -24,7 +26,8 @@ void each_child(const XMLElement& parent, const char* name, const Visit& visit) 
 /// Reads one SRDF into the model of a builder.
 class SrdfReader {
  public:
-  SrdfReader(RobotModelBuilder& builder, const std::filesystem::path& srdf, const XMLElement& robot, bool strict)
+  SrdfReader(RobotModelBuilder& builder, const std::filesystem::path& srdf, const XMLElement& robot,
+             bool strict)
       : builder_(builder), srdf_(srdf), robot_(robot), strict_(strict) {}
 
   void read_disabled_pairs() {
@@ -38,7 +41,9 @@ class SrdfReader {
     constexpr int kMaxGroups = 500;
     int groups = 0;
     each_child(robot_, "group", [&](const XMLElement&) { ++groups; });
-    if (groups > kMaxGroups) throw ConfigError(srdf_.string() + ": has " + std::to_string(groups) + " groups, must have at most 500");
+    if (groups > kMaxGroups)
+      throw ConfigError(srdf_.string() + ": has " + std::to_string(groups) +
+                        " groups, must have at most 500");
     each_child(robot_, "group", [&](const XMLElement& e) {
       const std::string name = attribute(e, "name");
       joints_.clear();
@@ -46,7 +51,10 @@ class SrdfReader {
       visits_.clear();
       collect_named(name, e);
       if (joints_.empty() || name.empty()) return;
-      if (tip_.empty()) tip_ = builder_.model_.links()[builder_.model_.joints()[builder_.joint_index(joints_.back())].child].name;
+      if (tip_.empty())
+        tip_ = builder_.model_
+                   .links()[builder_.model_.joints()[builder_.joint_index(joints_.back())].child]
+                   .name;
       builder_.add_group(name, joints_, tip_, srdf_);
     });
   }
@@ -54,18 +62,24 @@ class SrdfReader {
  private:
   enum class Visit { open, done };
 
-  std::string where(const XMLElement& e) const { return srdf_.string() + ":" + std::to_string(e.GetLineNum()) + ": "; }
+  std::string where(const XMLElement& e) const {
+    return srdf_.string() + ":" + std::to_string(e.GetLineNum()) + ": ";
+  }
 
   int link(const XMLElement& e, const char* key) const {
     const int index = builder_.model_.link_index(attribute(e, key));
-    if (index < 0 && strict_) throw ConfigError(where(e) + "no link \"" + attribute(e, key) + "\" in " + builder_.urdf_.string());
+    if (index < 0 && strict_)
+      throw ConfigError(where(e) + "no link \"" + attribute(e, key) + "\" in " +
+                        builder_.urdf_.string());
     return index;
   }
 
-  /// Collects the joints of a group, of each group within it once: what was collected before adds nothing.
+  /// Collects the joints of a group, of each group within it once: what was collected before adds
+  /// nothing.
   void collect_named(const std::string& name, const XMLElement& group) {
     visits_[name] = Visit::open;
-    for (const auto* e = group.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) collect(*e);
+    for (const auto* e = group.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+      collect(*e);
     visits_[name] = Visit::done;
   }
 
@@ -73,17 +87,21 @@ class SrdfReader {
     const std::string tag = e.Name();
     if (tag == "joint") {
       const int joint = builder_.joint_index(attribute(e, "name"));
-      if (joint < 0 && strict_) throw ConfigError(where(e) + "no joint \"" + attribute(e, "name") + "\" in " + builder_.urdf_.string());
+      if (joint < 0 && strict_)
+        throw ConfigError(where(e) + "no joint \"" + attribute(e, "name") + "\" in " +
+                          builder_.urdf_.string());
       add(joint);
     } else if (tag == "link") {
-      if (const int index = link(e, "name"); index >= 0) add(builder_.model_.links()[index].parent_joint);
+      if (const int index = link(e, "name"); index >= 0)
+        add(builder_.model_.links()[index].parent_joint);
     } else if (tag == "chain") {
       add_chain(e);
     } else if (tag == "group") {
       const std::string name = attribute(e, "name");
       const auto visit = visits_.find(name);
       if (visit != visits_.end() && visit->second == Visit::open)
-        throw ConfigError(where(e) + "group \"" + name + "\" contains itself; a group may only contain others");
+        throw ConfigError(where(e) + "group \"" + name +
+                          "\" contains itself; a group may only contain others");
       if (visit == visits_.end())
         each_child(robot_, "group", [&](const XMLElement& g) {
           if (attribute(g, "name") == name) collect_named(name, g);
@@ -93,7 +111,9 @@ class SrdfReader {
 
   void add(int joint) {
     const RobotModel& model = builder_.model_;
-    if (joint < 0 || builder_.axis_of(model.joints()[joint].name) < 0 || model.joints()[joint].is_mimic) return;
+    if (joint < 0 || builder_.axis_of(model.joints()[joint].name) < 0 ||
+        model.joints()[joint].is_mimic)
+      return;
     const std::string& name = model.joints()[joint].name;
     for (const auto& known : joints_)
       if (known == name) return;
@@ -105,7 +125,8 @@ class SrdfReader {
     const int base = link(e, "base_link"), end = link(e, "tip_link");
     std::vector<int> chain;
     int at = end;
-    for (; at >= 0 && at != base && model.links()[at].parent_joint >= 0; at = model.joints()[chain.back()].parent)
+    for (; at >= 0 && at != base && model.links()[at].parent_joint >= 0;
+         at = model.joints()[chain.back()].parent)
       chain.push_back(model.links()[at].parent_joint);
     if (at != base) throw ConfigError(where(e) + "tip_link does not descend from base_link");
     for (auto joint = chain.rbegin(); joint != chain.rend(); ++joint) add(*joint);

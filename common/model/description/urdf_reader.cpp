@@ -22,7 +22,8 @@ namespace {
 
 Pose to_pose(const urdf::Pose& pose) {
   const auto& r = pose.rotation;
-  return make_pose({pose.position.x, pose.position.y, pose.position.z}, Eigen::Quaterniond(r.w, r.x, r.y, r.z));
+  return make_pose({pose.position.x, pose.position.y, pose.position.z},
+                   Eigen::Quaterniond(r.w, r.x, r.y, r.z));
 }
 
 /// Keeps what urdfdom says about a bad file instead of printing it.
@@ -37,33 +38,41 @@ class Listener : public console_bridge::OutputHandler {
 };
 
 constexpr std::size_t kMaxLinks = 1000;
-constexpr double kLargestNumber = 1e12;  // in any unit: some files write 1e10 for an axis without an end
+constexpr double kLargestNumber =
+    1e12;  // in any unit: some files write 1e10 for an axis without an end
 
-/// Throws ConfigError where an attribute of numbers, in the element or below, holds something else, or a name holds a control character.
+/// Throws ConfigError where an attribute of numbers, in the element or below, holds something else,
+/// or a name holds a control character.
 void require_attributes(const tinyxml2::XMLElement& e, const fs::path& file) {
-  static const std::set<std::string_view> kNumeric{"xyz", "rpy", "size", "radius", "length", "scale",  "ixx",      "ixy",        "ixz",
-                                                   "iyy", "iyz", "izz",  "lower",  "upper",  "effort", "velocity", "multiplier", "offset"};
+  static const std::set<std::string_view> kNumeric{
+      "xyz", "rpy", "size", "radius", "length", "scale",  "ixx",      "ixy",        "ixz",
+      "iyy", "iyz", "izz",  "lower",  "upper",  "effort", "velocity", "multiplier", "offset"};
   static const std::set<std::string_view> kNames{"name", "link", "joint", "filename", "type"};
   const bool is_mass = std::string_view(e.Name()) == "mass";
   for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
     const std::string_view key = a->Name(), value = a->Value();
-    if (kNames.contains(key) && std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 32; }))
-      throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() + " of <" + printable(e.Name(), 40) +
-                        "> holds a control character");
+    if (kNames.contains(key) &&
+        std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 32; }))
+      throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() +
+                        " of <" + printable(e.Name(), 40) + "> holds a control character");
     if (!kNumeric.contains(key) && !(is_mass && key == "value")) continue;
     std::istringstream words(a->Value());
     for (std::string word; words >> word;) {
       char* end = nullptr;
       const double number = std::strtod(word.c_str(), &end);
       if (*end != '\0' || !std::isfinite(number) || std::abs(number) > kLargestNumber)
-        throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() + " of <" + printable(e.Name(), 40) +
-                          "> is \"" + printable(word, 40) + "\", must be a finite number");
+        throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() +
+                          " of <" + printable(e.Name(), 40) + "> is \"" + printable(word, 40) +
+                          "\", must be a finite number");
     }
   }
-  for (const auto* child = e.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) require_attributes(*child, file);
+  for (const auto* child = e.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement())
+    require_attributes(*child, file);
 }
 
-/// What urdfdom does not say, or not with a line: XML errors, duplicates, shapes that are not URDF, a link with two parents.
+/// What urdfdom does not say, or not with a line: XML errors, duplicates, shapes that are not URDF,
+/// a link with two parents.
 struct Document {
   Document(const fs::path& file, const std::string& text) {
     tinyxml2::XMLDocument xml;
@@ -72,44 +81,59 @@ struct Document {
     if (robot == nullptr) throw ConfigError(file.string() + ": has no <robot> element");
     std::set<std::string> links, children;
     for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-      const std::string tag = e->Name(), where = file.string() + ":" + std::to_string(e->GetLineNum());
+      const std::string tag = e->Name(),
+                        where = file.string() + ":" + std::to_string(e->GetLineNum());
       const std::string own = e->Attribute("name") != nullptr ? e->Attribute("name") : "";
       if (tag == "link" || tag == "joint") require_attributes(*e, file);
       if (tag == "link") {
-        if (!links.insert(own).second) throw ConfigError(where + ": link " + own + " is defined twice");
+        if (!links.insert(own).second)
+          throw ConfigError(where + ": link " + own + " is defined twice");
         for (const char* use : {"visual", "collision"})
-          for (const auto* v = e->FirstChildElement(use); v != nullptr; v = v->NextSiblingElement(use))
-            if (const auto* g = v->FirstChildElement("geometry"); g != nullptr && g->FirstChildElement("capsule") != nullptr)
-              throw ConfigError(file.string() + ":" + std::to_string(g->FirstChildElement("capsule")->GetLineNum()) + ": link " + own +
-                                " has a <capsule>, which is not URDF; use box, cylinder, sphere or mesh");
+          for (const auto* v = e->FirstChildElement(use); v != nullptr;
+               v = v->NextSiblingElement(use))
+            if (const auto* g = v->FirstChildElement("geometry");
+                g != nullptr && g->FirstChildElement("capsule") != nullptr)
+              throw ConfigError(
+                  file.string() + ":" +
+                  std::to_string(g->FirstChildElement("capsule")->GetLineNum()) + ": link " + own +
+                  " has a <capsule>, which is not URDF; use box, cylinder, sphere or mesh");
       } else if (tag == "joint" && e->FirstChildElement("parent") != nullptr) {
-        if (!names.insert(own).second) throw ConfigError(where + ": joint " + own + " is defined twice");
+        if (!names.insert(own).second)
+          throw ConfigError(where + ": joint " + own + " is defined twice");
         joints.push_back(own);
         const auto* child = e->FirstChildElement("child");
-        const std::string link = child != nullptr && child->Attribute("link") != nullptr ? child->Attribute("link") : "";
+        const std::string link =
+            child != nullptr && child->Attribute("link") != nullptr ? child->Attribute("link") : "";
         const auto* above = e->FirstChildElement("parent");
-        parents[link] = {above->Attribute("link") != nullptr ? above->Attribute("link") : "", where};
-        if (!children.insert(link).second) throw ConfigError(where + ": link " + link + " has more than one parent joint");
+        parents[link] = {above->Attribute("link") != nullptr ? above->Attribute("link") : "",
+                         where};
+        if (!children.insert(link).second)
+          throw ConfigError(where + ": link " + link + " has more than one parent joint");
       }
     }
     if (links.empty()) throw ConfigError(file.string() + ": has no link");
     if (links.size() > kMaxLinks)
-      throw ConfigError(file.string() + ": has " + std::to_string(links.size()) + " links, must have at most 1000");
+      throw ConfigError(file.string() + ": has " + std::to_string(links.size()) +
+                        " links, must have at most 1000");
     for (const auto& [start, joint] : parents) {
       std::size_t steps = 0;
       for (auto up = parents.find(start); up != parents.end(); up = parents.find(up->second.first))
-        if (++steps > parents.size()) throw ConfigError(joint.second + ": the joints above link " + start + " form a cycle");
+        if (++steps > parents.size())
+          throw ConfigError(joint.second + ": the joints above link " + start + " form a cycle");
     }
   }
   std::vector<std::string> joints;
   std::set<std::string> names;
-  std::map<std::string, std::pair<std::string, std::string>> parents;  // of each child link: parent link, file and line
+  std::map<std::string, std::pair<std::string, std::string>>
+      parents;  // of each child link: parent link, file and line
 };
 
-/// Folders of packages: the description's, those of ROS_PACKAGE_PATH, the shares of AMENT_PREFIX_PATH.
+/// Folders of packages: the description's, those of ROS_PACKAGE_PATH, the shares of
+/// AMENT_PREFIX_PATH.
 std::vector<fs::path> package_folders(const std::vector<fs::path>& described) {
   std::vector<fs::path> folders = described;
-  for (const auto& [variable, below] : {std::pair("ROS_PACKAGE_PATH", ""), std::pair("AMENT_PREFIX_PATH", "share")}) {
+  for (const auto& [variable, below] :
+       {std::pair("ROS_PACKAGE_PATH", ""), std::pair("AMENT_PREFIX_PATH", "share")}) {
     const char* value = std::getenv(variable);
     std::istringstream entries(value != nullptr ? value : "");
     for (std::string entry; std::getline(entries, entry, ':');)
@@ -118,11 +142,14 @@ std::vector<fs::path> package_folders(const std::vector<fs::path>& described) {
   return folders;
 }
 
-/// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are searched too.
-fs::path find_mesh(const fs::path& urdf, const std::string& uri, const std::vector<fs::path>& packages) {
+/// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are
+/// searched too.
+fs::path find_mesh(const fs::path& urdf, const std::string& uri,
+                   const std::vector<fs::path>& packages) {
   constexpr std::size_t kMaxUri = 1024;  // [bytes]
   if (uri.size() > kMaxUri)
-    throw ConfigError(urdf.string() + ": the name of a mesh has " + std::to_string(uri.size()) + " bytes, must have at most 1024");
+    throw ConfigError(urdf.string() + ": the name of a mesh has " + std::to_string(uri.size()) +
+                      " bytes, must have at most 1024");
   std::vector<fs::path> tails;
   std::error_code error;
   const auto scheme = uri.find("://");
@@ -142,7 +169,8 @@ fs::path find_mesh(const fs::path& urdf, const std::string& uri, const std::vect
   for (const auto& folder : package_folders(packages))
     for (const auto& tail : tails)
       if (fs::is_regular_file(folder / tail, error)) return fs::weakly_canonical(folder / tail);
-  throw MissingError(locate(urdf, uri) + ": no mesh " + uri + " in the folder of the URDF, above it, or in the packages' folders");
+  throw MissingError(locate(urdf, uri) + ": no mesh " + uri +
+                     " in the folder of the URDF, above it, or in the packages' folders");
 }
 
 class ShapeReader {
@@ -160,7 +188,8 @@ class ShapeReader {
   std::optional<Shape> read(const urdf::Geometry& g, const std::string& link) {
     const auto positive = [&](double x) {
       if (!(x > 0))
-        throw ConfigError(locate(urdf_, "\"" + link + "\"") + ": link " + link + " has a collision shape whose size is not > 0");
+        throw ConfigError(locate(urdf_, "\"" + link + "\"") + ": link " + link +
+                          " has a collision shape whose size is not > 0");
       return x;
     };
     switch (g.type) {
@@ -203,7 +232,9 @@ urdf::ModelInterfaceSharedPtr parse(const fs::path& file, const std::string& tex
   const std::scoped_lock lock(one_at_a_time);
   Listener listener;
   auto model = urdf::parseURDF(text);
-  if (model == nullptr) throw ConfigError(file.string() + ": " + (listener.said.empty() ? "not a URDF" : printable(listener.said, 300)));
+  if (model == nullptr)
+    throw ConfigError(file.string() + ": " +
+                      (listener.said.empty() ? "not a URDF" : printable(listener.said, 300)));
   return model;
 }
 
@@ -230,7 +261,8 @@ Joint to_joint(const urdf::Joint& from, int parent, int child, const fs::path& f
   if (joint.kind == JointKind::fixed) return joint;
   const auto where = [&] { return locate(file, "\"" + from.name + "\""); };
   joint.axis = Vector3(from.axis.x, from.axis.y, from.axis.z);
-  if (!(joint.axis.norm() > 1e-6)) throw ConfigError(where() + ": joint " + from.name + " has an axis of length 0");
+  if (!(joint.axis.norm() > 1e-6))
+    throw ConfigError(where() + ": joint " + from.name + " has an axis of length 0");
   joint.axis.normalize();
   if (from.limits != nullptr) {
     joint.lower = from.limits->lower;
@@ -243,14 +275,17 @@ Joint to_joint(const urdf::Joint& from, int parent, int child, const fs::path& f
     joint.upper = 2 * M_PI;
   }
   joint.is_mimic = from.mimic != nullptr;
-  if (!(joint.lower <= joint.upper)) throw ConfigError(where() + ": joint " + from.name + " has lower limit above its upper limit");
+  if (!(joint.lower <= joint.upper))
+    throw ConfigError(where() + ": joint " + from.name + " has lower limit above its upper limit");
   return joint;
 }
 
 void read_mass(const urdf::Link& from, Link& to, const fs::path& file) {
   if (from.inertial == nullptr) return;
   const auto& i = *from.inertial;
-  if (!(i.mass >= 0)) throw ConfigError(locate(file, "\"" + from.name + "\"") + ": link " + from.name + " has a mass below 0");
+  if (!(i.mass >= 0))
+    throw ConfigError(locate(file, "\"" + from.name + "\"") + ": link " + from.name +
+                      " has a mass below 0");
   const Pose T = to_pose(i.origin);
   Eigen::Matrix3d inertia;
   inertia << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
@@ -259,8 +294,10 @@ void read_mass(const urdf::Link& from, Link& to, const fs::path& file) {
   to.inertia = T.linear() * inertia * T.linear().transpose();
 }
 
-/// Follows mimic joints to the joint that is not one; factor and offset composed. Names first, axes later.
-void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint& joint, std::vector<Joint>& joints) {
+/// Follows mimic joints to the joint that is not one; factor and offset composed. Names first, axes
+/// later.
+void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint& joint,
+                   std::vector<Joint>& joints) {
   double factor = 1, offset = 0;
   std::string name = joint.name;
   for (std::size_t depth = 0; depth <= joints.size(); ++depth) {
@@ -271,22 +308,26 @@ void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint
       joint.mimic_factor = factor;
       joint.mimic_offset = offset;
       if (joint.dof < 0)
-        throw ConfigError(locate(file, "\"" + joint.name + "\"") + ": joint " + joint.name + " mimics " + name + ", which is left out");
+        throw ConfigError(locate(file, "\"" + joint.name + "\"") + ": joint " + joint.name +
+                          " mimics " + name + ", which is left out");
       return;
     }
     offset += factor * from->mimic->offset;
     factor *= from->mimic->multiplier;
     if (urdf.getJoint(from->mimic->joint_name) == nullptr)
-      throw ConfigError(locate(file, "\"" + name + "\"") + ": joint " + name + " mimics " + from->mimic->joint_name +
-                        ", which does not exist");
+      throw ConfigError(locate(file, "\"" + name + "\"") + ": joint " + name + " mimics " +
+                        from->mimic->joint_name + ", which does not exist");
     name = from->mimic->joint_name;
   }
-  throw ConfigError(locate(file, "\"" + joint.name + "\"") + ": joint " + joint.name + " mimics itself in a circle");
+  throw ConfigError(locate(file, "\"" + joint.name + "\"") + ": joint " + joint.name +
+                    " mimics itself in a circle");
 }
 
 }  // namespace
 
-RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes, const UrdfOptions& options) : urdf_(urdf) {
+RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes,
+                                     const UrdfOptions& options)
+    : urdf_(urdf) {
   const std::string text = read_text_file(urdf);
   const Document document(urdf, text);
   const auto tree = parse(urdf, text);
@@ -294,8 +335,10 @@ RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes, const 
   ShapeReader shapes(urdf, meshes, options.packages);
   std::set<std::string> without(options.without.begin(), options.without.end());
   for (const auto& name : without)
-    if (tree->getLink(name) == nullptr) throw ConfigError(urdf.string() + ": has no link \"" + name + "\" that could be left out");
-  if (without.contains(tree->getRoot()->name)) throw ConfigError(urdf.string() + ": the root link cannot be left out");
+    if (tree->getLink(name) == nullptr)
+      throw ConfigError(urdf.string() + ": has no link \"" + name + "\" that could be left out");
+  if (without.contains(tree->getRoot()->name))
+    throw ConfigError(urdf.string() + ": the root link cannot be left out");
 
   struct Visit {
     const urdf::Link* link;
@@ -324,9 +367,11 @@ RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes, const 
     shapes.read(*from, link.collision);
     read_mass(*from, link, urdf);
     model_.links_.push_back(std::move(link));
-    for (auto child = from->child_links.rbegin(); child != from->child_links.rend(); ++child) stack.push_back({child->get(), index});
+    for (auto child = from->child_links.rbegin(); child != from->child_links.rend(); ++child)
+      stack.push_back({child->get(), index});
   }
-  if (visited != tree->links_.size()) throw ConfigError(urdf.string() + ": some joints form a cycle apart from the root link");
+  if (visited != tree->links_.size())
+    throw ConfigError(urdf.string() + ": some joints form a cycle apart from the root link");
 
   for (const auto& name : document.joints)
     if (const int joint = joint_index(name); joint >= 0) document_order_.push_back(joint);
@@ -334,17 +379,21 @@ RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes, const 
     if (joint.kind != JointKind::fixed) resolve_mimic(*tree, urdf, joint, model_.joints_);
 }
 
-void RobotModelBuilder::mount(RobotModelBuilder other, const config::HandMount& at, const fs::path& source) {
+void RobotModelBuilder::mount(RobotModelBuilder other, const config::HandMount& at,
+                              const fs::path& source) {
   const int parent = require_link(at.link(), "mount.link", source);
   RobotModel& hand = other.model_;
   for (const auto& link : hand.links_)
     if (model_.link_index(link.name) >= 0)
-      throw ConfigError(source.string() + ": link \"" + link.name + "\" is in " + urdf_.string() + " and in " + other.urdf_.string() +
+      throw ConfigError(source.string() + ": link \"" + link.name + "\" is in " + urdf_.string() +
+                        " and in " + other.urdf_.string() +
                         "; leave it out of the first (without) or do not mount the second");
   for (const auto& joint : hand.joints_)
     if (joint_index(joint.name) >= 0)
-      throw ConfigError(source.string() + ": joint \"" + joint.name + "\" is in " + urdf_.string() + " and in " + other.urdf_.string());
-  const auto links = static_cast<int>(model_.links_.size()), joints = static_cast<int>(model_.joints_.size()) + 1;
+      throw ConfigError(source.string() + ": joint \"" + joint.name + "\" is in " + urdf_.string() +
+                        " and in " + other.urdf_.string());
+  const auto links = static_cast<int>(model_.links_.size()),
+             joints = static_cast<int>(model_.joints_.size()) + 1;
   Joint flange;
   flange.name = other.model_.links_.front().name + "_mount";
   flange.parent = parent;

@@ -11,8 +11,9 @@ namespace handsel {
 
 /// Indices into kBodyJoints of the joints that carry a part.
 inline std::initializer_list<int> joints_of(BodyPart part) {
-  static constexpr std::initializer_list<int> head{0, 1}, torso{1, 2, 3, 4, 8, 12, 15}, upper_arm_left{4, 5}, forearm_left{5, 6},
-      hand_left{6, 7}, upper_arm_right{8, 9}, forearm_right{9, 10}, hand_right{10, 11}, leg_left{12, 13, 14}, leg_right{15, 16, 17};
+  static constexpr std::initializer_list<int> head{0, 1}, torso{1, 2, 3, 4, 8, 12, 15},
+      upper_arm_left{4, 5}, forearm_left{5, 6}, hand_left{6, 7}, upper_arm_right{8, 9},
+      forearm_right{9, 10}, hand_right{10, 11}, leg_left{12, 13, 14}, leg_right{15, 16, 17};
   switch (part) {
     case BodyPart::head:
       return head;
@@ -45,9 +46,12 @@ inline double directed_speed(const Person& person, BodyPart part, const Vector3&
   if (person.joints.empty()) return 0.0;
   double fastest = -1e9;
   if (person.joints.size() == kBodyJoints.size()) {
-    for (int j : joints_of(part)) fastest = std::max(fastest, person.joints[static_cast<std::size_t>(j)].velocity.dot(direction));
+    for (int j : joints_of(part))
+      fastest =
+          std::max(fastest, person.joints[static_cast<std::size_t>(j)].velocity.dot(direction));
   } else {
-    for (const BodyJoint& joint : person.joints) fastest = std::max(fastest, joint.velocity.dot(direction));
+    for (const BodyJoint& joint : person.joints)
+      fastest = std::max(fastest, joint.velocity.dot(direction));
   }
   return fastest;
 }

@@ -11,14 +11,17 @@ namespace {
 using namespace body;
 
 constexpr double kLeastConfidence = 0.05;
-constexpr double kLeastSpread = 4e-3;  // points closer to one vertical line do not tell which way a body faces [m^2]
+constexpr double kLeastSpread =
+    4e-3;  // points closer to one vertical line do not tell which way a body faces [m^2]
 constexpr int kCount = static_cast<int>(kBodyJoints.size());
 
 /// The skeleton as a tree from the chest outward.
-constexpr std::array<int, kCount> kParent = {neck,       torso,   -1,      torso, neck,  l_shoulder, l_elbow, l_wrist, neck,
-                                             r_shoulder, r_elbow, r_wrist, waist, l_hip, l_knee,     waist,   r_hip,   r_knee};
+constexpr std::array<int, kCount> kParent = {
+    neck,       torso,   -1,      torso, neck,  l_shoulder, l_elbow, l_wrist, neck,
+    r_shoulder, r_elbow, r_wrist, waist, l_hip, l_knee,     waist,   r_hip,   r_knee};
 /// How much a joint says about where the trunk is and faces.
-constexpr std::array<double, kCount> kTrunkWeight = {0.5, 1, 1, 1, 1, 0.05, 0.02, 0.02, 1, 0.05, 0.02, 0.02, 1, 0.2, 0.1, 1, 0.2, 0.1};
+constexpr std::array<double, kCount> kTrunkWeight = {
+    0.5, 1, 1, 1, 1, 0.05, 0.02, 0.02, 1, 0.05, 0.02, 0.02, 1, 0.2, 0.1, 1, 0.2, 0.1};
 
 using Seen = std::array<double, kCount>;  // confidence, 0 = unseen
 
@@ -49,7 +52,8 @@ void place(Points& body, const Points& points, const Seen& seen, const ObservedP
     turn = std::atan2(sine, cosine);
   } else if (observed.has_gaze && flat_norm(observed.gaze_direction) > 0.1) {
     const Vector3 left = body[l_shoulder] - body[r_shoulder];
-    turn = std::atan2(observed.gaze_direction.y(), observed.gaze_direction.x()) - std::atan2(-left.x(), left.y());
+    turn = std::atan2(observed.gaze_direction.y(), observed.gaze_direction.x()) -
+           std::atan2(-left.x(), left.y());
   }
   const Eigen::AngleAxisd R(turn, Vector3::UnitZ());
   for (auto& p : body) p = to + R * (p - from);
@@ -57,14 +61,17 @@ void place(Points& body, const Points& points, const Seen& seen, const ObservedP
 
 }  // namespace
 
-std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* previous, double stature) {
+std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* previous,
+                                double stature) {
   Points points, body;
   Seen seen{};
   points.fill(Vector3::Zero());
   bool any = false;
   for (const auto& joint : observed.joints) {
     const int i = body_joint_index(joint.name);
-    if (i < 0 || !(joint.confidence >= kLeastConfidence) || !joint.position.allFinite() || joint.confidence <= seen[i]) continue;
+    if (i < 0 || !(joint.confidence >= kLeastConfidence) || !joint.position.allFinite() ||
+        joint.confidence <= seen[i])
+      continue;
     seen[i] = std::min(joint.confidence, 1.0);
     points[i] = joint.position;
     any = true;
@@ -72,7 +79,8 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
   const bool known = previous != nullptr && previous->joints.size() == kBodyJoints.size();
   if (!any && !known) return {};
 
-  std::vector<BodyJoint> joints = known ? previous->joints : standing_body(Vector3::Zero(), 0, stature);
+  std::vector<BodyJoint> joints =
+      known ? previous->joints : standing_body(Vector3::Zero(), 0, stature);
   std::array<double, kCount> bone{};
   {
     const auto model = standing_body(Vector3::Zero(), 0, stature);
@@ -89,8 +97,10 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
       done[i] = seen[i] > 0;
       if (done[i]) fitted[i] = points[i];
     }
-    // From the seen joints outward: in the direction of where the body as a whole has it, a bone's length away.
-    for (auto before = done; !std::all_of(done.begin(), done.end(), [](bool d) { return d; }); before = done)
+    // From the seen joints outward: in the direction of where the body as a whole has it, a bone's
+    // length away.
+    for (auto before = done; !std::all_of(done.begin(), done.end(), [](bool d) { return d; });
+         before = done)
       for (int i = 0; i < kCount; ++i) {
         if (before[i]) continue;
         int from = kParent[i] >= 0 && before[kParent[i]] ? kParent[i] : -1;
@@ -103,13 +113,15 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
         done[i] = true;
       }
     for (const int arm : {0, r_shoulder - l_shoulder}) {
-      const int shoulder = l_shoulder + arm, elbow = l_elbow + arm, wrist = l_wrist + arm, hand = l_hand + arm;
+      const int shoulder = l_shoulder + arm, elbow = l_elbow + arm, wrist = l_wrist + arm,
+                hand = l_hand + arm;
       if (seen[wrist] <= 0 && seen[hand] > 0) {
         const Vector3 back = fitted[elbow] - fitted[hand];
         if (back.norm() > 1e-6) fitted[wrist] = fitted[hand] + bone[hand] * back.normalized();
       }
       if (seen[elbow] <= 0 && (seen[wrist] > 0 || seen[hand] > 0))
-        fitted[elbow] = bend(fitted[shoulder], fitted[wrist], bone[elbow], bone[wrist], fitted[elbow]);
+        fitted[elbow] =
+            bend(fitted[shoulder], fitted[wrist], bone[elbow], bone[wrist], fitted[elbow]);
       if (seen[wrist] > 0 && seen[hand] <= 0) {
         const Vector3 on = fitted[wrist] - fitted[elbow];
         if (on.norm() > 1e-6) fitted[hand] = fitted[wrist] + bone[hand] * on.normalized();
@@ -117,7 +129,8 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
     }
     for (const int leg : {0, r_hip - l_hip})
       if (const int knee = l_knee + leg; seen[knee] <= 0 && seen[l_ankle + leg] > 0)
-        fitted[knee] = bend(fitted[l_hip + leg], fitted[l_ankle + leg], bone[knee], bone[l_ankle + leg], fitted[knee]);
+        fitted[knee] = bend(fitted[l_hip + leg], fitted[l_ankle + leg], bone[knee],
+                            bone[l_ankle + leg], fitted[knee]);
     body = fitted;
   }
   for (int i = 0; i < kCount; ++i) joints[i] = {kBodyJoints[i], body[i], Vector3::Zero()};

@@ -11,10 +11,14 @@ namespace {
 using namespace body;
 
 // Lengths as shares of the stature (Drillis and Contini; depths and breadths ours).
-constexpr double kHead = 0.93, kNeck = 0.85, kShoulder = 0.818, kTorso = 0.72, kHip = 0.53, kKnee = 0.285, kAnkle = 0.039;
-constexpr double kShoulderHalf = 0.115, kHipHalf = 0.055, kUpperArm = 0.186, kForearm = 0.146, kHandCentre = 0.054;
-constexpr double kHeadRadius = 0.07, kNeckRadius = 0.04, kTrunkRadius = 0.08, kSideRadius = 0.07, kShoulderRadius = 0.055;
-constexpr double kUpperArmRadius = 0.034, kForearmRadius = 0.028, kHandRadius = 0.030, kThighRadius = 0.055, kShankRadius = 0.04;
+constexpr double kHead = 0.93, kNeck = 0.85, kShoulder = 0.818, kTorso = 0.72, kHip = 0.53,
+                 kKnee = 0.285, kAnkle = 0.039;
+constexpr double kShoulderHalf = 0.115, kHipHalf = 0.055, kUpperArm = 0.186, kForearm = 0.146,
+                 kHandCentre = 0.054;
+constexpr double kHeadRadius = 0.07, kNeckRadius = 0.04, kTrunkRadius = 0.08, kSideRadius = 0.07,
+                 kShoulderRadius = 0.055;
+constexpr double kUpperArmRadius = 0.034, kForearmRadius = 0.028, kHandRadius = 0.030,
+                 kThighRadius = 0.055, kShankRadius = 0.04;
 
 bool complete(const Person& person) {
   if (person.joints.size() < kBodyJoints.size()) return false;
@@ -61,8 +65,10 @@ void body_capsules(const Person& person, std::array<BodyCapsule, kBodyCapsules>&
   const auto add = [&](BodyPart part, const Vector3& a, const Vector3& b, double share) {
     out[n++] = {part, a, b, share * h + person.inflation};
   };
-  const auto hand = [&](BodyPart part, const Vector3& elbow, const Vector3& wrist, const Vector3& centre) {
-    const Vector3 along = (centre - wrist).norm() > 0.01 ? direction(wrist, centre) : direction(elbow, wrist);
+  const auto hand = [&](BodyPart part, const Vector3& elbow, const Vector3& wrist,
+                        const Vector3& centre) {
+    const Vector3 along =
+        (centre - wrist).norm() > 0.01 ? direction(wrist, centre) : direction(elbow, wrist);
     add(part, wrist, centre + 0.5 * kHandCentre * h * along, kHandRadius);
   };
   const Vector3 up = direction(p[neck], p[head]);
@@ -70,8 +76,10 @@ void body_capsules(const Person& person, std::array<BodyCapsule, kBodyCapsules>&
   add(BodyPart::head, p[neck], p[head], kNeckRadius);
   add(BodyPart::torso, p[l_shoulder], p[r_shoulder], kShoulderRadius);
   add(BodyPart::torso, p[torso] + 0.4 * (p[neck] - p[torso]), p[waist], kTrunkRadius);
-  add(BodyPart::torso, p[l_shoulder] + 0.35 * (p[r_shoulder] - p[l_shoulder]), p[l_hip], kSideRadius);
-  add(BodyPart::torso, p[r_shoulder] + 0.35 * (p[l_shoulder] - p[r_shoulder]), p[r_hip], kSideRadius);
+  add(BodyPart::torso, p[l_shoulder] + 0.35 * (p[r_shoulder] - p[l_shoulder]), p[l_hip],
+      kSideRadius);
+  add(BodyPart::torso, p[r_shoulder] + 0.35 * (p[l_shoulder] - p[r_shoulder]), p[r_hip],
+      kSideRadius);
   add(BodyPart::upper_arm_left, p[l_shoulder], p[l_elbow], kUpperArmRadius);
   add(BodyPart::forearm_left, p[l_elbow], p[l_wrist], kForearmRadius);
   hand(BodyPart::hand_left, p[l_elbow], p[l_wrist], p[l_hand]);
@@ -121,8 +129,10 @@ std::vector<BodyJoint> standing_body(const Vector3& feet, double yaw, double sta
     const int arm = side > 0 ? 0 : r_shoulder - l_shoulder, leg = side > 0 ? 0 : r_hip - l_hip;
     put(Index(l_shoulder + arm), 0, side * kShoulderHalf, kShoulder);
     put(Index(l_elbow + arm), 0, side * (kShoulderHalf + 0.015), kShoulder - kUpperArm);
-    put(Index(l_wrist + arm), 0.02, side * (kShoulderHalf + 0.02), kShoulder - kUpperArm - kForearm);
-    put(Index(l_hand + arm), 0.025, side * (kShoulderHalf + 0.02), kShoulder - kUpperArm - kForearm - kHandCentre);
+    put(Index(l_wrist + arm), 0.02, side * (kShoulderHalf + 0.02),
+        kShoulder - kUpperArm - kForearm);
+    put(Index(l_hand + arm), 0.025, side * (kShoulderHalf + 0.02),
+        kShoulder - kUpperArm - kForearm - kHandCentre);
     put(Index(l_hip + leg), 0, side * kHipHalf, kHip);
     put(Index(l_knee + leg), 0, side * kHipHalf, kKnee);
     put(Index(l_ankle + leg), 0, side * kHipHalf, kAnkle);
@@ -154,7 +164,8 @@ Vector3 comfortable_reach(const Person& person, Side side) {
   const Vector3 forward = direction(Vector3::Zero(), left).cross(Vector3::UnitZ());
   const Vector3& shoulder = side == Side::right ? p[r_shoulder] : p[l_shoulder];
   // Upper arm hanging a little forward, elbow bent by about 70 degrees, a little toward the middle.
-  const Vector3 inward = (side == Side::right ? 1.0 : -1.0) * 0.02 * h * direction(Vector3::Zero(), left);
+  const Vector3 inward =
+      (side == Side::right ? 1.0 : -1.0) * 0.02 * h * direction(Vector3::Zero(), left);
   return shoulder + 0.27 * h * forward - 0.16 * h * Vector3::UnitZ() + inward;
 }
 

@@ -11,9 +11,10 @@
 namespace handsel {
 
 /// The joints every complete body has, REP-155 names.
-inline constexpr std::array kBodyJoints = {"head",    "neck",   "torso",      "waist",   "l_shoulder", "l_elbow",
-                                           "l_wrist", "l_hand", "r_shoulder", "r_elbow", "r_wrist",    "r_hand",
-                                           "l_hip",   "l_knee", "l_ankle",    "r_hip",   "r_knee",     "r_ankle"};
+inline constexpr std::array kBodyJoints = {
+    "head",    "neck",   "torso",      "waist",   "l_shoulder", "l_elbow",
+    "l_wrist", "l_hand", "r_shoulder", "r_elbow", "r_wrist",    "r_hand",
+    "l_hip",   "l_knee", "l_ankle",    "r_hip",   "r_knee",     "r_ankle"};
 int body_joint_index(const std::string& name);  ///< -1 if it is none of them
 
 enum class BodyPart {
@@ -70,8 +71,8 @@ std::vector<BodyJoint> fit_body(const ObservedPerson&, const Person* previous, d
 /// hanging. For tests, sim and fitting.
 std::vector<BodyJoint> standing_body(const Vector3& feet, double yaw, double stature);
 
-/// The same sitting on a seat of height 0.26 of the stature, thighs forward; `floor_point` is the point of
-/// the floor below the hips.
+/// The same sitting on a seat of height 0.26 of the stature, thighs forward; `floor_point` is the
+/// point of the floor below the hips.
 std::vector<BodyJoint> sitting_body(const Vector3& floor_point, double yaw, double stature);
 
 /// Where the person's hand would take an object comfortably: world point in front of the right (or

@@ -11,7 +11,8 @@ namespace handsel {
 /// The middle joint of a limb from `a` to `b` with bones `first` and `second` long, on the side of
 /// the line where `hint` is; below it when the hint says nothing. When the ends are too far apart:
 /// on the line, in proportion.
-inline Vector3 bend(const Vector3& a, const Vector3& b, double first, double second, const Vector3& hint) {
+inline Vector3 bend(const Vector3& a, const Vector3& b, double first, double second,
+                    const Vector3& hint) {
   const Vector3 line = b - a;
   const double d = line.norm();
   if (d < 1e-6) return hint;

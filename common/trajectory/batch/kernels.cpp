@@ -10,8 +10,8 @@ namespace {
 std::array<const BatchKernels*, 3> present() noexcept {
 #ifdef HANDSEL_SIMD_UNITS
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-                      __builtin_cpu_supports("avx512bw");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
   if (avx512) return {&kBatchKernelsAvx512, &kBatchKernelsAvx2, &kBatchKernelsBase};
   if (avx2) return {&kBatchKernelsAvx2, &kBatchKernelsBase, nullptr};
 #endif

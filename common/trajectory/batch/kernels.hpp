@@ -27,9 +27,11 @@ struct AxisBatchInput {
 /// of no duration.
 struct alignas(64) AxisBatch {
   struct Family {
-    BatchArray start_velocity, start_acceleration, end_velocity, end_acceleration, C, s_lo, s_hi, at_limit, reversed;
+    BatchArray start_velocity, start_acceleration, end_velocity, end_acceleration, C, s_lo, s_hi,
+        at_limit, reversed;
   };
-  BatchArray distance, scale, velocity, acceleration, end_velocity, end_acceleration, max_velocity, max_acceleration, max_jerk;
+  BatchArray distance, scale, velocity, acceleration, end_velocity, end_acceleration, max_velocity,
+      max_acceleration, max_jerk;
   Family up, down;
   BatchArray s, cruise, side;  // of the fastest motion; side +1 up, -1 down
   BatchArray minimum;          ///< minimum duration [s]
@@ -72,31 +74,36 @@ struct BatchKernels {
   const char* name;
   /// Reads as many axes as its third argument says; returns the bits of the odd ones, whose minimum
   /// is 0.
-  std::uint32_t (*prepare)(const AxisBatchInput& in, int first, int axes, AxisBatch& block) noexcept;
+  std::uint32_t (*prepare)(const AxisBatchInput& in, int first, int axes,
+                           AxisBatch& block) noexcept;
   /// Motions of the durations wanted, one an axis. Returns the bits of the axes that failed;
   /// `blocked`: bits of those for which the duration is blocked. The bits in `leave` are neither
   /// computed nor returned.
-  std::uint32_t (*finish)(AxisBatch& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept;
+  std::uint32_t (*finish)(AxisBatch& block, const double* durations, std::uint32_t leave,
+                          std::uint32_t* blocked) noexcept;
   /// State `t` after the start of a segment: `row` has positions, velocities, accelerations and
   /// jerks of all axes, each part `stride` long, a multiple of kBatchAxes; on 64 bytes.
-  void (*evaluate)(const double* row, int axes, int stride, double t, double* position, double* velocity, double* acceleration) noexcept;
+  void (*evaluate)(const double* row, int axes, int stride, double t, double* position,
+                   double* velocity, double* acceleration) noexcept;
   /// Velocities, accelerations, jerks of the path at that time; each part `stride` long, on 64
   /// bytes. The same layout is read below.
   void (*rates)(const double* row, int stride, double t, double* out) noexcept;
   /// Narrows the range of alpha'' to what keeps the limits at both ends of a step, whose end is
   /// known up to what alpha'' adds to it. False if nothing does.
-  bool (*push_range)(const ScalingStep& at, const double* begin, const double* end, double* range) noexcept;
+  bool (*push_range)(const ScalingStep& at, const double* begin, const double* end,
+                     double* range) noexcept;
   /// The same for the jerk at one place passed `after` the begin of the step.
-  bool (*push_range_at)(const ScalingStep& at, double after, const double* there, double* range) noexcept;
+  bool (*push_range_at)(const ScalingStep& at, double after, const double* there,
+                        double* range) noexcept;
   /// Whether a step that ends in `next` keeps limits * `allowed` there, and the acceleration's
   /// change over it.
-  bool (*step_holds)(const ScalingStep& at, const ScalingStep& next, double push, double allowed, const double* begin,
-                     const double* end) noexcept;
+  bool (*step_holds)(const ScalingStep& at, const ScalingStep& next, double push, double allowed,
+                     const double* begin, const double* end) noexcept;
   /// Largest ratio of an axis of the blend to its limit, on the exact extremes; some ratio beyond
   /// `enough` as soon as one is found. `inverse`: 1 / limit of velocity, acceleration, jerk, each
   /// part `stride` long.
-  double (*blend_ratio)(const Blend&, const double* weight_a, const double* weight_b, const double* inverse, int stride,
-                        double enough) noexcept;
+  double (*blend_ratio)(const Blend&, const double* weight_a, const double* weight_b,
+                        const double* inverse, int stride, double enough) noexcept;
 };
 
 extern const BatchKernels kBatchKernelsBase;

@@ -8,7 +8,8 @@ namespace handsel::detail {
 namespace {
 
 constexpr BatchKernels kernels(const char* name) noexcept {
-  return {name, prepare, finish, evaluate, rates, push_range, push_range_at, step_holds, blend_ratio};
+  return {name,       prepare,       finish,     evaluate,   rates,
+          push_range, push_range_at, step_holds, blend_ratio};
 }
 
 }  // namespace

@@ -35,11 +35,13 @@ struct Limits {
   V velocity, A, J, over_J, over_JA;
 };
 
-[[gnu::always_inline]] inline V lobe(const V& v, const V& a, const V& a1, const V& hold, const Limits& l) noexcept {
+[[gnu::always_inline]] inline V lobe(const V& v, const V& a, const V& a1, const V& hold,
+                                     const Limits& l) noexcept {
   const V t = (a1 - a) * l.over_J;
   const V v1 = v + 0.5 * t * (a1 + a);
   const V v2 = v1 + a1 * hold;
-  return t * (v + t * (a * 0.5 + l.J * t * (1.0 / 6))) + hold * (v1 + v2) * 0.5 + a1 * l.over_J * (v2 + a1 * a1 * l.over_J * (1.0 / 3));
+  return t * (v + t * (a * 0.5 + l.J * t * (1.0 / 6))) + hold * (v1 + v2) * 0.5 +
+         a1 * l.over_J * (v2 + a1 * a1 * l.over_J * (1.0 / 3));
 }
 
 /// MotionFamily of min_time.hpp, main component.
@@ -56,7 +58,8 @@ struct Family {
   V displacement(const V& s, const Limits& l) const noexcept {
     const V R = s * s + C, A2 = l.A * l.A;
     const V a1 = min(sqrt(R), l.A), a2 = min(s, l.A);
-    return lobe(v0, a0, a1, positive(R - A2) * l.over_JA, l) + lobe(vf, -af, a2, positive(s * abs(s) - A2) * l.over_JA, l);
+    return lobe(v0, a0, a1, positive(R - A2) * l.over_JA, l) +
+           lobe(vf, -af, a2, positive(s * abs(s) - A2) * l.over_JA, l);
   }
   /// For |s| <= A.
   V displacement(const V& s, const Limits& l, V* slope) const noexcept {
@@ -109,7 +112,8 @@ Family family(V v0, V a0, V vf, V af, const Limits& l, M* island) noexcept {
   return f;
 }
 
-[[gnu::always_inline]] inline Family chosen(const M& first, const Family& a, const Family& b) noexcept {
+[[gnu::always_inline]] inline Family chosen(const M& first, const Family& a,
+                                            const Family& b) noexcept {
   return {pick(first, a.v0, b.v0),
           pick(first, a.a0, b.a0),
           pick(first, a.vf, b.vf),
@@ -147,7 +151,8 @@ Family get(const AxisBatch::Family& in, int g) noexcept {
 
 /// First root of displacement(s) = D from s_lo on, where displacement(s_lo) - D = f_from < 0.
 /// `todo`: axes that matter; axes that need care are added to `odd`.
-V root(const Family& f, const V& D, const V& f_from, const Limits& l, const M& todo, M* odd, V* cruise) noexcept {
+V root(const Family& f, const V& D, const V& f_from, const Limits& l, const M& todo, M* odd,
+       V* cruise) noexcept {
   const V to = min(l.A, f.s_hi);
   V lo = f.s_lo, hi = to, f_lo = f_from;
   M concave(false);
@@ -224,7 +229,8 @@ M prepare_rest(const AxisGroup& in, AxisBatch& block, int g) noexcept {
   const M holds = full && D >= 2 * l.A * to_acceleration * to_acceleration, cruises = cruising >= 0;
   V tj = cube_root(D * l.over_J * 0.5), ta = 0, tv = 0;
   where(holds, tj) = to_acceleration;
-  where(holds, ta) = positive(sqrt(0.25 * to_acceleration * to_acceleration + D / l.A) - 1.5 * to_acceleration);
+  where(holds, ta) =
+      positive(sqrt(0.25 * to_acceleration * to_acceleration + D / l.A) - 1.5 * to_acceleration);
   where(cruises, tj) = peak_jerk;
   where(cruises, ta) = peak_hold;
   where(cruises, tv) = cruising / l.velocity;
@@ -242,7 +248,8 @@ M prepare_rest(const AxisGroup& in, AxisBatch& block, int g) noexcept {
 M prepare_any(const AxisGroup& in, AxisBatch& block, int g) noexcept {
   const Limits& l = in.limits;
   M island_up, island_down;
-  const Family up = family(in.v0, in.a0, in.vf, in.af, l, &island_up), down = family(-in.v0, -in.a0, -in.vf, -in.af, l, &island_down);
+  const Family up = family(in.v0, in.a0, in.vf, in.af, l, &island_up),
+               down = family(-in.v0, -in.a0, -in.vf, -in.af, l, &island_down);
   const V highest = up.displacement(up.s_lo, l), lowest = -down.displacement(down.s_lo, l);
   const V tolerance = 256 * kEps * (in.scale + abs(lowest) + abs(highest)), D = in.distance;
   const M rises = D > highest + tolerance, falls = D < lowest - tolerance;
@@ -250,7 +257,8 @@ M prepare_any(const AxisGroup& in, AxisBatch& block, int g) noexcept {
   M odd = island_up || island_down || !(rises || falls || still);
   const Family f = chosen(rises, up, down);
   V cruise = 0;
-  V s = root(f, pick(rises, D, -D), pick(rises, highest - D, D - lowest), l, !odd && !still, &odd, &cruise);
+  V s = root(f, pick(rises, D, -D), pick(rises, highest - D, D - lowest), l, !odd && !still, &odd,
+             &cruise);
   where(still, s) = 0;
   const V minimum = pick(still, 0, f.duration(s, l) + cruise);
   odd = odd || !(minimum < 1e300);
@@ -269,7 +277,9 @@ std::uint32_t prepare(const AxisBatchInput& in, int first, int axes, AxisBatch& 
   M moving(false);
   for (int g = 0; g < kBatchAxes; g += kWidth) {
     const M there = numbers() + g < axes;
-    const auto all = [&](const double* p, double otherwise) { return read(p + first + g, there, otherwise); };
+    const auto all = [&](const double* p, double otherwise) {
+      return read(p + first + g, there, otherwise);
+    };
     AxisGroup& x = groups[static_cast<std::size_t>(g / kWidth)];
     const V begin = all(in.position, 0), end = all(in.end_position, 0);
     x.distance = end - begin;
@@ -277,14 +287,17 @@ std::uint32_t prepare(const AxisBatchInput& in, int first, int axes, AxisBatch& 
     x.v0 = all(in.velocity, 0), x.a0 = all(in.acceleration, 0);
     x.vf = all(in.end_velocity, 0), x.af = all(in.end_acceleration, 0);
     Limits& l = x.limits;
-    l.velocity = all(in.max_velocity, 1), l.A = all(in.max_acceleration, 1), l.J = all(in.max_jerk, 1);
+    l.velocity = all(in.max_velocity, 1), l.A = all(in.max_acceleration, 1),
+    l.J = all(in.max_jerk, 1);
     l.over_J = 1 / l.J;
     l.over_JA = l.over_J / l.A;
-    const V over_2J = 0.5 * l.over_J, max_v = l.velocity * (1 + kBorder), max_a = l.A * (1 + kBorder);
+    const V over_2J = 0.5 * l.over_J, max_v = l.velocity * (1 + kBorder),
+            max_a = l.A * (1 + kBorder);
     const V ahead = x.v0 + x.a0 * abs(x.a0) * over_2J, behind = x.vf - x.af * abs(x.af) * over_2J;
     const V lowest = min(min(l.velocity, l.A), l.J), highest = max(max(l.velocity, l.A), l.J);
-    const M usual = x.scale < 1e30 && lowest > 1e-30 && highest < 1e30 && abs(x.v0) <= max_v && abs(x.vf) <= max_v && abs(x.a0) <= max_a &&
-                    abs(x.af) <= max_a && abs(ahead) <= max_v && abs(behind) <= max_v;
+    const M usual = x.scale < 1e30 && lowest > 1e-30 && highest < 1e30 && abs(x.v0) <= max_v &&
+                    abs(x.vf) <= max_v && abs(x.a0) <= max_a && abs(x.af) <= max_a &&
+                    abs(ahead) <= max_v && abs(behind) <= max_v;
     out |= bits(!usual) << g;
     moving = moving || !(x.v0 == 0 && x.a0 == 0 && x.vf == 0 && x.af == 0);
     store(x.distance, block.distance + g);
@@ -326,7 +339,8 @@ struct Knot {
 
 /// Odd-even merge of two sorted rows.
 template <std::size_t N>
-std::array<Knot, 2 * N> merged(const std::array<Knot, N>& a, const std::array<Knot, N>& b) noexcept {
+std::array<Knot, 2 * N> merged(const std::array<Knot, N>& a,
+                               const std::array<Knot, N>& b) noexcept {
   std::array<Knot, 2 * N> out;
   if constexpr (N == 1) {
     out = {a[0], b[0]};
@@ -358,13 +372,15 @@ std::array<Knot, 2 * N> merged(const std::array<Knot, N>& a, const std::array<Kn
 }
 
 /// Inner knots of a motion of the family: where its jerk changes, and by how much.
-std::array<Knot, 6> knots(const Family& f, const V& s, const V& cruise, const V& T, const V& jerk, const Limits& l) noexcept {
+std::array<Knot, 6> knots(const Family& f, const V& s, const V& cruise, const V& T, const V& jerk,
+                          const Limits& l) noexcept {
   const V R = s * s + f.C, A2 = l.A * l.A;
   const V a1 = min(sqrt(R), l.A), a2 = min(s, l.A);
-  const V t1 = positive(a1 - f.a0) * l.over_J, h1 = positive(R - A2) * l.over_JA, h2 = positive(s * abs(s) - A2) * l.over_JA,
-          t5 = positive(a2 + f.af) * l.over_J;
+  const V t1 = positive(a1 - f.a0) * l.over_J, h1 = positive(R - A2) * l.over_JA,
+          h2 = positive(s * abs(s) - A2) * l.over_JA, t5 = positive(a2 + f.af) * l.over_J;
   const M cruises = cruise > 0;
-  const V fall1 = pick(cruises, a1, positive(a1 + a2)) * l.over_J, fall2 = pick(cruises, a2, 0) * l.over_J;
+  const V fall1 = pick(cruises, a1, positive(a1 + a2)) * l.over_J,
+          fall2 = pick(cruises, a2, 0) * l.over_J;
   const auto turned = [&f](const V& ahead, const V& back) { return pick(f.reversed, back, ahead); };
   std::array<Knot, 6> out;
   out[0].time = turned(t1, t5);
@@ -381,7 +397,8 @@ std::array<Knot, 6> knots(const Family& f, const V& s, const V& cruise, const V&
 }
 
 M finish_rest(AxisBatch& block, const V& T, int g) noexcept {
-  const V lowest = load(block.minimum + g), D = load(block.distance + g), J = load(block.max_jerk + g);
+  const V lowest = load(block.minimum + g), D = load(block.distance + g),
+          J = load(block.max_jerk + g);
   const M still = D == 0;
   const V stretch = pick(still, 1, T / lowest);
   const V tj = load(block.phase[0] + g) * stretch, ta = load(block.phase[1] + g) * stretch,
@@ -396,11 +413,16 @@ M finish_rest(AxisBatch& block, const V& T, int g) noexcept {
 }
 
 M finish_any(AxisBatch& block, const V& T, int g, M* blocked) noexcept {
-  Limits l{load(block.max_velocity + g), load(block.max_acceleration + g), load(block.max_jerk + g), {}, {}};
+  Limits l{load(block.max_velocity + g),
+           load(block.max_acceleration + g),
+           load(block.max_jerk + g),
+           {},
+           {}};
   l.over_J = 1 / l.J;
   l.over_JA = l.over_J / l.A;
   const Family up = get(block.up, g), down = get(block.down, g);
-  const V D = load(block.distance + g), scale = load(block.scale + g), minimum = load(block.minimum + g);
+  const V D = load(block.distance + g), scale = load(block.scale + g),
+          minimum = load(block.minimum + g);
   V cruise_up, cruise_down;
   V s_up = up.parameter(T, l, &cruise_up), s_down = down.parameter(T, l, &cruise_down);
   const V best_s = load(block.s + g), best_cruise = load(block.cruise + g);
@@ -409,14 +431,17 @@ M finish_any(AxisBatch& block, const V& T, int g, M* blocked) noexcept {
   where(fastest && rises, cruise_up) = best_cruise;
   where(fastest && !rises, s_down) = best_s;
   where(fastest && !rises, cruise_down) = best_cruise;
-  const V highest = up.displacement(s_up, l) + cruise_up * l.velocity, lowest = -(down.displacement(s_down, l) + cruise_down * l.velocity);
-  const V size = scale + abs(lowest) + abs(highest), tolerance = 256 * kEps * size, width = highest - lowest;
+  const V highest = up.displacement(s_up, l) + cruise_up * l.velocity,
+          lowest = -(down.displacement(s_down, l) + cruise_down * l.velocity);
+  const V size = scale + abs(lowest) + abs(highest), tolerance = 256 * kEps * size,
+          width = highest - lowest;
   *blocked = !fastest && (D > highest + tolerance || D < lowest - tolerance);
   V weight = pick(width > 0, clamped((D - lowest) / width, 0, 1), 0.5);
   where(fastest && minimum > 0, weight) = pick(rises, 1, 0);
   std::array<Knot, 6> high = knots(up, s_up, cruise_up, T, weight * l.J, l),
                       low = knots(down, s_down, cruise_down, T, (weight - 1) * l.J, l);
-  const M still = D == 0 && minimum == 0, only_low = still || weight == 0, only_high = still || weight == 1;
+  const M still = D == 0 && minimum == 0, only_low = still || weight == 0,
+          only_high = still || weight == 1;
   for (std::size_t k = 0; k < 6; ++k) {
     where(only_low, high[k].time) = T;
     where(only_high, low[k].time) = T;
@@ -435,10 +460,12 @@ M finish_any(AxisBatch& block, const V& T, int g, M* blocked) noexcept {
     if (k < 12) jerk += all[k].step;
   }
   const V vf = load(block.end_velocity + g), af = load(block.end_acceleration + g);
-  return !(abs(x - D) <= kAccepted * size && abs(v - vf) <= kAcceptedRate * l.velocity && abs(a - af) <= kAcceptedRate * l.A);
+  return !(abs(x - D) <= kAccepted * size && abs(v - vf) <= kAcceptedRate * l.velocity &&
+           abs(a - af) <= kAcceptedRate * l.A);
 }
 
-std::uint32_t finish(AxisBatch& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept {
+std::uint32_t finish(AxisBatch& block, const double* durations, std::uint32_t leave,
+                     std::uint32_t* blocked) noexcept {
   std::uint32_t failed = 0, stands = 0;
   block.segments = block.rest ? 7 : kBatchSegments;
   for (int g = 0; g < kBatchAxes && block.axis_bits >> g != 0; g += kWidth) {

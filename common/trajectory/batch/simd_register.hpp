@@ -26,13 +26,20 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
   where(m, out) = a;
   return out;
 }
-[[gnu::always_inline]] inline V load(const double* p) noexcept { return V(p, stdx::vector_aligned); }
-[[gnu::always_inline]] inline void store(const V& v, double* p) noexcept { v.copy_to(p, stdx::vector_aligned); }
-[[gnu::always_inline]] inline V clamped(const V& x, const V& lo, const V& hi) noexcept { return min(max(x, lo), hi); }
+[[gnu::always_inline]] inline V load(const double* p) noexcept {
+  return V(p, stdx::vector_aligned);
+}
+[[gnu::always_inline]] inline void store(const V& v, double* p) noexcept {
+  v.copy_to(p, stdx::vector_aligned);
+}
+[[gnu::always_inline]] inline V clamped(const V& x, const V& lo, const V& hi) noexcept {
+  return min(max(x, lo), hi);
+}
 [[gnu::always_inline]] inline V positive(const V& x) noexcept { return max(x, V(0.0)); }
 [[gnu::always_inline]] inline std::uint32_t bits(const M& m) noexcept {
   std::uint32_t out = 0;
-  for (int i = 0; i < kWidth; ++i) out |= static_cast<std::uint32_t>(m[static_cast<std::size_t>(i)]) << i;
+  for (int i = 0; i < kWidth; ++i)
+    out |= static_cast<std::uint32_t>(m[static_cast<std::size_t>(i)]) << i;
   return out;
 }
 [[gnu::always_inline]] inline V numbers() noexcept {

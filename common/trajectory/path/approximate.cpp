@@ -16,24 +16,28 @@ namespace handsel {
 namespace {
 
 std::string why_bad(const std::vector<double>& times, const std::vector<MotionState3>& samples) {
-  if (samples.size() < 2 || times.size() != samples.size()) return "there must be two samples or more, and as many times";
+  if (samples.size() < 2 || times.size() != samples.size())
+    return "there must be two samples or more, and as many times";
   const Eigen::Index n = samples[0].position.size();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const MotionState3& s = samples[k];
     if (s.position.size() != n || s.velocity.size() != n || s.acceleration.size() != n) {
       return "sample " + std::to_string(k) + " does not have " + std::to_string(n) + " axes";
     }
-    if (!s.position.allFinite() || !s.velocity.allFinite() || !s.acceleration.allFinite() || !std::isfinite(times[k])) {
+    if (!s.position.allFinite() || !s.velocity.allFinite() || !s.acceleration.allFinite() ||
+        !std::isfinite(times[k])) {
       return "sample " + std::to_string(k) + " has a number that is not finite";
     }
-    if (k > 0 && !(times[k] > times[k - 1])) return "the times must grow, sample " + std::to_string(k) + " does not";
+    if (k > 0 && !(times[k] > times[k - 1]))
+      return "the times must grow, sample " + std::to_string(k) + " does not";
   }
   return {};
 }
 
 class Fit {
  public:
-  Fit(const std::vector<double>& times, const std::vector<MotionState3>& samples, const ApproximationTolerance& tolerance)
+  Fit(const std::vector<double>& times, const std::vector<MotionState3>& samples,
+      const ApproximationTolerance& tolerance)
       : times_(times), samples_(samples), tolerance_(tolerance) {}
 
   /// Sample indices at which pieces meet.
@@ -118,19 +122,22 @@ class Fit {
 };
 
 /// Least of the values within `reach` [s] on either side.
-std::vector<double> least_around(const std::vector<double>& times, const std::vector<double>& values, double reach) {
+std::vector<double> least_around(const std::vector<double>& times,
+                                 const std::vector<double>& values, double reach) {
   std::vector<double> out(values.size());
   std::size_t first = 0, last = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
     while (times[k] - times[first] > reach) ++first;
     while (last + 1 < values.size() && times[last + 1] - times[k] <= reach) ++last;
-    out[k] = *std::min_element(values.begin() + static_cast<std::ptrdiff_t>(first), values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    out[k] = *std::min_element(values.begin() + static_cast<std::ptrdiff_t>(first),
+                               values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   }
   return out;
 }
 
 /// Mean of the values within `reach` [s] on either side, weight falling to zero there.
-std::vector<double> mean_around(const std::vector<double>& times, const std::vector<double>& values, double reach) {
+std::vector<double> mean_around(const std::vector<double>& times, const std::vector<double>& values,
+                                double reach) {
   std::vector<double> out(values.size());
   std::size_t first = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -147,14 +154,18 @@ std::vector<double> mean_around(const std::vector<double>& times, const std::vec
 }
 
 /// Samples run through with time increment alpha.
-void run_through(const std::vector<double>& times, const std::vector<MotionState3>& samples, SlowedDown& out) {
+void run_through(const std::vector<double>& times, const std::vector<MotionState3>& samples,
+                 SlowedDown& out) {
   const std::size_t n = samples.size();
   out.times.assign(n, times[0]);
   out.samples = samples;
   for (std::size_t k = 0; k < n; ++k) {
-    if (k > 0) out.times[k] = out.times[k - 1] + (times[k] - times[k - 1]) * 2 / (out.alpha[k] + out.alpha[k - 1]);
+    if (k > 0)
+      out.times[k] =
+          out.times[k - 1] + (times[k] - times[k - 1]) * 2 / (out.alpha[k] + out.alpha[k - 1]);
     const std::size_t before = k > 0 ? k - 1 : k, after = k + 1 < n ? k + 1 : k;
-    const double slope = (out.alpha[after] - out.alpha[before]) / (times[after] - times[before]), a = out.alpha[k];
+    const double slope = (out.alpha[after] - out.alpha[before]) / (times[after] - times[before]),
+                 a = out.alpha[k];
     out.samples[k].velocity = a * samples[k].velocity;
     out.samples[k].acceleration = a * a * samples[k].acceleration + a * slope * samples[k].velocity;
   }
@@ -162,15 +173,18 @@ void run_through(const std::vector<double>& times, const std::vector<MotionState
 
 }  // namespace
 
-Approximation approximate(const std::vector<double>& times, const std::vector<MotionState3>& samples,
+Approximation approximate(const std::vector<double>& times,
+                          const std::vector<MotionState3>& samples,
                           const ApproximationTolerance& tolerance) {
   Approximation out;
-  if (!(tolerance.position > 0 && tolerance.velocity > 0)) out.reason = "the tolerances must be positive";
+  if (!(tolerance.position > 0 && tolerance.velocity > 0))
+    out.reason = "the tolerances must be positive";
   if (out.ok()) out.reason = why_bad(times, samples);
   if (!out.ok()) return out;
   const Eigen::Index n = samples[0].position.size();
   for (Eigen::Index i = 0; i < n; ++i) {
-    out.trajectory.axes.push_back({{samples[0].position[i], samples[0].velocity[i], samples[0].acceleration[i]}, {}});
+    out.trajectory.axes.push_back(
+        {{samples[0].position[i], samples[0].velocity[i], samples[0].acceleration[i]}, {}});
   }
   const Fit fit(times, samples, tolerance);
   const std::vector<std::size_t> ends = fit.pieces();
@@ -180,7 +194,8 @@ Approximation approximate(const std::vector<double>& times, const std::vector<Mo
   return out;
 }
 
-Derived differentiate(const std::vector<double>& times, const std::vector<Eigen::VectorXd>& positions, int reach) {
+Derived differentiate(const std::vector<double>& times,
+                      const std::vector<Eigen::VectorXd>& positions, int reach) {
   Derived out;
   const int count = static_cast<int>(positions.size());
   if (count < 4 || times.size() != positions.size()) {
@@ -201,7 +216,8 @@ Derived differentiate(const std::vector<double>& times, const std::vector<Eigen:
   reach = std::max(2, reach);
   const Eigen::Index axes = positions[0].size();
   for (int k = 0; k < count; ++k) {
-    const int first = std::clamp(k - reach, 0, std::max(0, count - 2 * reach - 1)), last = std::min(count - 1, first + 2 * reach);
+    const int first = std::clamp(k - reach, 0, std::max(0, count - 2 * reach - 1)),
+              last = std::min(count - 1, first + 2 * reach);
     const double scale = times[last] - times[first];
     Eigen::MatrixX4d powers(last - first + 1, 4);
     Eigen::MatrixXd values(last - first + 1, axes);
@@ -221,14 +237,16 @@ Derived differentiate(const std::vector<double>& times, const std::vector<Eigen:
 
 namespace {
 /// `bound`: of alpha at each sample; lowered where needed.
-SlowedDown slow_down_from(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits,
+SlowedDown slow_down_from(const std::vector<double>& times,
+                          const std::vector<MotionState3>& samples, const KinematicLimits& limits,
                           std::vector<double>& bound) {
   SlowedDown out;
   const std::size_t n = samples.size();
   const double reach = std::min(0.2, (times.back() - times.front()) / 4);
   for (int round = 0; round < 200; ++round) {
     const bool slowed = std::any_of(bound.begin(), bound.end(), [](double b) { return b < 1; });
-    out.alpha = slowed ? mean_around(times, least_around(times, bound, reach), reach) : std::vector<double>(n, 1.0);
+    out.alpha = slowed ? mean_around(times, least_around(times, bound, reach), reach)
+                       : std::vector<double>(n, 1.0);
     run_through(times, samples, out);
     bool kept = true;
     for (std::size_t k = 0; k < n; ++k) {
@@ -238,8 +256,10 @@ SlowedDown slow_down_from(const std::vector<double>& times, const std::vector<Mo
         const double a = std::abs(out.samples[k].acceleration[i]) / limits.acceleration[i];
         if (a > 1) share = std::max(share, std::sqrt(a));
         if (k + 1 == n) continue;
-        const double jerk = (out.samples[k + 1].acceleration[i] - out.samples[k].acceleration[i]) / (out.times[k + 1] - out.times[k]);
-        if (std::abs(jerk) > limits.jerk[i]) share = std::max(share, std::cbrt(std::abs(jerk) / limits.jerk[i]));
+        const double jerk = (out.samples[k + 1].acceleration[i] - out.samples[k].acceleration[i]) /
+                            (out.times[k + 1] - out.times[k]);
+        if (std::abs(jerk) > limits.jerk[i])
+          share = std::max(share, std::cbrt(std::abs(jerk) / limits.jerk[i]));
       }
       if (share <= 1) continue;
       kept = false;
@@ -256,14 +276,17 @@ SlowedDown slow_down_from(const std::vector<double>& times, const std::vector<Mo
 
 namespace {
 
-std::string why_not_slowed(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits) {
+std::string why_not_slowed(const std::vector<double>& times,
+                           const std::vector<MotionState3>& samples,
+                           const KinematicLimits& limits) {
   const std::string bad = why_bad(times, samples);
   return bad.empty() ? why_bad_limits(limits, static_cast<int>(samples[0].position.size())) : bad;
 }
 
 }  // namespace
 
-SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits) {
+SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples,
+                     const KinematicLimits& limits) {
   SlowedDown out;
   out.reason = why_not_slowed(times, samples, limits);
   if (!out.ok()) return out;
@@ -271,8 +294,10 @@ SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionS
   return slow_down_from(times, samples, limits, bound);
 }
 
-Executable approximate_within(const std::vector<double>& times, const std::vector<MotionState3>& samples,
-                              const ApproximationTolerance& tolerance, const KinematicLimits& limits) {
+Executable approximate_within(const std::vector<double>& times,
+                              const std::vector<MotionState3>& samples,
+                              const ApproximationTolerance& tolerance,
+                              const KinematicLimits& limits) {
   Executable out;
   out.approximation.reason = why_not_slowed(times, samples, limits);
   if (!out.approximation.ok()) return out;
@@ -291,14 +316,19 @@ Executable approximate_within(const std::vector<double>& times, const std::vecto
       for (std::size_t k = 0; k < axis.segments.size(); ++k) {
         const Segment& g = axis.segments[k];
         const AxisExtremes e = rate_extremes(s, &g, 1);
-        const double beyond = std::max(
-            {e.velocity / limits.velocity[i], std::sqrt(e.acceleration / limits.acceleration[i]), std::cbrt(e.jerk / limits.jerk[i])});
+        const double beyond = std::max({e.velocity / limits.velocity[i],
+                                        std::sqrt(e.acceleration / limits.acceleration[i]),
+                                        std::cbrt(e.jerk / limits.jerk[i])});
         s = advanced(s, g.duration, g.jerk);
         t += g.duration;
         out.stretch = std::max(out.stretch, beyond);
         if (!(beyond > 1)) continue;
-        const auto begin = std::lower_bound(slowed.times.begin(), slowed.times.end(), t - 3 * g.duration) - slowed.times.begin();
-        for (auto m = begin; m < static_cast<std::ptrdiff_t>(bound.size()) && slowed.times[m] <= t + 3 * g.duration; ++m) {
+        const auto begin =
+            std::lower_bound(slowed.times.begin(), slowed.times.end(), t - 3 * g.duration) -
+            slowed.times.begin();
+        for (auto m = begin;
+             m < static_cast<std::ptrdiff_t>(bound.size()) && slowed.times[m] <= t + 3 * g.duration;
+             ++m) {
           bound[m] = std::min(bound[m], 0.98 * slowed.alpha[m] / beyond);
         }
       }

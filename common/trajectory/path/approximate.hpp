@@ -28,7 +28,8 @@ struct Approximation {
 
 /// One piece from end to end; where a sample is off by more than the tolerance, the piece is split
 /// in two, and so on; then neighbours are joined again where one piece does for both. `times` grow.
-Approximation approximate(const std::vector<double>& times, const std::vector<MotionState3>& samples, const ApproximationTolerance&);
+Approximation approximate(const std::vector<double>& times,
+                          const std::vector<MotionState3>& samples, const ApproximationTolerance&);
 
 struct Derived {
   std::vector<MotionState3> samples;  ///< one a time; without meaning when there is a reason
@@ -40,7 +41,8 @@ struct Derived {
 /// Velocity and acceleration of sampled positions: the least-squares cubic through each sample and
 /// `reach` neighbours on either side. Positions are those of the cubic too. At least 4 samples.
 /// Reach 2 for exact samples; more takes out the noise of measured ones.
-Derived differentiate(const std::vector<double>& times, const std::vector<Eigen::VectorXd>& positions, int reach = 2);
+Derived differentiate(const std::vector<double>& times,
+                      const std::vector<Eigen::VectorXd>& positions, int reach = 2);
 
 struct SlowedDown {
   /// Later instants of the same positions [s], from the first time on.
@@ -56,7 +58,8 @@ struct SlowedDown {
 /// one does not, so that velocity, acceleration and the change of acceleration from sample to
 /// sample are within the limits. Own method: alpha is lowered around each sample beyond a limit and
 /// smoothed, until every sample keeps the limits.
-SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits);
+SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples,
+                     const KinematicLimits& limits);
 
 struct Executable {
   Approximation approximation;  ///< its trajectory keeps the limits, exactly
@@ -68,7 +71,8 @@ struct Executable {
 };
 
 /// Both: slowed down where needed, approximated, and inside the limits at every instant.
-Executable approximate_within(const std::vector<double>& times, const std::vector<MotionState3>& samples, const ApproximationTolerance&,
-                              const KinematicLimits& limits);
+Executable approximate_within(const std::vector<double>& times,
+                              const std::vector<MotionState3>& samples,
+                              const ApproximationTolerance&, const KinematicLimits& limits);
 
 }  // namespace handsel

@@ -9,6 +9,7 @@ namespace handsel {
 
 /// Returns the rest of `path` (nodes) from `q`: `q` and the nodes after the point nearest to it;
 /// empty when `q` is farther than `reach` from it (max norm), or at its end.
-std::vector<Eigen::VectorXd> remainder(const std::vector<Eigen::VectorXd>& path, const Eigen::VectorXd& q, double reach);
+std::vector<Eigen::VectorXd> remainder(const std::vector<Eigen::VectorXd>& path,
+                                       const Eigen::VectorXd& q, double reach);
 
 }  // namespace handsel

@@ -7,7 +7,8 @@
 namespace handsel::detail {
 namespace {
 
-constexpr double kKept = 1 - 1e-9;  // of a distance, so that rounding leaves the change of velocity possible
+constexpr double kKept =
+    1 - 1e-9;  // of a distance, so that rounding leaves the change of velocity possible
 
 /// Distance in which one velocity becomes another, the acceleration 0 at both ends.
 double change_distance(double from, double to, const AxisLimits& limits) noexcept {
@@ -19,7 +20,8 @@ double change_distance(double from, double to, const AxisLimits& limits) noexcep
 }
 
 /// The largest velocity up to `most` that `from` can become within a distance.
-double reached_within(double from, double most, double distance, const AxisLimits& limits) noexcept {
+double reached_within(double from, double most, double distance,
+                      const AxisLimits& limits) noexcept {
   if (most <= from || change_distance(from, most, limits) <= distance) return most;
   double low = from, high = most;
   for (int k = 0; k < 50; ++k) {
@@ -31,9 +33,11 @@ double reached_within(double from, double most, double distance, const AxisLimit
 
 }  // namespace
 
-PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds)
+PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                         const KinematicLimits& limits, const SpeedZones& speeds)
     : from(a), step(b - a) {
-  AxisLimits l{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  AxisLimits l{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
+               std::numeric_limits<double>::max()};
   for (Eigen::Index i = 0; i < step.size(); ++i) {
     const double d = std::abs(step[i]);
     if (d == 0) continue;
@@ -58,15 +62,16 @@ PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, con
   slowing = starting = duration / 2;
   bool first = true;
   for (const Knot& knot : knots) {
-    if (knot.segment.jerk != 0 || !(std::abs(knot.state.acceleration) < 1e-9 * l.acceleration)) continue;
+    if (knot.segment.jerk != 0 || !(std::abs(knot.state.acceleration) < 1e-9 * l.acceleration))
+      continue;
     if (first) starting = knot.time;
     first = false;
     slowing = duration - knot.time - knot.segment.duration;
   }
 }
 
-/// In each zone the fastest motion between the velocities at its ends; there the acceleration is 0, and the velocity is as high as both
-/// sides allow and can be left again.
+/// In each zone the fastest motion between the velocities at its ends; there the acceleration is 0,
+/// and the velocity is as high as both sides allow and can be left again.
 bool PathSegment::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
   std::vector<SpeedZone> left;
   double begin = 0;
@@ -86,13 +91,17 @@ bool PathSegment::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
     length[k] = left[k].end - (k > 0 ? left[k - 1].end : 0.0);
     if (k > 0) velocity[k] = limits.velocity * std::min(left[k - 1].scale, left[k].scale);
   }
-  for (std::size_t k = 1; k < n; ++k) velocity[k] = reached_within(velocity[k - 1], velocity[k], kKept * length[k - 1], limits);
-  for (std::size_t k = n - 1; k > 0; --k) velocity[k] = reached_within(velocity[k + 1], velocity[k], kKept * length[k], limits);
+  for (std::size_t k = 1; k < n; ++k)
+    velocity[k] = reached_within(velocity[k - 1], velocity[k], kKept * length[k - 1], limits);
+  for (std::size_t k = n - 1; k > 0; --k)
+    velocity[k] = reached_within(velocity[k + 1], velocity[k], kKept * length[k], limits);
   AxisProfile profile;
   for (std::size_t k = 0; k < n; ++k) {
     AxisLimits here = limits;
     here.velocity *= left[k].scale;
-    if (solve_axis({0, velocity[k], 0}, {length[k], velocity[k + 1], 0}, here, profile) != AxisOutcome::ok) return false;
+    if (solve_axis({0, velocity[k], 0}, {length[k], velocity[k + 1], 0}, here, profile) !=
+        AxisOutcome::ok)
+      return false;
     zones.push_back({duration, left[k].scale});
     add(profile);
   }
@@ -115,7 +124,8 @@ void PathSegment::add(const AxisProfile& profile) {
 AxisState PathSegment::path_state(double t) const noexcept {
   std::size_t k = 0;
   while (k + 1 < knots.size() && t >= knots[k + 1].time) ++k;
-  return advanced(knots[k].state, std::clamp(t - knots[k].time, 0.0, knots[k].segment.duration), knots[k].segment.jerk);
+  return advanced(knots[k].state, std::clamp(t - knots[k].time, 0.0, knots[k].segment.duration),
+                  knots[k].segment.jerk);
 }
 
 void PathSegment::part(double begin, double end, AxisProfile& out) const noexcept {

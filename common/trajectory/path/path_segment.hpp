@@ -23,10 +23,12 @@ struct PathSegment {
   double slowing{};            ///< of the phase before the end without constant velocity [s]
   double starting{};           ///< of the one after the start [s]
 
-  PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds = {});
+  PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits,
+              const SpeedZones& speeds = {});
   AxisState path_state(double t) const noexcept;
   AxisState state(const AxisState& s, Eigen::Index axis) const noexcept {
-    return {from[axis] + step[axis] * s.position, step[axis] * s.velocity, step[axis] * s.acceleration};
+    return {from[axis] + step[axis] * s.position, step[axis] * s.velocity,
+            step[axis] * s.acceleration};
   }
   /// Adds the segments between two times, jerks of s. What there is no room for is left out; then
   /// `out` is full.

@@ -21,7 +21,8 @@ class SegmentTable {
   /// Removes all segments and sets the number of axes; keeps the memory.
   void clear(int axes) noexcept;
   /// One more segment, from its states at its start (arrays of axes()).
-  void add(double duration, const double* x, const double* v, const double* a, const double* j) noexcept;
+  void add(double duration, const double* x, const double* v, const double* a,
+           const double* j) noexcept;
 
   /// Returns the number of axes.
   int axes() const noexcept { return axes_; }
@@ -42,12 +43,16 @@ class SegmentTable {
     kernels_->rates(row(k), stride_, t - knots_[static_cast<std::size_t>(k)], out);
   }
   /// Returns the jerks of segment k, one an axis [rad/s^3]. Not checked.
-  const double* jerks(int k) const noexcept { return row(k) + 3 * static_cast<std::size_t>(stride_); }
+  const double* jerks(int k) const noexcept {
+    return row(k) + 3 * static_cast<std::size_t>(stride_);
+  }
   /// Returns axes() rounded up to a multiple of detail::kBatchAxes.
   int stride() const noexcept { return stride_; }
 
  private:
-  const double* row(int k) const noexcept { return data_.data()->value + static_cast<std::size_t>(k) * 4 * stride_; }
+  const double* row(int k) const noexcept {
+    return data_.data()->value + static_cast<std::size_t>(k) * 4 * stride_;
+  }
   int axes_{}, stride_{};               // axes, and the next multiple of kBatchAxes
   std::vector<double> knots_;           // segments + 1
   std::vector<detail::BatchRow> data_;  // a segment: x of all axes, v, a, j

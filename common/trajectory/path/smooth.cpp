@@ -34,15 +34,19 @@ std::string percent(double x) {
 }
 
 /// Every transition worth trying at a corner, best first; `why` says what stood against the others.
-std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, const PathSegment& b, const SmoothSettings& settings,
-                                  bool only_best, std::string& why) {
+std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, const PathSegment& b,
+                                  const SmoothSettings& settings, bool only_best,
+                                  std::string& why) {
   std::vector<Candidate> found;
   double best = kLeastSaving, first_excess = 0;
   const auto keep = [&](const Candidate& c) {
     found.push_back(c);
     best = std::max(best, c.saved());
   };
-  const double most = !settings.overlapping ? 0.0 : std::min({a.duration / 2, b.duration / 2, settings.tau.value_or(a.duration)});
+  const double most =
+      !settings.overlapping
+          ? 0.0
+          : std::min({a.duration / 2, b.duration / 2, settings.tau.value_or(a.duration)});
   double good = 0, bad = most;
   for (int k = 10; k >= 1 && good == 0; --k) {
     const double shared = most * k / 10;
@@ -61,7 +65,9 @@ std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, c
     const double before = reach * reach_a, after = reach * reach_b, stop = before + after;
     if (stop <= best) break;
     corner.place(before, after);
-    const auto fits = [&](double T) { return corner.three_excess(T, settings.allowed_excess) <= settings.allowed_excess; };
+    const auto fits = [&](double T) {
+      return corner.three_excess(T, settings.allowed_excess) <= settings.allowed_excess;
+    };
     if (best > kLeastSaving && !fits(stop - best)) continue;
     const double least = corner.min_duration();
     if (least <= 0 || stop - least <= best) continue;
@@ -83,13 +89,16 @@ std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, c
       (fits(T) ? fitting : short_of) = T;
     }
     if (stop - fitting <= kLeastSaving) continue;
-    keep({BlendMethod::stretched, before, after, fitting, std::max(0.0, corner.three_excess(fitting, kFarthest))});
+    keep({BlendMethod::stretched, before, after, fitting,
+          std::max(0.0, corner.three_excess(fitting, kFarthest))});
   }
-  std::stable_sort(found.begin(), found.end(), [](const Candidate& x, const Candidate& y) { return x.saved() > y.saved(); });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.saved() > y.saved(); });
   if (found.empty()) {
     why = std::min(reach_a, reach_b) <= kLeastSaving
               ? "tau leaves no room"
-              : "no transition keeps the limits; three segments exceed them by " + percent(first_excess);
+              : "no transition keeps the limits; three segments exceed them by " +
+                    percent(first_excess);
   }
   return found;
 }
@@ -106,31 +115,39 @@ void settle(WaypointBlend& corner, const Candidate& c) {
 
 void add_path_segment(const PathSegment& path_segment, double begin, double end, Trajectory& out) {
   for (std::size_t k = 0; k < path_segment.knots.size(); ++k) {
-    const double ends = k + 1 < path_segment.knots.size() ? path_segment.knots[k + 1].time : path_segment.duration;
+    const double ends =
+        k + 1 < path_segment.knots.size() ? path_segment.knots[k + 1].time : path_segment.duration;
     const double lasts = std::min(end, ends) - std::max(begin, path_segment.knots[k].time);
     if (!(lasts > 0)) continue;
     for (std::size_t i = 0; i < out.axes.size(); ++i)
-      out.axes[i].segments.push_back({lasts, path_segment.step[static_cast<Eigen::Index>(i)] * path_segment.knots[k].segment.jerk});
+      out.axes[i].segments.push_back({lasts, path_segment.step[static_cast<Eigen::Index>(i)] *
+                                                 path_segment.knots[k].segment.jerk});
   }
 }
 
 std::string why_bad_speeds(const std::vector<SpeedZones>& speeds, std::size_t nodes) {
   if (!speeds.empty() && speeds.size() + 1 != nodes)
-    return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " + std::to_string(nodes - 1);
+    return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " +
+           std::to_string(nodes - 1);
   for (const SpeedZones& path_segment : speeds)
     for (const SpeedZone& zone : path_segment)
-      if (!(zone.scale > 0 && zone.scale <= 1 && std::isfinite(zone.end))) return "a scale of the velocity limits must be in (0, 1]";
+      if (!(zone.scale > 0 && zone.scale <= 1 && std::isfinite(zone.end)))
+        return "a scale of the velocity limits must be in (0, 1]";
   return {};
 }
 
-std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes, const SmoothSettings& settings) {
+std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes,
+                          const SmoothSettings& settings) {
   if (nodes.empty()) return "there are no nodes";
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (nodes[k].size() != nodes[0].size()) {
-      return "node " + std::to_string(k) + " has " + std::to_string(nodes[k].size()) + " axes, node 0 " + std::to_string(nodes[0].size());
+      return "node " + std::to_string(k) + " has " + std::to_string(nodes[k].size()) +
+             " axes, node 0 " + std::to_string(nodes[0].size());
     }
-    if (!nodes[k].allFinite()) return "node " + std::to_string(k) + " has a number that is not finite";
-    if (nodes[k].lpNorm<Eigen::Infinity>() > kFarthest) return "node " + std::to_string(k) + " has a number that is too large";
+    if (!nodes[k].allFinite())
+      return "node " + std::to_string(k) + " has a number that is not finite";
+    if (nodes[k].lpNorm<Eigen::Infinity>() > kFarthest)
+      return "node " + std::to_string(k) + " has a number that is too large";
   }
   if (settings.tau && !(*settings.tau >= 0)) return "tau must be a number that is not negative";
   if (nodes[0].size() == 0) return "the nodes have no axes";
@@ -153,8 +170,8 @@ const char* name(BlendMethod method) {
   return "";
 }
 
-Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, const KinematicLimits& limits,
-                           const SpeedZones& speeds) {
+Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                           const KinematicLimits& limits, const SpeedZones& speeds) {
   Trajectory out;
   for (const double x : from) out.axes.push_back({{x, 0, 0}, {}});
   if (from != to) {
@@ -164,8 +181,9 @@ Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& t
   return out;
 }
 
-SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits, const SmoothSettings& settings,
-                    const BlendIsFree& is_free, const std::vector<SpeedZones>& speeds) {
+SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits,
+                    const SmoothSettings& settings, const BlendIsFree& is_free,
+                    const std::vector<SpeedZones>& speeds) {
   SmoothResult out;
   if (!(out.reason = why_bad_nodes(nodes, settings)).empty()) return out;
   if (!(out.reason = why_bad_speeds(speeds, nodes.size())).empty()) return out;
@@ -177,12 +195,14 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
   const Eigen::VectorXd* last = &nodes[0];
   for (std::size_t k = 1; k < nodes.size(); ++k) {
     if ((nodes[k] - *last).lpNorm<Eigen::Infinity>() < 1e-12) continue;
-    path_segments.emplace_back(*last, nodes[k], limits, speeds.empty() ? SpeedZones{} : speeds[k - 1]);
+    path_segments.emplace_back(*last, nodes[k], limits,
+                               speeds.empty() ? SpeedZones{} : speeds[k - 1]);
     node_of.push_back(static_cast<int>(k));
     last = &nodes[k];
     out.duration_ptp += out.segment_durations[k - 1] = path_segments.back().duration;
     if (!(path_segments.back().duration > 0) || !std::isfinite(path_segments.back().duration)) {
-      out.reason = "the motion to node " + std::to_string(k) + " cannot be computed with such limits";
+      out.reason =
+          "the motion to node " + std::to_string(k) + " cannot be computed with such limits";
       return out;
     }
   }
@@ -201,7 +221,8 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
     report.node = node_of[k];
     WaypointBlend corner(path_segments, k, batch, limits);
     Candidate taken;
-    for (const Candidate& c : candidates(corner, path_segments[k], path_segments[k + 1], settings, !is_free, report.reason)) {
+    for (const Candidate& c : candidates(corner, path_segments[k], path_segments[k + 1], settings,
+                                         !is_free, report.reason)) {
       settle(corner, c);
       if (is_free && !is_free(corner.piece())) {
         report.reason = std::string(name(c.method)) + " collides";
@@ -215,7 +236,8 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
       break;
     }
     out.corners.push_back(std::move(report));
-    add_path_segment(path_segments[k], begin, path_segments[k].duration - taken.before, out.trajectory);
+    add_path_segment(path_segments[k], begin, path_segments[k].duration - taken.before,
+                     out.trajectory);
     if (taken.method != BlendMethod::stop) corner.add_to(out.trajectory);
     begin = taken.after;
   }

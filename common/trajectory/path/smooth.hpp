@@ -23,8 +23,8 @@ using SpeedZones = std::vector<SpeedZone>;  ///< of a path segment; none: the li
 /// time-optimal with one zone; with several the acceleration is 0 where one meets the next, and it
 /// is never slower than at the lowest scale all along. Own method: the zones make it slow only
 /// where it has to be.
-Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, const KinematicLimits& limits,
-                           const SpeedZones& speeds = {});
+Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                           const KinematicLimits& limits, const SpeedZones& speeds = {});
 
 enum class BlendMethod {
   /// Minimum-time transition, three segments an axis, at most the allowed excess (the chapter's
@@ -75,7 +75,8 @@ using BlendIsFree = std::function<bool(const Trajectory& corner)>;
 /// in `nodes` are taken as one. `speeds`: zones of the path segment to each node but the first, or
 /// empty; a transition keeps the lowest scale of all the zones it reaches into (own method: no zone
 /// is exceeded).
-SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits, const SmoothSettings& settings = {},
-                    const BlendIsFree& is_free = {}, const std::vector<SpeedZones>& speeds = {});
+SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits,
+                    const SmoothSettings& settings = {}, const BlendIsFree& is_free = {},
+                    const std::vector<SpeedZones>& speeds = {});
 
 }  // namespace handsel

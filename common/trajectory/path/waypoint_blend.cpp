@@ -18,9 +18,11 @@ void carry(const Blend& blend, AxisState s, Blend::Motion& m) noexcept {
 }
 }  // namespace
 
-SegmentBatch::SegmentBatch(const std::vector<PathSegment>& path_segments, const KinematicLimits& limits)
+SegmentBatch::SegmentBatch(const std::vector<PathSegment>& path_segments,
+                           const KinematicLimits& limits)
     : path_segments_(path_segments.size()),
-      stride_((static_cast<std::size_t>(limits.velocity.size()) + kBatchAxes - 1) / kBatchAxes * kBatchAxes),
+      stride_((static_cast<std::size_t>(limits.velocity.size()) + kBatchAxes - 1) / kBatchAxes *
+              kBatchAxes),
       values_((path_segments.size() + 3) * stride_ / kBatchAxes) {
   double* at = values_.data()->value;
   for (const PathSegment& path_segment : path_segments) {
@@ -33,8 +35,8 @@ SegmentBatch::SegmentBatch(const std::vector<PathSegment>& path_segments, const 
   }
 }
 
-WaypointBlend::WaypointBlend(const std::vector<PathSegment>& path_segments, std::size_t first, const SegmentBatch& batch,
-                             const KinematicLimits& limits)
+WaypointBlend::WaypointBlend(const std::vector<PathSegment>& path_segments, std::size_t first,
+                             const SegmentBatch& batch, const KinematicLimits& limits)
     : a_(path_segments[first]),
       b_(path_segments[first + 1]),
       step_a_(batch.step(first)),
@@ -79,12 +81,15 @@ double WaypointBlend::min_duration() noexcept {
     }
     const double *A = limits_.acceleration.data() + first, *J = limits_.jerk.data() + first;
     for (int i = 0; i < here; ++i) V[i] = scale_ * limits_.velocity[first + i];
-    const std::uint32_t odd = batch_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
+    const std::uint32_t odd =
+        batch_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
     least = std::max(least, *std::max_element(block.minimum, block.minimum + here));
     for (std::uint32_t left = odd; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       AxisProblem problem;
-      if (problem.init({0, v[i], a[i]}, {xf[i], vf[i], af[i]}, {V[i], A[i], J[i]}) != AxisOutcome::ok) return -1;
+      if (problem.init({0, v[i], a[i]}, {xf[i], vf[i], af[i]}, {V[i], A[i], J[i]}) !=
+          AxisOutcome::ok)
+        return -1;
       least = std::max(least, problem.minimum());
     }
   }
@@ -92,7 +97,8 @@ double WaypointBlend::min_duration() noexcept {
 }
 
 double WaypointBlend::three_excess(double duration, double enough) noexcept {
-  const auto a = three_segment(left_, {1, 0, 0}, duration), b = three_segment({0, 0, 0}, joined_, duration);
+  const auto a = three_segment(left_, {1, 0, 0}, duration),
+             b = three_segment({0, 0, 0}, joined_, duration);
   blend_.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     blend_.duration[k] = a[k].duration;
@@ -120,8 +126,10 @@ double WaypointBlend::overlap_excess(double shared, double enough) noexcept {
       blend_.a.jerk[blend_.count] = p.segments[static_cast<std::size_t>(i)].jerk;
       blend_.b.jerk[blend_.count++] = q.segments[static_cast<std::size_t>(k)].jerk;
     }
-    if ((left_p -= t) <= 0 && ++i < p.count) left_p = p.segments[static_cast<std::size_t>(i)].duration;
-    if ((left_q -= t) <= 0 && ++k < q.count) left_q = q.segments[static_cast<std::size_t>(k)].duration;
+    if ((left_p -= t) <= 0 && ++i < p.count)
+      left_p = p.segments[static_cast<std::size_t>(i)].duration;
+    if ((left_q -= t) <= 0 && ++k < q.count)
+      left_q = q.segments[static_cast<std::size_t>(k)].duration;
   }
   from_ = a_.path_state(a_.duration - shared);
   carry(blend_, from_, blend_.a);
@@ -130,7 +138,10 @@ double WaypointBlend::overlap_excess(double shared, double enough) noexcept {
 }
 
 double WaypointBlend::excess(double enough) const noexcept {
-  return batch_kernels().blend_ratio(blend_, step_a_, step_b_, scaled_.empty() ? inverse_ : scaled_.data()->value, stride_, 1 + enough) - 1;
+  return batch_kernels().blend_ratio(blend_, step_a_, step_b_,
+                                     scaled_.empty() ? inverse_ : scaled_.data()->value, stride_,
+                                     1 + enough) -
+         1;
 }
 
 void WaypointBlend::add_to(Trajectory& out) const {

@@ -16,7 +16,9 @@ namespace handsel::detail {
 class SegmentBatch {
  public:
   SegmentBatch(const std::vector<PathSegment>& path_segments, const KinematicLimits& limits);
-  const double* step(std::size_t path_segment) const noexcept { return values_.data()->value + path_segment * stride_; }
+  const double* step(std::size_t path_segment) const noexcept {
+    return values_.data()->value + path_segment * stride_;
+  }
   const double* inverse_limits() const noexcept { return step(path_segments_); }
   int stride() const noexcept { return static_cast<int>(stride_); }
 
@@ -27,7 +29,8 @@ class SegmentBatch {
 
 class WaypointBlend {
  public:
-  WaypointBlend(const std::vector<PathSegment>& path_segments, std::size_t first, const SegmentBatch& batch, const KinematicLimits& limits);
+  WaypointBlend(const std::vector<PathSegment>& path_segments, std::size_t first,
+                const SegmentBatch& batch, const KinematicLimits& limits);
 
   /// Where the first segment is left, before its end, and the second joined, after its beginning
   /// [s].

@@ -9,16 +9,21 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::uint64_t kTransferBudget = 600;  // inverse kinematics tried for places to hand over, for each tilt
-constexpr std::size_t kTransferTries = 12;      // grasps looked at for a place to hand over, for each that is wanted
-constexpr double kSameDistance = 0.02;          // [m] grasps nearer than this ...
-constexpr double kSameAngle = 0.35;             // [rad] ... and less turned count as one variant
-constexpr std::size_t kShortList = 40;          // grasps, clearly different ones, tried at each place of the platform
-constexpr std::size_t kPlacesServed = 3;        // places of the platform with grasps, then the search ends
+constexpr std::uint64_t kTransferBudget =
+    600;  // inverse kinematics tried for places to hand over, for each tilt
+constexpr std::size_t kTransferTries =
+    12;  // grasps looked at for a place to hand over, for each that is wanted
+constexpr double kSameDistance = 0.02;  // [m] grasps nearer than this ...
+constexpr double kSameAngle = 0.35;     // [rad] ... and less turned count as one variant
+constexpr std::size_t kShortList =
+    40;  // grasps, clearly different ones, tried at each place of the platform
+constexpr std::size_t kPlacesServed =
+    3;  // places of the platform with grasps, then the search ends
 
 bool alike(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() < kSameDistance &&
-         Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() < kSameAngle;
+         Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() <
+             kSameAngle;
 }
 
 }  // namespace
@@ -64,7 +69,9 @@ const char* reason_text(ChoiceReason reason) {
 Refusals Choice::refusals() const {
   Refusals out;
   for (std::size_t r = 1; r < reasons.size(); ++r) {
-    if (reasons[r] > 0) out.push_back({std::to_string(reasons[r]) + " grasps", reason_text(static_cast<ChoiceReason>(r))});
+    if (reasons[r] > 0)
+      out.push_back(
+          {std::to_string(reasons[r]) + " grasps", reason_text(static_cast<ChoiceReason>(r))});
   }
   const auto places = [&](std::uint64_t count, const char* why) {
     if (count > 0) out.push_back({std::to_string(count) + " places of the platform", why});
@@ -72,33 +79,43 @@ Refusals Choice::refusals() const {
   places(platform.blocked, "the robot would collide there");
   places(platform.near_person, "too near to a person");
   places(platform.useless, "no grasp serves from there");
-  if (platform.none) out.push_back({"places of the platform", "the robot's description tells of no platform"});
+  if (platform.none)
+    out.push_back({"places of the platform", "the robot's description tells of no platform"});
   return out;
 }
 
 std::string Choice::why_none(const GraspList& list) const {
   if (list.grasps.empty()) {
     const auto most = std::max_element(list.reasons.begin() + 1, list.reasons.end());
-    return "no stable grasp of hand " + list.hand + " on object " + list.object + " in " + std::to_string(list.frames) +
-           " frames; mostly " + reason_text(static_cast<FrameReason>(most - list.reasons.begin()));
+    return "no stable grasp of hand " + list.hand + " on object " + list.object + " in " +
+           std::to_string(list.frames) + " frames; mostly " +
+           reason_text(static_cast<FrameReason>(most - list.reasons.begin()));
   }
   const auto most = [&](ChoiceReason first, ChoiceReason last) {
-    const auto begin = reasons.begin() + static_cast<std::ptrdiff_t>(first), end = reasons.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+    const auto begin = reasons.begin() + static_cast<std::ptrdiff_t>(first),
+               end = reasons.begin() + static_cast<std::ptrdiff_t>(last) + 1;
     return std::max_element(begin, end) - reasons.begin();
   };
   const auto first = most(ChoiceReason::below_support, ChoiceReason::not_considered);
-  std::string why = "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here; mostly " +
+  std::string why = "none of " + std::to_string(list.grasps.size()) +
+                    " stable grasps serves here; mostly " +
                     reason_text(static_cast<ChoiceReason>(first));
   const auto later = most(ChoiceReason::goal_support, ChoiceReason::hidden);
   const auto count = reasons[static_cast<std::size_t>(later)];
-  if (count > 0 && later != first) why += "; and with " + std::to_string(count) + ", " + reason_text(static_cast<ChoiceReason>(later));
-  if (platform.none) why += "; the robot's description tells of no platform that could drive elsewhere";
-  if (platform.places > 0) why += "; nor does one from " + std::to_string(platform.places) + " other places of the platform";
+  if (count > 0 && later != first)
+    why += "; and with " + std::to_string(count) + ", " +
+           reason_text(static_cast<ChoiceReason>(later));
+  if (platform.none)
+    why += "; the robot's description tells of no platform that could drive elsewhere";
+  if (platform.places > 0)
+    why +=
+        "; nor does one from " + std::to_string(platform.places) + " other places of the platform";
   return why;
 }
 
-GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> hand_geometry,
-                           ObjectLibrary library, const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
+GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot,
+                           std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
+                           const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
     : robot_(std::move(robot)),
       mobile_(std::move(mobile)),
       hand_geometry_(std::move(hand_geometry)),
@@ -107,37 +124,47 @@ GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_
   arm_ = &robot_->require_group("arm");
   hand_ = &robot_->require_group("hand");
   if (arm_->tip < 0 || arm_->tip != robot_->tool_link()) {
-    throw ConfigError("robot " + robot_->name() + ": the arm's tip_link must be the tool_link, the palm of the hand");
+    throw ConfigError("robot " + robot_->name() +
+                      ": the arm's tip_link must be the tool_link, the palm of the hand");
   }
   const std::vector<Axis>& axes = hand_geometry_->hand.model().axes();
   bool same = axes.size() == hand_->axes.size();
   for (std::size_t i = 0; same && i < axes.size(); ++i)
     same = robot_->axes()[static_cast<std::size_t>(hand_->axes[i])].name == axes[i].name;
   if (!same) {
-    throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + hand_geometry_->hand.name() +
-                      " in the order of its fingers");
+    throw ConfigError("robot " + robot_->name() +
+                      ": its group \"hand\" must list the joints of hand " +
+                      hand_geometry_->hand.name() + " in the order of its fingers");
   }
   retreats_ = retreat_directions(hand_geometry_->hand);
 }
 
-Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene,
-                            const HumanState& people, const std::function<bool()>& cancelled, const TransferTable* pairs) const {
+Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list,
+                            const Graspable& object, const Scene& scene, const HumanState& people,
+                            const std::function<bool()>& cancelled,
+                            const TransferTable* pairs) const {
   Search search(*this, request, object, scene, people, pairs);
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < list.grasps.size(); ++i) order.emplace_back(search.rank(list.grasps[i], i), i);
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (std::size_t i = 0; i < list.grasps.size(); ++i)
+    order.emplace_back(search.rank(list.grasps[i], i), i);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Found> found;
   // Twice as many as asked for, so that the arm's posture has a say.
   const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
-  const std::uint64_t budget = (request.has_goal ? 2 : 1) * static_cast<std::uint64_t>(settings_.reach_budget);
+  const std::uint64_t budget =
+      (request.has_goal ? 2 : 1) * static_cast<std::uint64_t>(settings_.reach_budget);
   const auto consider = [&](double rank, std::size_t index, std::optional<TransferPose> transfer) {
-    const bool stop = found.size() >= enough || search.out.reaches >= budget || (cancelled && cancelled());
+    const bool stop =
+        found.size() >= enough || search.out.reaches >= budget || (cancelled && cancelled());
     Found one{rank, {}, std::move(transfer), {}};
-    const ChoiceReason reason = stop ? ChoiceReason::not_considered : search.consider(list.grasps[index].grasp, one);
+    const ChoiceReason reason =
+        stop ? ChoiceReason::not_considered : search.consider(list.grasps[index].grasp, one);
     ++search.out.reasons[static_cast<std::size_t>(reason)];
     if (reason == ChoiceReason::chosen) found.push_back(std::move(one));
   };
-  // For a person, those that can be handed over come first, upright before tilted; the others only when too few of them can be picked up.
+  // For a person, those that can be handed over come first, upright before tilted; the others only
+  // when too few of them can be picked up.
   std::vector<std::pair<double, std::size_t>> others = order;
   const auto levels = search.places ? tilt_levels(pairs->settings()) : std::vector<double>{};
   for (const double tilt : levels) {
@@ -147,7 +174,8 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
     for (const auto& [rank, index] : others) {
       const Grasp& g = list.grasps[index].grasp;
       std::optional<TransferPose> transfer;
-      const bool try_it = found.size() < enough && tries < kTransferTries * enough && !pairs->partners(index).empty();
+      const bool try_it = found.size() < enough && tries < kTransferTries * enough &&
+                          !pairs->partners(index).empty();
       if (try_it && !search.below_support(g)) {
         ++tries;
         transfer = search.transfer(index, g, tilt);
@@ -162,10 +190,13 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
   }
   for (const auto& [rank, index] : others) consider(rank, index, {});
   if (found.empty() && request.move_platform) search_places(search, list, order, cancelled, found);
-  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.rank > b.rank; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.rank > b.rank; });
   // One of each kind first: when the best fails, the next should be different.
   const auto known = [&](const Found& f, const std::vector<Found>& among) {
-    return std::any_of(among.begin(), among.end(), [&](const Found& g) { return alike(g.grasp.T_object_hand, f.grasp.T_object_hand); });
+    return std::any_of(among.begin(), among.end(), [&](const Found& g) {
+      return alike(g.grasp.T_object_hand, f.grasp.T_object_hand);
+    });
   };
   std::vector<Found> ordered, again;
   for (Found& f : found) (known(f, ordered) ? again : ordered).push_back(std::move(f));
@@ -179,8 +210,10 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
   return search.out;
 }
 
-void GraspChooser::search_places(Search& search, const GraspList& list, const std::vector<std::pair<double, std::size_t>>& order,
-                                 const std::function<bool()>& cancelled, std::vector<Found>& found) const {
+void GraspChooser::search_places(Search& search, const GraspList& list,
+                                 const std::vector<std::pair<double, std::size_t>>& order,
+                                 const std::function<bool()>& cancelled,
+                                 std::vector<Found>& found) const {
   PlatformSearch& counts = search.out.platform;
   counts.asked = true;
   counts.none = mobile_ == nullptr;
@@ -189,8 +222,9 @@ void GraspChooser::search_places(Search& search, const GraspList& list, const st
   for (const auto& [rank, index] : order) {
     const Grasp& g = list.grasps[index].grasp;
     if (tried.size() >= kShortList) break;
-    const bool again = std::any_of(tried.begin(), tried.end(),
-                                   [&](const auto& t) { return alike(list.grasps[t.second].grasp.T_object_hand, g.T_object_hand); });
+    const bool again = std::any_of(tried.begin(), tried.end(), [&](const auto& t) {
+      return alike(list.grasps[t.second].grasp.T_object_hand, g.T_object_hand);
+    });
     if (!again && !search.below_support(g)) tried.emplace_back(rank, index);
   }
   const Pose T_world_now = search.scene.T_world_base;
@@ -198,9 +232,11 @@ void GraspChooser::search_places(Search& search, const GraspList& list, const st
   const std::uint64_t budget = search.out.reaches + settings_.platform_reaches;
   const std::size_t enough = std::max(1U, search.request.max_grasps);
   std::size_t served = 0;
-  for (const PlatformPlace& place :
-       places_around(*robot_, *arm_, search.request.start, T_world_now, search.start.T_world_object.translation())) {
-    if (served >= kPlacesServed || found.size() >= enough || search.out.reaches >= budget || (cancelled && cancelled())) break;
+  for (const PlatformPlace& place : places_around(*robot_, *arm_, search.request.start, T_world_now,
+                                                  search.start.T_world_object.translation())) {
+    if (served >= kPlacesServed || found.size() >= enough || search.out.reaches >= budget ||
+        (cancelled && cancelled()))
+      break;
     ++counts.places;
     const Pose T_world_base = standing_at(place, T_world_now);
     const PlatformFloor::Verdict verdict = floor.judge(search.request.start, T_world_base);

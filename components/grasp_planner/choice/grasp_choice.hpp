@@ -23,7 +23,7 @@ struct ChoiceSettings {
   double rank_configuration{0.4};    ///< nearness to the rest configuration of the arm
   double rank_contacts{0.2};         ///< fraction of the fingers in contact
   double rank_room{0.3};             ///< surface left free; when a person is to take the object
-  double rank_partner{0.3};          ///< the person's best grasp beside it; then too, as the next two
+  double rank_partner{0.3};  ///< the person's best grasp beside it; then too, as the next two
   /// The arm can offer the object upright, the hand behind it, the person's wrist at ease.
   double rank_handover{0.3};
   double rank_transfer{0.3};  ///< a place was found where the person can take it so
@@ -37,9 +37,9 @@ struct ChoiceSettings {
   /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
   /// it only creep [m].
   double off_giver{0.12};
-  double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object
-  double rank_drive{0.2};               ///< taken off for each metre the platform has to drive
-  double platform_room{0.5};            ///< kept between robot and people where the platform drives to [m]
+  double rank_visible{0.2};   ///< Grasp::visible; when a person is to take the object
+  double rank_drive{0.2};     ///< taken off for each metre the platform has to drive
+  double platform_room{0.5};  ///< kept between robot and people where the platform drives to [m]
   std::uint32_t platform_reaches{500};  ///< inverse kinematics tried for places of the platform
 };
 
@@ -104,7 +104,8 @@ class GraspChooser {
  public:
   /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not
   /// those of the hand description. `mobile`: the robot on its platform (on_platform), or nullptr.
-  GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
+  GraspChooser(std::shared_ptr<const RobotModel> robot,
+               std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
                const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile = nullptr);
 
   /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may
@@ -112,8 +113,10 @@ class GraspChooser {
   /// only the room left counts. Where no grasp serves from where the robot stands and the request
   /// allows it, places of the platform are searched, the shortest drive first; the reasons stay
   /// those of where it stands.
-  Choice choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene, const HumanState& people,
-                const std::function<bool()>& cancelled = {}, const TransferTable* pairs = nullptr) const;
+  Choice choose(const GraspRequest& request, const GraspList& list, const Graspable& object,
+                const Scene& scene, const HumanState& people,
+                const std::function<bool()>& cancelled = {},
+                const TransferTable* pairs = nullptr) const;
 
   /// Returns the robot model without a moving platform.
   const RobotModel& robot() const { return *robot_; }
@@ -121,7 +124,8 @@ class GraspChooser {
  private:
   struct Search;
   struct Found;
-  void search_places(Search& search, const GraspList& list, const std::vector<std::pair<double, std::size_t>>& order,
+  void search_places(Search& search, const GraspList& list,
+                     const std::vector<std::pair<double, std::size_t>>& order,
                      const std::function<bool()>& cancelled, std::vector<Found>& found) const;
 
   std::shared_ptr<const RobotModel> robot_, mobile_;

@@ -21,7 +21,8 @@ constexpr double kMotionStep = 0.04;      // [rad] between two states judged on 
 constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
 constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
 constexpr int kExchangeHeadings = 8;
-constexpr double kNearerToHeld = 0.02;  // [m] what somebody holds out is waited before nearer: who sees the hand keep away offers anew
+constexpr double kNearerToHeld = 0.02;  // [m] what somebody holds out is waited before nearer: who
+                                        // sees the hand keep away offers anew
 constexpr int kTransferReaches = 16;    // inverse kinematics tried for the places of one grasp
 
 std::size_t touching(const Grasp& g) {
@@ -32,8 +33,9 @@ std::size_t touching(const Grasp& g) {
 
 }  // namespace
 
-GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r, const Graspable& g, const Scene& s,
-                             const HumanState& everybody, const TransferTable* table)
+GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r, const Graspable& g,
+                             const Scene& s, const HumanState& everybody,
+                             const TransferTable* table)
     : self(chooser),
       request(r),
       object(g),
@@ -78,7 +80,8 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
     prepare(*carrying, scene);
     goal_is_taken = something_at_goal();
   }
-  const auto found = std::find_if(people.people.begin(), people.people.end(), [&](const Person& p) { return p.id == request.for_human; });
+  const auto found = std::find_if(people.people.begin(), people.people.end(),
+                                  [&](const Person& p) { return p.id == request.for_human; });
   if (found != people.people.end()) person = &*found;
   stand(scene.T_world_base);
 }
@@ -94,20 +97,24 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
   places.reset();
   eye.reset();
   if (person == nullptr) {
-    if (robot().gaze_link() >= 0) eye = T_world_base * robot().link_pose(request.start, robot().gaze_link()).translation();
+    if (robot().gaze_link() >= 0)
+      eye = T_world_base * robot().link_pose(request.start, robot().gaze_link()).translation();
     return;
   }
   if (const auto sight = sight_of(*person)) eye = sight->eyes;
   plan_handover();
   const auto arm = human_arm(*person, Side::right);
   if (pairs != nullptr && arm)
-    places.emplace(*person, *arm, T_world_base.translation(), start.T_world_object.linear(), object.box().center());
+    places.emplace(*person, *arm, T_world_base.translation(), start.T_world_object.linear(),
+                   object.box().center());
 }
 
-// A middle place for the exchange: before the person's chest, on the side of the robot. Whoever carries the task out chooses the real one.
+// A middle place for the exchange: before the person's chest, on the side of the robot. Whoever
+// carries the task out chooses the real one.
 void GraspChooser::Search::plan_handover() {
   handover_known = false;
-  const BodyJoint *torso = find_joint(*person, "torso"), *shoulder = find_joint(*person, "r_shoulder");
+  const BodyJoint *torso = find_joint(*person, "torso"),
+                  *shoulder = find_joint(*person, "r_shoulder");
   if (torso == nullptr || shoulder == nullptr) return;
   handover_place = torso->position;
   Vector3 to_robot = scene.T_world_base.translation() - handover_place;
@@ -122,16 +129,20 @@ void GraspChooser::Search::plan_handover() {
 
 double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) const {
   const double fingers = static_cast<double>(self.hand_geometry_->chains.size());
-  double sum =
-      settings().rank_quality * listed.grasp.quality + settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
-  sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
-  if (!holder.empty()) sum += settings().rank_away * on_our_side(listed.grasp) + (stands_in(listed.grasp) ? settings().rank_stands : 0.0);
+  double sum = settings().rank_quality * listed.grasp.quality +
+               settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
+  sum += settings().rank_sturdy *
+         std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
+  if (!holder.empty())
+    sum += settings().rank_away * on_our_side(listed.grasp) +
+           (stands_in(listed.grasp) ? settings().rank_stands : 0.0);
   if (request.for_human.empty()) return sum;
   sum += settings().rank_room * listed.room;
   return places ? sum + settings().rank_partner * pairs->promise(index) : sum;
 }
 
-std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, const Grasp& g, double tilt) {
+std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, const Grasp& g,
+                                                           double tilt) {
   if (out.transfer_reaches >= transfer_budget) return std::nullopt;
   if (!held) {
     held.emplace(robot(), self.library_);
@@ -149,19 +160,22 @@ std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, co
   return places->best(*pairs, index, g.T_object_hand, tilt, try_reach, kTransferReaches);
 }
 
-GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& g, const Vector& arm_q) {
+GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& g,
+                                                                   const Vector& arm_q) {
   HandoverPlace best;
   best.T_world_object = start.T_world_object;
   best.T_world_object.translation() = handover_place;
   for (int k = 0; k < kExchangeHeadings; ++k) {
     Pose T_world_held = Pose::Identity();
     T_world_held.linear() =
-        Eigen::AngleAxisd(2 * std::numbers::pi * k / kExchangeHeadings, Vector3::UnitZ()) * start.T_world_object.linear();
+        Eigen::AngleAxisd(2 * std::numbers::pi * k / kExchangeHeadings, Vector3::UnitZ()) *
+        start.T_world_object.linear();
     T_world_held.translation() = handover_place;
     const Pose T_world_hand = T_world_held * g.T_object_hand;
     const double behind = (handover_place - T_world_hand.translation()).normalized().dot(to_person);
     if (behind < 0 || behind <= best.behind) continue;
-    if (reach(T_world_hand, RobotModel::with(request.start, *self.arm_, arm_q), 1)) best = {behind, T_world_held};
+    if (reach(T_world_hand, RobotModel::with(request.start, *self.arm_, arm_q), 1))
+      best = {behind, T_world_held};
   }
   return best;
 }
@@ -169,10 +183,13 @@ GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& 
 double GraspChooser::Search::visible(const Grasp& g, const Pose& T_world_object) {
   if (!eye) return 1;
   self.hand_geometry_->forward(g.hand_joints, T_closed);
-  return visible_fraction(object, self.hand_geometry_->shape.placed(T_closed, g.T_object_hand), T_world_object.inverse() * *eye);
+  return visible_fraction(object, self.hand_geometry_->shape.placed(T_closed, g.T_object_hand),
+                          T_world_object.inverse() * *eye);
 }
 
-bool GraspChooser::Search::below_support(const Grasp& g) { return below_support(start.T_world_object, g); }
+bool GraspChooser::Search::below_support(const Grasp& g) {
+  return below_support(start.T_world_object, g);
+}
 
 bool GraspChooser::Search::below_support(const Pose& T_world_object, const Grasp& g) {
   const Pose T_world_hand = T_world_object * g.T_object_hand;
@@ -184,8 +201,11 @@ bool GraspChooser::Search::below_support(const Pose& T_world_object, const Grasp
         if (!box.supports) continue;
         const Vector3 local = box.T_world_box.inverse() * low.middle;
         const double top = (box.T_world_box * Vector3(0, 0, 0.5 * box.size.z())).z();
-        const bool over = std::abs(local.x()) < 0.5 * box.size.x() && std::abs(local.y()) < 0.5 * box.size.y();
-        if (over && T_world_object.translation().z() > top - 0.02 && low.height < top + settings().support_gap) return true;
+        const bool over =
+            std::abs(local.x()) < 0.5 * box.size.x() && std::abs(local.y()) < 0.5 * box.size.y();
+        if (over && T_world_object.translation().z() > top - 0.02 &&
+            low.height < top + settings().support_gap)
+          return true;
       }
     }
   }
@@ -196,12 +216,14 @@ Vector GraspChooser::Search::whole(const Vector& arm_q, const Vector& hand_q) co
   return RobotModel::with(RobotModel::with(request.start, *self.arm_, arm_q), *self.hand_, hand_q);
 }
 
-std::optional<Vector> GraspChooser::Search::reach(const Pose& T_world_hand, const Vector& seed, int restarts) {
+std::optional<Vector> GraspChooser::Search::reach(const Pose& T_world_hand, const Vector& seed,
+                                                  int restarts) {
   ++out.reaches;
   return inverse(T_world_hand, seed, restarts);
 }
 
-std::optional<Vector> GraspChooser::Search::inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const {
+std::optional<Vector> GraspChooser::Search::inverse(const Pose& T_world_hand, const Vector& seed,
+                                                    int restarts) const {
   IkOptions options;
   options.max_iterations = 80;
   options.restarts = restarts;
@@ -214,16 +236,20 @@ bool GraspChooser::Search::free(CollisionWorld& world, const Vector& arm_q, cons
   return world.is_free(whole(arm_q, hand_q));
 }
 
-// The straight way from approach_q to grasp_q with the hand opened: nothing touched, the object neither.
-bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g) {
+// The straight way from approach_q to grasp_q with the hand opened: nothing touched, the object
+// neither.
+bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
+                                         const Vector& grasp_q, const Grasp& g) {
   const Vector from = whole(approach_q, g.pregrasp_joints), to = whole(grasp_q, g.pregrasp_joints);
   const int steps = static_cast<int>(std::ceil(stand_off() / kSweepStep));
   const Pose T_object_root = site.T_world_object.inverse() * scene.T_world_base;
   for (int i = 0; i <= steps; ++i) {
     const double share = static_cast<double>(i) / steps;
-    const Pose T_object_hand = T_object_root * robot().link_pose(from + share * (to - from), robot().tool_link());
+    const Pose T_object_hand =
+        T_object_root * robot().link_pose(from + share * (to - from), robot().tool_link());
     ++out.touch_tests;
-    const double clearance = i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
+    const double clearance =
+        i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
     if (self.hand_geometry_->shape.touches(T_open, object, T_object_hand, clearance)) return false;
   }
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));
@@ -232,32 +258,43 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q, c
 
 bool GraspChooser::Search::something_at_goal() const {
   const auto touched = [&](const Shape& shape, const Pose& T_world_shape) {
-    return touch(*CollisionShape::make(shape), T_world_shape, *object.shape(), request.T_world_goal);
+    return touch(*CollisionShape::make(shape), T_world_shape, *object.shape(),
+                 request.T_world_goal);
   };
-  const bool furniture = std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
-    const double slack = box.supports ? std::min(kSupportSlack, 0.5 * box.size.z()) : 0.0;
-    return touched(Box{box.size - Vector3(0, 0, slack)}, box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * slack));
-  });
-  return furniture || std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
-           if (o.id == request.object || o.holder == Holder::robot || o.holder == Holder::human) return false;
+  const bool furniture =
+      std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
+        const double slack = box.supports ? std::min(kSupportSlack, 0.5 * box.size.z()) : 0.0;
+        return touched(Box{box.size - Vector3(0, 0, slack)},
+                       box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * slack));
+      });
+  return furniture ||
+         std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
+           if (o.id == request.object || o.holder == Holder::robot || o.holder == Holder::human)
+             return false;
            const ObjectModel* model = self.library_ ? self.library_(o.model) : nullptr;
-           if (model != nullptr) return touched(std::make_shared<const TriangleMesh>(model->mesh), o.T_world_object);
+           if (model != nullptr)
+             return touched(std::make_shared<const TriangleMesh>(model->mesh), o.T_world_object);
            const auto shape = primitive_shape(o.primitive, 0);
            return shape && touched(*shape, o.T_world_object);
          });
 }
 
-double GraspChooser::Search::stand_off() const { return settings().stand_off - (holder.empty() ? 0.0 : kNearerToHeld); }
+double GraspChooser::Search::stand_off() const {
+  return settings().stand_off - (holder.empty() ? 0.0 : kNearerToHeld);
+}
 
 // Where the straight way in begins; T_open must be that of the grasp.
-std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q, const Grasp& g) {
+std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q,
+                                                     const Grasp& g) {
   const Pose T_world_hand = site.T_world_object * g.T_object_hand;
   self.hand_geometry_->forward(g.pregrasp_joints, T_open);
   std::vector<Vector3> directions = self.retreats_;
   directions.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
   for (const Vector3& direction : directions) {
     const RetreatPath path{direction, stand_off(), settings().approach_clearance};
-    if (!retreat_free(*self.hand_geometry_, T_open, object, g.T_object_hand, path, &out.touch_tests)) continue;
+    if (!retreat_free(*self.hand_geometry_, T_open, object, g.T_object_hand, path,
+                      &out.touch_tests))
+      continue;
     Pose T = T_world_hand;
     T.translate(Vector3(stand_off() * direction));
     const auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
@@ -267,25 +304,31 @@ std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& g
   return std::nullopt;
 }
 
-bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g) {
+bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& grasp_q,
+                                    const Grasp& g) {
   Pose T_lifted = T_world_hand;
   T_lifted.translation().z() += settings().lift;
   const auto lifted = reach(T_lifted, RobotModel::with(request.start, *self.arm_, grasp_q), 0);
-  return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift && free(start.world, *lifted, g.hand_joints);
+  return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift &&
+         free(start.world, *lifted, g.hand_joints);
 }
 
 bool GraspChooser::Search::stands_in(const Grasp& g) const {
   std::vector<std::vector<Pose>> T_fingers;
   self.hand_geometry_->forward(g.pregrasp_joints, T_fingers);
-  const std::vector<HandShape::Low> lows = self.hand_geometry_->shape.lows(T_fingers, g.T_object_hand);
-  return std::none_of(lows.begin(), lows.end(),
-                      [&](const HandShape::Low& low) { return low.height < object.box().min().z() + settings().support_gap; });
+  const std::vector<HandShape::Low> lows =
+      self.hand_geometry_->shape.lows(T_fingers, g.T_object_hand);
+  return std::none_of(lows.begin(), lows.end(), [&](const HandShape::Low& low) {
+    return low.height < object.box().min().z() + settings().support_gap;
+  });
 }
 
 double GraspChooser::Search::on_our_side(const Grasp& g) const {
-  const Vector3 to_robot =
-      (scene.T_world_base.translation() - start.T_world_object.translation()).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
-  const Vector3 to_hand = start.T_world_object.linear() * (g.T_object_hand.translation() - object.box().center());
+  const Vector3 to_robot = (scene.T_world_base.translation() - start.T_world_object.translation())
+                               .cwiseProduct(Vector3(1, 1, 0))
+                               .stableNormalized();
+  const Vector3 to_hand =
+      start.T_world_object.linear() * (g.T_object_hand.translation() - object.box().center());
   return 0.5 * (1 + to_hand.stableNormalized().dot(to_robot));
 }
 
@@ -298,11 +341,14 @@ ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;
   const auto grasp_q = reach(T_world_hand, request.start, 2);
   if (!grasp_q) return ChoiceReason::out_of_reach;
-  if (!free(start.world, *grasp_q, g.hand_joints) || !free(start.world, *grasp_q, g.pregrasp_joints)) return ChoiceReason::collision;
+  if (!free(start.world, *grasp_q, g.hand_joints) ||
+      !free(start.world, *grasp_q, g.pregrasp_joints))
+    return ChoiceReason::collision;
   if (holder.empty() && !can_lift(T_world_hand, *grasp_q, g)) return ChoiceReason::cannot_lift;
   const auto approach_q = approach(start, *grasp_q, g);
   if (!approach_q) return ChoiceReason::no_approach;
-  if (giver && (!off_giver(*grasp_q, g) || !off_giver(*approach_q, g))) return ChoiceReason::near_giver;
+  if (giver && (!off_giver(*grasp_q, g) || !off_giver(*approach_q, g)))
+    return ChoiceReason::near_giver;
   g.arm_joints = *grasp_q;
   g.approach_joints = *approach_q;
   return ChoiceReason::chosen;
@@ -313,11 +359,13 @@ ChoiceReason GraspChooser::Search::put_down(const Grasp& g, PuttingDown& down) {
   const auto at = reach(T_world_hand, RobotModel::with(request.start, *self.arm_, g.arm_joints), 2);
   if (!at) return ChoiceReason::goal_out_of_reach;
   carrying->set_attachment({request.object, g.T_object_hand.inverse()}, {});
-  if (!free(*carrying, *at, g.hand_joints) || !free(goal->world, *at, g.pregrasp_joints)) return ChoiceReason::goal_collision;
+  if (!free(*carrying, *at, g.hand_joints) || !free(goal->world, *at, g.pregrasp_joints))
+    return ChoiceReason::goal_collision;
   Pose T_above = T_world_hand;
   T_above.translation().z() += settings().lift;
   const auto above = reach(T_above, RobotModel::with(request.start, *self.arm_, *at), 0);
-  if (!above || (*above - *at).cwiseAbs().maxCoeff() > kLargestLift) return ChoiceReason::goal_lowering;
+  if (!above || (*above - *at).cwiseAbs().maxCoeff() > kLargestLift)
+    return ChoiceReason::goal_lowering;
   const Vector from = whole(*above, g.hand_joints), to = whole(*at, g.hand_joints);
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));
   if (!carrying->check_motion(from, to, kMotionStep).free) return ChoiceReason::goal_lowering;
@@ -339,7 +387,8 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   };
   // From where the person will stand to the exchange is known only once the arm gets there.
   const bool seen_later = person != nullptr && !found.transfer;
-  if (!seen_later && request.min_visible > 0 && hidden(found.transfer ? found.transfer->T_world_object : start.T_world_object))
+  if (!seen_later && request.min_visible > 0 &&
+      hidden(found.transfer ? found.transfer->T_world_object : start.T_world_object))
     return ChoiceReason::hidden;
   const ChoiceReason taken = pick_up(g);
   if (taken != ChoiceReason::chosen) return taken;
@@ -350,7 +399,8 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   found.rank += settings().rank_configuration * rest_score_of(robot(), *self.arm_, g.arm_joints);
   Pose T_world_seen = start.T_world_object;
   if (found.transfer) {
-    found.rank += settings().rank_handover * found.transfer->score + settings().rank_transfer - settings().rank_tilt * found.transfer->tilt;
+    found.rank += settings().rank_handover * found.transfer->score + settings().rank_transfer -
+                  settings().rank_tilt * found.transfer->tilt;
     T_world_seen = found.transfer->T_world_object;
   } else if (handover_known) {
     const HandoverPlace at = handover(g, g.arm_joints);

@@ -17,8 +17,8 @@ struct GraspChooser::Found {
 };
 
 struct GraspChooser::Search {
-  Search(const GraspChooser& chooser, const GraspRequest& request, const Graspable& object, const Scene& scene, const HumanState& people,
-         const TransferTable* pairs);
+  Search(const GraspChooser& chooser, const GraspRequest& request, const Graspable& object,
+         const Scene& scene, const HumanState& people, const TransferTable* pairs);
 
   /// The robot stands elsewhere from now on.
   void stand(const Pose& T_world_base);

@@ -16,13 +16,15 @@ double heading_of(const Pose& T) { return std::atan2(T.linear()(1, 0), T.linear(
 
 }  // namespace
 
-std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& arm, const Vector& q, const Pose& T_world_base,
-                                         const Vector3& p_world_object) {
+std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& arm, const Vector& q,
+                                         const Pose& T_world_base, const Vector3& p_world_object) {
   std::vector<Pose> T_root_link;
   robot.forward(q, T_root_link);
   std::vector<Vector3> chain;
   for (const int axis : arm.axes) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.axes()[static_cast<std::size_t>(axis)].joint)];
+    const Joint& joint =
+        robot
+            .joints()[static_cast<std::size_t>(robot.axes()[static_cast<std::size_t>(axis)].joint)];
     chain.push_back(T_root_link[static_cast<std::size_t>(joint.child)].translation());
   }
   chain.push_back(T_root_link[static_cast<std::size_t>(arm.tip)].translation());
@@ -31,20 +33,27 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
   const double rise = p_world_object.z() - (T_world_base * chain.front()).z();
   std::vector<PlatformPlace> out;
   if (std::abs(rise) >= length) return out;
-  const double level = std::sqrt(length * length - rise * rise), heading_now = heading_of(T_world_base);
+  const double level = std::sqrt(length * length - rise * rise),
+               heading_now = heading_of(T_world_base);
   for (const double share : kDistances) {
     for (int d = 0; d < kDirections; ++d) {
       const double direction = 2 * std::numbers::pi * d / kDirections;
-      const Eigen::Vector2d shoulder = p_world_object.head<2>() - share * level * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+      const Eigen::Vector2d shoulder =
+          p_world_object.head<2>() -
+          share * level * Eigen::Vector2d(std::cos(direction), std::sin(direction));
       for (int h = 0; h < kHeadings; ++h) {
-        const double heading = nearest_heading(direction + 2 * std::numbers::pi * h / kHeadings, heading_now);
+        const double heading =
+            nearest_heading(direction + 2 * std::numbers::pi * h / kHeadings, heading_now);
         const Eigen::Vector2d at = shoulder - Eigen::Rotation2Dd(heading) * chain.front().head<2>();
-        const double distance = (at - T_world_base.translation().head<2>()).norm() + kTurnDistance * std::abs(heading - heading_now);
+        const double distance = (at - T_world_base.translation().head<2>()).norm() +
+                                kTurnDistance * std::abs(heading - heading_now);
         out.push_back({{at.x(), at.y(), heading}, distance});
       }
     }
   }
-  std::stable_sort(out.begin(), out.end(), [](const PlatformPlace& a, const PlatformPlace& b) { return a.distance < b.distance; });
+  std::stable_sort(out.begin(), out.end(), [](const PlatformPlace& a, const PlatformPlace& b) {
+    return a.distance < b.distance;
+  });
   return out;
 }
 
@@ -53,7 +62,8 @@ Pose standing_at(const PlatformPlace& place, const Pose& T_world_base) {
                    Eigen::Quaterniond(Eigen::AngleAxisd(place.pose.z(), Vector3::UnitZ())));
 }
 
-PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene, const HumanState& people, double room)
+PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene,
+                             const HumanState& people, double room)
     : world_(mobile, std::move(library)), room_(room), anybody_(!people.people.empty()) {
   Scene seen_from_world = scene;
   seen_from_world.T_world_base = Pose::Identity();
@@ -65,7 +75,8 @@ PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, co
 PlatformFloor::Verdict PlatformFloor::check(const Vector& q, const Pose& T_world_base) {
   const Vector whole = with_platform(q, T_world_base);
   if (!world_.is_free(whole)) return Verdict::blocked;
-  return anybody_ && world_.distance_to_people(whole) < room_ ? Verdict::near_person : Verdict::free;
+  return anybody_ && world_.distance_to_people(whole) < room_ ? Verdict::near_person
+                                                              : Verdict::free;
 }
 
 }  // namespace handsel::grasp_planner

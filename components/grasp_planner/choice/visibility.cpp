@@ -13,18 +13,21 @@ constexpr double kThin = 0.0001;  // [m] nearer than this to a line of sight, th
 
 }  // namespace
 
-double visible_fraction(const Graspable& object, const HandShape::PlacedHand& hand, const Vector3& p_object_eye) {
+double visible_fraction(const Graspable& object, const HandShape::PlacedHand& hand,
+                        const Vector3& p_object_eye) {
   std::vector<SightCapsule> capsules;
   std::vector<SightBox> boxes;
   for (const HandShape::Placed& s : hand.solids) {
     if (s.capsule) {
       capsules.push_back({s.a, s.b, s.radius});
     } else {
-      boxes.push_back({s.T_frame_shape * Eigen::Translation3d(s.shape->box_center()), 2 * s.shape->box_half()});
+      boxes.push_back(
+          {s.T_frame_shape * Eigen::Translation3d(s.shape->box_center()), 2 * s.shape->box_half()});
     }
   }
   const double size = object.box().diagonal().norm();
-  const std::size_t stride = std::max<std::size_t>(1, (object.points().size() + kMostPoints - 1) / kMostPoints);
+  const std::size_t stride =
+      std::max<std::size_t>(1, (object.points().size() + kMostPoints - 1) / kMostPoints);
   std::size_t facing = 0, seen = 0;
   for (std::size_t i = 0; i < object.points().size(); i += stride) {
     const SurfacePoint& point = object.points()[i];
@@ -32,10 +35,13 @@ double visible_fraction(const Graspable& object, const HandShape::PlacedHand& ha
     const double far = way.norm();
     if (!(way.dot(point.normal) > 0)) continue;
     const Vector3 from = point.position + kOff * point.normal;
-    if (object.triangles().nearer_than(from, from + std::min(1.0, size / far) * way, kThin)) continue;
+    if (object.triangles().nearer_than(from, from + std::min(1.0, size / far) * way, kThin))
+      continue;
     ++facing;
     const auto hidden = [&](const auto& solid) { return hides(solid, p_object_eye, from); };
-    if (std::none_of(capsules.begin(), capsules.end(), hidden) && std::none_of(boxes.begin(), boxes.end(), hidden)) ++seen;
+    if (std::none_of(capsules.begin(), capsules.end(), hidden) &&
+        std::none_of(boxes.begin(), boxes.end(), hidden))
+      ++seen;
   }
   return facing == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(facing);
 }

@@ -9,6 +9,7 @@ namespace handsel::grasp_planner {
 /// that face it with nothing of the object before them. `hand`: placed in the object's frame;
 /// solids without a closed form count as the boxes around them. 0 when there is nothing to see. At
 /// most 240 of the object's points are sampled.
-double visible_fraction(const Graspable& object, const HandShape::PlacedHand& hand, const Vector3& p_object_eye);
+double visible_fraction(const Graspable& object, const HandShape::PlacedHand& hand,
+                        const Vector3& p_object_eye);
 
 }  // namespace handsel::grasp_planner

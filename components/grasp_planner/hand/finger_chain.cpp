@@ -15,15 +15,18 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
   tip_radius_ = f.tip_radius;
   const int tip = model.link_index(f.tip_link);
   if (tip < 0)
-    throw ConfigError("hand " + hand.name() + ": finger " + f.name + " names tip link " + f.tip_link + ", which its URDF does not have");
-  // Every joint driven by this finger's axes on its own branch is a step; fixed joints are folded into their neighbours. Fingers that move
-  // together share axes, so the branch begins at the first joint above the tip that one of them moves.
+    throw ConfigError("hand " + hand.name() + ": finger " + f.name + " names tip link " +
+                      f.tip_link + ", which its URDF does not have");
+  // Every joint driven by this finger's axes on its own branch is a step; fixed joints are folded
+  // into their neighbours. Fingers that move together share axes, so the branch begins at the first
+  // joint above the tip that one of them moves.
   const auto driven = [&](const Joint& joint) {
     return joint.dof >= 0 && std::find(f.axes.begin(), f.axes.end(), joint.dof) != f.axes.end();
   };
   int root = -1;
   for (int l = tip; model.links()[static_cast<std::size_t>(l)].parent_joint >= 0;) {
-    const Joint& joint = model.joints()[static_cast<std::size_t>(model.links()[static_cast<std::size_t>(l)].parent_joint)];
+    const Joint& joint = model.joints()[static_cast<std::size_t>(
+        model.links()[static_cast<std::size_t>(l)].parent_joint)];
     if (driven(joint)) root = l;
     l = joint.parent;
   }
@@ -40,39 +43,53 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
     if (!mine) {
       frames[l] = {parent.step, T_step_joint};
     } else {
-      steps_.push_back({parent.step, T_step_joint, joint.axis, joint.kind == JointKind::prismatic, joint.dof,
-                        joint.is_mimic ? joint.mimic_factor : 1.0, joint.is_mimic ? joint.mimic_offset : 0.0});
+      steps_.push_back({parent.step, T_step_joint, joint.axis, joint.kind == JointKind::prismatic,
+                        joint.dof, joint.is_mimic ? joint.mimic_factor : 1.0,
+                        joint.is_mimic ? joint.mimic_offset : 0.0});
       frames[l] = {static_cast<int>(steps_.size()) - 1, Pose::Identity()};
     }
-    if (frames[l].step >= 0) carried_.push_back({static_cast<int>(l), frames[l].step, frames[l].T_step_link});
+    if (frames[l].step >= 0)
+      carried_.push_back({static_cast<int>(l), frames[l].step, frames[l].T_step_link});
   }
   const Frame& at_tip = frames[static_cast<std::size_t>(tip)];
-  if (at_tip.step < 0) throw ConfigError("hand " + hand.name() + ": no joint of finger " + f.name + " moves its tip link " + f.tip_link);
+  if (at_tip.step < 0)
+    throw ConfigError("hand " + hand.name() + ": no joint of finger " + f.name +
+                      " moves its tip link " + f.tip_link);
   tip_step_ = at_tip.step;
   T_step_tip_ = at_tip.T_step_link;
-  for (int s = tip_step_; s >= 0; s = steps_[static_cast<std::size_t>(s)].parent) tip_path_.push_back(s);
+  for (int s = tip_step_; s >= 0; s = steps_[static_cast<std::size_t>(s)].parent)
+    tip_path_.push_back(s);
   std::reverse(tip_path_.begin(), tip_path_.end());
   for (const int axis : f.axes) {
-    const bool used =
-        std::any_of(tip_path_.begin(), tip_path_.end(), [&](int s) { return steps_[static_cast<std::size_t>(s)].dof == axis; });
+    const bool used = std::any_of(tip_path_.begin(), tip_path_.end(), [&](int s) {
+      return steps_[static_cast<std::size_t>(s)].dof == axis;
+    });
     if (used) axes_.push_back(axis);
   }
   turn_to_z();
   const int outermost = axes_.back();
-  closing_sign_ = 0.5 * (hand.lower_contact()[outermost] + hand.upper_contact()[outermost]) >= hand.rest()[outermost] ? 1.0 : -1.0;
+  closing_sign_ = 0.5 * (hand.lower_contact()[outermost] + hand.upper_contact()[outermost]) >=
+                          hand.rest()[outermost]
+                      ? 1.0
+                      : -1.0;
 }
 
-// Every step's frame is turned so that its joint's axis is z: a rotation about it mixes two columns.
+// Every step's frame is turned so that its joint's axis is z: a rotation about it mixes two
+// columns.
 void FingerChain::turn_to_z() {
   std::vector<Pose> T_old_new(steps_.size(), Pose::Identity());
   for (std::size_t s = 0; s < steps_.size(); ++s) {
     Step& step = steps_[s];
-    T_old_new[s].linear() = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), step.axis).toRotationMatrix();
+    T_old_new[s].linear() =
+        Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), step.axis).toRotationMatrix();
     step.T_parent_joint = step.T_parent_joint * T_old_new[s];
-    if (step.parent >= 0) step.T_parent_joint = T_old_new[static_cast<std::size_t>(step.parent)].inverse() * step.T_parent_joint;
+    if (step.parent >= 0)
+      step.T_parent_joint =
+          T_old_new[static_cast<std::size_t>(step.parent)].inverse() * step.T_parent_joint;
     step.axis = Vector3::UnitZ();
   }
-  for (Carried& c : carried_) c.T_step_link = T_old_new[static_cast<std::size_t>(c.step)].inverse() * c.T_step_link;
+  for (Carried& c : carried_)
+    c.T_step_link = T_old_new[static_cast<std::size_t>(c.step)].inverse() * c.T_step_link;
   T_step_tip_ = T_old_new[static_cast<std::size_t>(tip_step_)].inverse() * T_step_tip_;
 }
 
@@ -118,7 +135,8 @@ Eigen::Matrix3Xd FingerChain::jacobian(const std::vector<Pose>& T, const Vector3
     const auto column = std::find(axes_.begin(), axes_.end(), step.dof) - axes_.begin();
     const Pose& frame = T[static_cast<std::size_t>(s)];
     const Vector3 axis = frame.linear() * step.axis;
-    J.col(column) += step.factor * (step.prismatic ? axis : axis.cross(p_hand - frame.translation()));
+    J.col(column) +=
+        step.factor * (step.prismatic ? axis : axis.cross(p_hand - frame.translation()));
   }
   return J;
 }
@@ -135,14 +153,17 @@ Vector3 FingerChain::closing_direction(const std::vector<Pose>& T) const {
   return length > 1e-9 ? Vector3(d / length) : Vector3::UnitX();
 }
 
-void FingerChain::add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object, const Vector3& p_object, const Vector3& force,
+void FingerChain::add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object,
+                             const Vector3& p_object, const Vector3& force,
                              Vector& hand_effort) const {
-  const Eigen::VectorXd effort = jacobian(T_hand_step, T_hand_object * p_object).transpose() * (T_hand_object.linear() * force);
-  for (std::size_t a = 0; a < axes_.size(); ++a) hand_effort[axes_[a]] += effort[static_cast<Eigen::Index>(a)];
+  const Eigen::VectorXd effort = jacobian(T_hand_step, T_hand_object * p_object).transpose() *
+                                 (T_hand_object.linear() * force);
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    hand_effort[axes_[a]] += effort[static_cast<Eigen::Index>(a)];
 }
 
-bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance,
-                          int iterations) const {
+bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper,
+                          Vector& q, double tolerance, int iterations) const {
   thread_local std::vector<Pose> T;
   const auto n = static_cast<Eigen::Index>(axes_.size());
   for (const int a : axes_) q[a] = std::clamp(q[a], lower[a], upper[a]);
@@ -155,7 +176,8 @@ bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const 
     while (!better && damping < 1e3) {
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> H = J.transpose() * J;
       H.diagonal().array() += damping;
-      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> dq = H.ldlt().solve(J.transpose() * error);
+      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> dq =
+          H.ldlt().solve(J.transpose() * error);
       Vector next = q;
       for (Eigen::Index k = 0; k < n; ++k) {
         const int a = axes_[static_cast<std::size_t>(k)];

@@ -16,8 +16,8 @@ class FingerChain {
   double tip_radius() const { return tip_radius_; }       ///< [m]
   /// Adds the efforts of the finger's axes that give `force` [N] to the object at the point
   /// `p_object` (both object frame).
-  void add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object, const Vector3& p_object, const Vector3& force,
-                  Vector& hand_effort) const;
+  void add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object,
+                  const Vector3& p_object, const Vector3& force, Vector& hand_effort) const;
   /// Links this finger's joints carry, and how each follows: T_hand_link = step pose * T_step_link.
   struct Carried {
     int link{};                          ///< index of the link in the hand model
@@ -34,9 +34,13 @@ class FingerChain {
   void forward(const Vector& q, std::vector<Pose>& T) const;
   Vector3 tip(const Vector& q) const;  ///< centre of the fingertip sphere, hand frame [m]
   /// The same from the poses of forward().
-  Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_.translation(); }
+  Vector3 tip(const std::vector<Pose>& T) const {
+    return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_.translation();
+  }
   /// Returns the pose of the fingertip in the hand frame, from the poses of forward().
-  Pose tip_pose(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_; }
+  Pose tip_pose(const std::vector<Pose>& T) const {
+    return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_;
+  }
   /// Returns the Jacobian of the tip's centre, 3 x axes().size(): velocity of the tip's centre for
   /// each of the finger's axes.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const { return jacobian(T, tip(T)); }
@@ -53,8 +57,8 @@ class FingerChain {
   /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of
   /// `p_hand_tip`, inside [lower, upper] (all hand axes), starting from q. Damped least squares.
   /// False when it does not get there; q is then the nearest found.
-  bool inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance = 1e-4,
-               int iterations = 30) const;
+  bool inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q,
+               double tolerance = 1e-4, int iterations = 30) const;
 
  private:
   void turn_to_z();

@@ -24,14 +24,16 @@ std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chai
       chain.forward(q, T);
       lever = std::max(lever, chain.jacobian(T).col(static_cast<Eigen::Index>(k)).norm());
     }
-    counts.push_back(1 + static_cast<int>(std::ceil(lever * std::max(0.0, upper[a] - lower[a]) / step)));
+    counts.push_back(
+        1 + static_cast<int>(std::ceil(lever * std::max(0.0, upper[a] - lower[a]) / step)));
   }
   return counts;
 }
 
 }  // namespace
 
-FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings)
+FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain,
+                                 const WorkspaceSettings& settings)
     : step_(settings.step) {
   sample(hand, chain);
   cover(settings);
@@ -76,10 +78,13 @@ void FingerWorkspace::sample(const HandModel& hand, const FingerChain& chain) {
     tips[static_cast<std::size_t>(i)] = p.cast<float>();
   }
   cells_ = (box_.sizes() / step_).array().floor().cast<int>() + 1;
-  entry_.assign(static_cast<std::size_t>(cells_.x()) * static_cast<std::size_t>(cells_.y()) * static_cast<std::size_t>(cells_.z()), 0);
+  entry_.assign(static_cast<std::size_t>(cells_.x()) * static_cast<std::size_t>(cells_.y()) *
+                    static_cast<std::size_t>(cells_.z()),
+                0);
   for (std::int64_t i = 0; i < samples; ++i) {
     const double centrality = set_sample(i);
-    const Vector3 p = tips[static_cast<std::size_t>(i)].cast<double>().cwiseMax(box_.min()).cwiseMin(box_.max());
+    const Vector3 p =
+        tips[static_cast<std::size_t>(i)].cast<double>().cwiseMax(box_.min()).cwiseMin(box_.max());
     std::uint32_t& entry = entry_[static_cast<std::size_t>(cell(p))];
     if (entry == 0) {
       seeds_.emplace_back();
@@ -89,17 +94,23 @@ void FingerWorkspace::sample(const HandModel& hand, const FingerChain& chain) {
     bool near = false, worse = false;
     for (const Seed& s : seeds) {
       double differ = 0;
-      for (std::size_t k = 0; k < n; ++k) differ = std::max(differ, std::abs(s.q[static_cast<Eigen::Index>(k)] - q[chain.axes()[k]]));
+      for (std::size_t k = 0; k < n; ++k)
+        differ = std::max(differ, std::abs(s.q[static_cast<Eigen::Index>(k)] - q[chain.axes()[k]]));
       near = near || differ <= kDistinct;
       worse = worse || (differ <= kDistinct && s.centrality >= centrality);
     }
-    if (worse || (!near && seeds.size() >= kSeedsPerCell && seeds.back().centrality >= centrality)) continue;
+    if (worse || (!near && seeds.size() >= kSeedsPerCell && seeds.back().centrality >= centrality))
+      continue;
     chain.forward(q, T);
-    Seed seed{Vector(static_cast<Eigen::Index>(n)), centrality, chain.tip_direction(T), chain.closing_direction(T)};
+    Seed seed{Vector(static_cast<Eigen::Index>(n)), centrality, chain.tip_direction(T),
+              chain.closing_direction(T)};
     for (std::size_t k = 0; k < n; ++k) seed.q[static_cast<Eigen::Index>(k)] = q[chain.axes()[k]];
-    std::erase_if(seeds, [&](const Seed& s) { return (s.q - seed.q).cwiseAbs().maxCoeff() <= kDistinct; });
+    std::erase_if(seeds,
+                  [&](const Seed& s) { return (s.q - seed.q).cwiseAbs().maxCoeff() <= kDistinct; });
     seeds.insert(
-        std::upper_bound(seeds.begin(), seeds.end(), seed, [](const Seed& a, const Seed& b) { return a.centrality > b.centrality; }), seed);
+        std::upper_bound(seeds.begin(), seeds.end(), seed,
+                         [](const Seed& a, const Seed& b) { return a.centrality > b.centrality; }),
+        seed);
     if (seeds.size() > kSeedsPerCell) seeds.pop_back();
   }
 }
@@ -109,16 +120,18 @@ void FingerWorkspace::cover(const WorkspaceSettings& settings) {
   // Boundary cells have a neighbour that was not reached; the others are inner.
   std::vector<Vector3> boundary, inner, all;
   const auto reached = [&](int x, int y, int z) {
-    if (x < 0 || y < 0 || z < 0 || x >= cells_.x() || y >= cells_.y() || z >= cells_.z()) return false;
-    return entry_[static_cast<std::size_t>((static_cast<std::int64_t>(z) * cells_.y() + y) * cells_.x() + x)] != 0;
+    if (x < 0 || y < 0 || z < 0 || x >= cells_.x() || y >= cells_.y() || z >= cells_.z())
+      return false;
+    return entry_[static_cast<std::size_t>(
+               (static_cast<std::int64_t>(z) * cells_.y() + y) * cells_.x() + x)] != 0;
   };
   for (int z = 0; z < cells_.z(); ++z) {
     for (int y = 0; y < cells_.y(); ++y) {
       for (int x = 0; x < cells_.x(); ++x) {
         if (!reached(x, y, z)) continue;
         const Vector3 c = centre((static_cast<std::int64_t>(z) * cells_.y() + y) * cells_.x() + x);
-        const bool inside = reached(x - 1, y, z) && reached(x + 1, y, z) && reached(x, y - 1, z) && reached(x, y + 1, z) &&
-                            reached(x, y, z - 1) && reached(x, y, z + 1);
+        const bool inside = reached(x - 1, y, z) && reached(x + 1, y, z) && reached(x, y - 1, z) &&
+                            reached(x, y + 1, z) && reached(x, y, z - 1) && reached(x, y, z + 1);
         (inside ? inner : boundary).push_back(c);
         all.push_back(c);
       }
@@ -133,11 +146,13 @@ void FingerWorkspace::cover(const WorkspaceSettings& settings) {
     room[i] = std::sqrt(min_square) - 0.5 * step_;  // a boundary cell may be reached in part only
   }
   while (spheres_.size() < settings.max_spheres && !inner.empty()) {
-    const auto best = static_cast<std::size_t>(std::max_element(room.begin(), room.end()) - room.begin());
+    const auto best =
+        static_cast<std::size_t>(std::max_element(room.begin(), room.end()) - room.begin());
     if (room[best] < settings.min_radius) break;
     const WorkspaceSphere s{inner[best], room[best]};
     spheres_.push_back(s);
-    for (std::size_t i = 0; i < inner.size(); ++i) room[i] = std::min(room[i], (inner[i] - s.centre).norm() - s.radius);
+    for (std::size_t i = 0; i < inner.size(); ++i)
+      room[i] = std::min(room[i], (inner[i] - s.centre).norm() - s.radius);
   }
   has_volume_ = !spheres_.empty();
   if (!has_volume_) {
@@ -152,8 +167,10 @@ std::int64_t FingerWorkspace::cell(const Vector3& p) const {
 }
 
 Vector3 FingerWorkspace::centre(std::int64_t cell) const {
-  const std::int64_t x = cell % cells_.x(), y = cell / cells_.x() % cells_.y(), z = cell / cells_.x() / cells_.y();
-  return box_.min() + step_ * Vector3(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5);
+  const std::int64_t x = cell % cells_.x(), y = cell / cells_.x() % cells_.y(),
+                     z = cell / cells_.x() / cells_.y();
+  return box_.min() + step_ * Vector3(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5,
+                                      static_cast<double>(z) + 0.5);
 }
 
 std::vector<Vector3> FingerWorkspace::cells() const {

@@ -25,7 +25,8 @@ class FingerWorkspace {
  public:
   /// Samples the finger's axes within the contact bounds of the hand. The other axes of the hand do
   /// not matter.
-  FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings = {});
+  FingerWorkspace(const HandModel& hand, const FingerChain& chain,
+                  const WorkspaceSettings& settings = {});
 
   /// Largest first; strictly inside the workspace. A workspace without volume (fewer than three
   /// axes) is covered by balls of one cell instead: there the inverse kinematics decides.

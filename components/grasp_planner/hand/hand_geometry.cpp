@@ -13,11 +13,14 @@ std::vector<FingerChain> make_chains(const HandModel& hand) {
 
 }  // namespace
 
-HandGeometry::HandGeometry(const HandModel& hand_model) : hand(hand_model), chains(make_chains(hand)), shape(hand, chains) {}
+HandGeometry::HandGeometry(const HandModel& hand_model)
+    : hand(hand_model), chains(make_chains(hand)), shape(hand, chains) {}
 
-FingerWorkspaces make_workspaces(const HandGeometry& hand_geometry, const WorkspaceSettings& settings) {
+FingerWorkspaces make_workspaces(const HandGeometry& hand_geometry,
+                                 const WorkspaceSettings& settings) {
   FingerWorkspaces workspaces;
-  for (const FingerChain& c : hand_geometry.chains) workspaces.emplace_back(hand_geometry.hand, c, settings);
+  for (const FingerChain& c : hand_geometry.chains)
+    workspaces.emplace_back(hand_geometry.hand, c, settings);
   return workspaces;
 }
 
@@ -27,8 +30,9 @@ void HandGeometry::forward(const Vector& q, std::vector<std::vector<Pose>>& T_ha
 }
 
 bool HandGeometry::shared(int axis) const {
-  return std::count_if(hand.fingers().begin(), hand.fingers().end(),
-                       [axis](const Finger& f) { return std::find(f.axes.begin(), f.axes.end(), axis) != f.axes.end(); }) > 1;
+  return std::count_if(hand.fingers().begin(), hand.fingers().end(), [axis](const Finger& f) {
+           return std::find(f.axes.begin(), f.axes.end(), axis) != f.axes.end();
+         }) > 1;
 }
 
 double HandGeometry::tip_radius() const {

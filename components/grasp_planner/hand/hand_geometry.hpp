@@ -28,6 +28,7 @@ struct HandGeometry {
 /// One a finger, in their order.
 using FingerWorkspaces = std::vector<FingerWorkspace>;
 /// Samples the workspace of each finger of the hand.
-FingerWorkspaces make_workspaces(const HandGeometry& hand_geometry, const WorkspaceSettings& settings = {});
+FingerWorkspaces make_workspaces(const HandGeometry& hand_geometry,
+                                 const WorkspaceSettings& settings = {});
 
 }  // namespace handsel::grasp_planner

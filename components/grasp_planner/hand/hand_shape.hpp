@@ -17,26 +17,29 @@ class HandShape {
 
   /// Returns whether a link that no finger moves touches the object. `clearance` [m] is kept from
   /// the surface (capsules only).
-  bool palm_touches(const Graspable& object, const Pose& T_object_hand, double clearance = 0.0) const;
+  bool palm_touches(const Graspable& object, const Pose& T_object_hand,
+                    double clearance = 0.0) const;
   /// Returns whether a link of a finger touches the object, its solids grown by `clearance` [m];
   /// negative shrinks: a fingertip in contact must not count as a collision.
-  bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
-                      double clearance) const;
+  bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object,
+                      const Pose& T_object_hand, double clearance) const;
   /// Returns whether a finger touches links that no finger moves; pairs the model disables do not
   /// count.
   bool finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const;
   /// Returns whether finger `a` touches finger `b`; pairs the model disables do not count.
-  bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const;
+  bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b,
+                     const std::vector<Pose>& T_hand_step_b) const;
   /// Returns whether the hand, palm or fingers, touches the object.
-  bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
-               double clearance) const;
+  bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
+               const Pose& T_object_hand, double clearance) const;
   /// Each solid's middle and lowest height in the world.
   struct Low {
     Vector3 middle{Vector3::Zero()};  ///< world [m]
     double height{};                  ///< lowest z of the solid, world [m]
   };
   /// Returns middle and lowest height of every solid, for the hand at a pose in the world.
-  std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const;
+  std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step,
+                        const Pose& T_world_hand) const;
   /// The whole hand placed in some frame, for tests of hands against each other.
   struct Placed {
     /// Whether the solid has a closed form as a capsule; whether it is part of the palm.
@@ -54,10 +57,12 @@ class HandShape {
     Eigen::AlignedBox3d box;     ///< around the balls of all solids [m]
   };
   /// Places palm and fingers in the frame of T_frame_hand.
-  PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
+  PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step,
+                    const Pose& T_frame_hand) const;
   /// Returns whether two hands are nearer than `clearance` [m], or a palm nearer to the other hand
   /// than `palm_clearance`.
-  static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance, double palm_clearance = 0.0);
+  static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance,
+                          double palm_clearance = 0.0);
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For
   /// free-room estimates.
   struct Round {
@@ -79,12 +84,15 @@ class HandShape {
     CollisionShapePtr shape, shrunk;
   };
   static Solid make_solid(int link, int step, const Pose& T_step_link, const PlacedShape& placed);
-  bool solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object, const Pose& T_object_hand, double clearance) const;
-  static bool solids_touch(const Solid& s, const Pose& T_hand_s, const Solid& t, const Pose& T_hand_t);
-  bool groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a, const std::vector<Solid>& b,
-                    const std::vector<Pose>& T_b) const;
+  bool solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object,
+                     const Pose& T_object_hand, double clearance) const;
+  static bool solids_touch(const Solid& s, const Pose& T_hand_s, const Solid& t,
+                           const Pose& T_hand_t);
+  bool groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a,
+                    const std::vector<Solid>& b, const std::vector<Pose>& T_b) const;
   std::size_t pair(int link_a, int link_b) const {
-    return static_cast<std::size_t>(link_a) * static_cast<std::size_t>(links_) + static_cast<std::size_t>(link_b);
+    return static_cast<std::size_t>(link_a) * static_cast<std::size_t>(links_) +
+           static_cast<std::size_t>(link_b);
   }
   bool disabled(int link_a, int link_b) const { return disabled_[pair(link_a, link_b)]; }
 

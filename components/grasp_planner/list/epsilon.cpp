@@ -32,8 +32,8 @@ class Hull {
     for (std::size_t i = 0; i < points_.size(); ++i) key_.push_back(mix(i));
   }
 
-  // Signed distance of the nearest hull facet; 0 when flat, not positive when the origin is not inside; NaN when rounding broke the
-  // topology.
+  // Signed distance of the nearest hull facet; 0 when flat, not positive when the origin is not
+  // inside; NaN when rounding broke the topology.
   double nearest() {
     if (!start()) return 0.0;
     while (true) {
@@ -75,11 +75,13 @@ class Hull {
 
   static double dot(const Point& a, const Point& b) {
     double s = 0;
-    for (int i = 0; i < D; ++i) s += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(i)];
+    for (int i = 0; i < D; ++i)
+      s += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(i)];
     return s;
   }
 
-  // Unit normal of the hyperplane through the facet's vertices, away from the inner point; false when they do not span one.
+  // Unit normal of the hyperplane through the facet's vertices, away from the inner point; false
+  // when they do not span one.
   bool plane(Facet& f) const {
     std::array<Point, D> m{};
     const Point& origin = points_[f.vertices[0]];
@@ -134,10 +136,11 @@ class Hull {
     return std::isfinite(f.offset);
   }
 
-  // The hyperplane through `point` and the ridge between a facet that sees it and one that does not: their pencil has it, outward already.
-  // Recomputed from the vertices when rounding shows.
+  // The hyperplane through `point` and the ridge between a facet that sees it and one that does
+  // not: their pencil has it, outward already. Recomputed from the vertices when rounding shows.
   bool cone_plane(const Facet& seeing, const Facet& blind, const Point& point, Facet& f) const {
-    const double above = dot(seeing.normal, point) - seeing.offset, below = blind.offset - dot(blind.normal, point);
+    const double above = dot(seeing.normal, point) - seeing.offset,
+                 below = blind.offset - dot(blind.normal, point);
     double length = 0;
     for (std::size_t c = 0; c < D; ++c) {
       f.normal[c] = above * blind.normal[c] + std::max(0.0, below) * seeing.normal[c];
@@ -214,7 +217,8 @@ class Hull {
     queue_.emplace(f.offset, facets_.size() - 1);
   }
 
-  // Replaces the facets that `point` sees, starting from `first`, by the cone from their horizon to it.
+  // Replaces the facets that `point` sees, starting from `first`, by the cone from their horizon to
+  // it.
   bool add(std::size_t first, std::uint16_t point) {
     ++mark_;
     visible_.assign(1, static_cast<std::uint32_t>(first));
@@ -254,7 +258,8 @@ class Hull {
         std::uint64_t all = 0;
         for (const std::uint16_t v : cone.vertices) all ^= key_[v];
         for (std::size_t j = 0; j < D; ++j) {
-          if (j != k) ridges_.push_back({all ^ key_[cone.vertices[j]], id, static_cast<std::uint32_t>(j)});
+          if (j != k)
+            ridges_.push_back({all ^ key_[cone.vertices[j]], id, static_cast<std::uint32_t>(j)});
         }
         push(cone);
       }
@@ -272,7 +277,8 @@ class Hull {
     std::size_t joined = 0;
     for (std::size_t i = 0; i < ridges_.size(); ++i) {
       std::size_t at = ridges_[i].key & (capacity - 1);
-      while (table_[at] >= 0 && ridges_[static_cast<std::size_t>(table_[at])].key != ridges_[i].key) at = (at + 1) & (capacity - 1);
+      while (table_[at] >= 0 && ridges_[static_cast<std::size_t>(table_[at])].key != ridges_[i].key)
+        at = (at + 1) & (capacity - 1);
       if (table_[at] < 0) {
         table_[at] = static_cast<std::int32_t>(i);
         continue;
@@ -300,14 +306,17 @@ class Hull {
 
 template <int D>
 double epsilon_of(const WrenchMatrix& w, double scale) {
-  // Rounding can break the hull of points that nearly share a facet. Then, and only then, it is built again from points moved by a
-  // relative 1e-11, then more: far below the 1e-9 that is promised for the distance.
+  // Rounding can break the hull of points that nearly share a facet. Then, and only then, it is
+  // built again from points moved by a relative 1e-11, then more: far below the 1e-9 that is
+  // promised for the distance.
   for (const double joggle : {0.0, 1e-12, 1e-11, 1e-10}) {
     std::vector<std::array<double, D>> points(static_cast<std::size_t>(w.cols()));
     for (Eigen::Index j = 0; j < w.cols(); ++j) {
       for (Eigen::Index i = 0; i < D; ++i) {
-        const auto noise = static_cast<double>(mix(static_cast<std::uint64_t>(j * D + i)) >> 11) * 0x1p-53 - 0.5;
-        points[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = w(i, j) / scale + joggle * noise;
+        const auto noise =
+            static_cast<double>(mix(static_cast<std::uint64_t>(j * D + i)) >> 11) * 0x1p-53 - 0.5;
+        points[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
+            w(i, j) / scale + joggle * noise;
       }
     }
     const double d = Hull<D>(std::move(points)).nearest();
@@ -329,10 +338,11 @@ double dispatch(const WrenchMatrix& w, double scale) {
 
 double epsilon(const WrenchMatrix& wrenches) {
   if (wrenches.rows() < 1 || wrenches.rows() > kMaxWrenchDimension) {
-    throw ConfigError("wrenches have dimension " + std::to_string(wrenches.rows()) + "; it must be 1 to " +
-                      std::to_string(kMaxWrenchDimension));
+    throw ConfigError("wrenches have dimension " + std::to_string(wrenches.rows()) +
+                      "; it must be 1 to " + std::to_string(kMaxWrenchDimension));
   }
-  if (wrenches.cols() > 65535) throw ConfigError(std::to_string(wrenches.cols()) + " wrenches are too many; at most 65535");
+  if (wrenches.cols() > 65535)
+    throw ConfigError(std::to_string(wrenches.cols()) + " wrenches are too many; at most 65535");
   const double scale = wrenches.cols() == 0 ? 0.0 : wrenches.cwiseAbs().maxCoeff();
   if (!(scale > 0.0) || !std::isfinite(scale)) return 0.0;
   return dispatch(wrenches, scale);

@@ -55,7 +55,9 @@ const char* reason_text(FrameReason reason) {
 Refusals GraspList::refusals() const {
   Refusals out;
   for (std::size_t r = 1; r < reasons.size(); ++r) {
-    if (reasons[r] > 0) out.push_back({std::to_string(reasons[r]) + " frames", reason_text(static_cast<FrameReason>(r))});
+    if (reasons[r] > 0)
+      out.push_back(
+          {std::to_string(reasons[r]) + " frames", reason_text(static_cast<FrameReason>(r))});
   }
   return out;
 }
@@ -85,7 +87,8 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
   for (int z = 0; z < n.z(); ++z) {
     for (int y = 0; y < n.y(); ++y) {
       for (int x = 0; x < n.x(); ++x)
-        out.push_back(box.min() + size.cwiseProduct(Vector3((x + 0.5) / n.x(), (y + 0.5) / n.y(), (z + 0.5) / n.z())));
+        out.push_back(box.min() + size.cwiseProduct(Vector3((x + 0.5) / n.x(), (y + 0.5) / n.y(),
+                                                            (z + 0.5) / n.z())));
     }
   }
   return out;
@@ -93,13 +96,14 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
 
 std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings) {
   if (!(settings.spacing > 0)) return settings.positions;
-  const double dense = std::ceil(box.sizes().cwiseMax(settings.spacing).prod() / std::pow(settings.spacing, 3));
+  const double dense =
+      std::ceil(box.sizes().cwiseMax(settings.spacing).prod() / std::pow(settings.spacing, 3));
   return static_cast<std::uint32_t>(std::clamp<double>(dense, settings.positions, kMostPositions));
 }
 
 struct GraspLister::Impl {
-  Impl(std::shared_ptr<const HandGeometry> k, std::shared_ptr<const FingerWorkspaces> w, std::shared_ptr<const Graspable> o,
-       const GraspListSettings& s)
+  Impl(std::shared_ptr<const HandGeometry> k, std::shared_ptr<const FingerWorkspaces> w,
+       std::shared_ptr<const Graspable> o, const GraspListSettings& s)
       : hand_geometry(std::move(k)),
         workspaces(std::move(w)),
         object(std::move(o)),
@@ -114,11 +118,14 @@ struct GraspLister::Impl {
     hand_geometry->forward(hand_geometry->hand.pregrasp(), T_pregrasp);
   }
 
-  std::uint64_t frames() const { return pinch ? pinch->frames() : positions.size() * orientations.size(); }
+  std::uint64_t frames() const {
+    return pinch ? pinch->frames() : positions.size() * orientations.size();
+  }
 
   FrameReason frame(std::uint64_t id) {
     if (pinch) return pinch_frame(id);
-    const Pose T_object_grasp = make_pose(positions[id % positions.size()], orientations[id / positions.size()]);
+    const Pose T_object_grasp =
+        make_pose(positions[id % positions.size()], orientations[id / positions.size()]);
     const Pose T_object_hand = T_object_grasp * hand_geometry->hand.T_hand_grasp().inverse();
     const std::size_t fingers = hand_geometry->chains.size();
     points.resize(fingers);
@@ -131,13 +138,15 @@ struct GraspLister::Impl {
     }
     if (reached + 1 < kLeastContacts) return FrameReason::fingers_out_of_reach;
     ++out.touch_tests;
-    if (hand_geometry->shape.palm_touches(*object, T_object_hand)) return FrameReason::palm_in_object;
+    if (hand_geometry->shape.palm_touches(*object, T_object_hand))
+      return FrameReason::palm_in_object;
     contacts.assign(fingers, {});
     contacts[0] = search.contacts(0, T_object_hand, points[0], out);
     if (contacts[0].empty()) return FrameReason::thumb_without_contact;
     std::size_t touching = 0;
     for (std::size_t f = 1; f < fingers; ++f) {
-      if (touching + (fingers - f) + 1 < kLeastContacts) return FrameReason::fingers_without_contact;
+      if (touching + (fingers - f) + 1 < kLeastContacts)
+        return FrameReason::fingers_without_contact;
       contacts[f] = search.contacts(static_cast<int>(f), T_object_hand, points[f], out);
       touching += !contacts[f].empty();
     }
@@ -145,11 +154,16 @@ struct GraspLister::Impl {
     return combine(id, T_object_hand);
   }
 
-  /// Posture of a finger without contact: rest, else pre-grasp; -1 when both collide with the object.
+  /// Posture of a finger without contact: rest, else pre-grasp; -1 when both collide with the
+  /// object.
   int idle_posture(std::size_t f, const Pose& T_object_hand) {
     ++out.touch_tests;
-    if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_rest[f], *object, T_object_hand, 0.002)) return 0;
-    if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_pregrasp[f], *object, T_object_hand, 0.002)) return 1;
+    if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_rest[f], *object, T_object_hand,
+                                             0.002))
+      return 0;
+    if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_pregrasp[f], *object,
+                                             T_object_hand, 0.002))
+      return 1;
     return -1;
   }
 
@@ -162,7 +176,8 @@ struct GraspLister::Impl {
     FrameReason why{};
     auto found = pinch->frame(id, out, why);
     if (!found) return why;
-    const WrenchMatrix w = contact_wrenches(found->contacts, settings.cone_edges, object->com(), 1 / object->radius());
+    const WrenchMatrix w =
+        contact_wrenches(found->contacts, settings.cone_edges, object->com(), 1 / object->radius());
     ++out.closure_tests;
     if (!force_closure(w)) return FrameReason::not_closed;
     Grasp& g = found->grasp;
@@ -185,14 +200,16 @@ struct GraspLister::Impl {
   }
 
   // Walks all combinations depth first; a pair of postures that collides cuts its whole branch.
-  void enumerate(std::size_t f, Combination& chosen, std::size_t used, std::vector<Combination>& found) {
+  void enumerate(std::size_t f, Combination& chosen, std::size_t used,
+                 std::vector<Combination>& found) {
     const std::size_t fingers = contacts.size();
     if (f == fingers) {
       if (used >= kLeastContacts) found.push_back(chosen);
       return;
     }
     for (int choice = static_cast<int>(contacts[f].size()) - 1; choice >= -1; --choice) {
-      if (choice < 0 && (f == 0 || idle[f] < 0 || used + (fingers - f - 1) < kLeastContacts)) continue;
+      if (choice < 0 && (f == 0 || idle[f] < 0 || used + (fingers - f - 1) < kLeastContacts))
+        continue;
       bool free = true;
       for (std::size_t g = 0; g < f && free; ++g) free = !clash(g, chosen[g], f, choice);
       if (!free) continue;
@@ -203,22 +220,27 @@ struct GraspLister::Impl {
 
   bool clash(std::size_t g, int a, std::size_t f, int b) {
     signed char& known =
-        clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width + static_cast<std::size_t>(b + 1)];
+        clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width +
+                static_cast<std::size_t>(b + 1)];
     if (known < 0)
-      known =
-          pull_apart(g, a, f, b) || hand_geometry->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
+      known = pull_apart(g, a, f, b) ||
+              hand_geometry->shape.fingers_touch(static_cast<int>(g), poses(g, a),
+                                                 static_cast<int>(f), poses(f, b));
     return known != 0;
   }
 
-  /// Fingers that share an axis must want the same of it; one without contact cannot while the other has one.
+  /// Fingers that share an axis must want the same of it; one without contact cannot while the
+  /// other has one.
   bool pull_apart(std::size_t g, int a, std::size_t f, int b) const {
     if (a < 0 && b < 0) return false;
     for (const int axis : hand_geometry->hand.fingers()[g].axes) {
-      if (std::find(hand_geometry->hand.fingers()[f].axes.begin(), hand_geometry->hand.fingers()[f].axes.end(), axis) ==
-          hand_geometry->hand.fingers()[f].axes.end())
+      if (std::find(hand_geometry->hand.fingers()[f].axes.begin(),
+                    hand_geometry->hand.fingers()[f].axes.end(),
+                    axis) == hand_geometry->hand.fingers()[f].axes.end())
         continue;
       if (a < 0 || b < 0) return true;
-      const double differ = contacts[g][static_cast<std::size_t>(a)].q[axis] - contacts[f][static_cast<std::size_t>(b)].q[axis];
+      const double differ = contacts[g][static_cast<std::size_t>(a)].q[axis] -
+                            contacts[f][static_cast<std::size_t>(b)].q[axis];
       if (std::abs(differ) > 1e-6) return true;
     }
     return false;
@@ -258,7 +280,9 @@ struct GraspLister::Impl {
   double quality(const GraspScores& s) const {
     const QualityWeights& w = settings.weights;
     const double sum = w.stability + w.centre + w.force + w.curvature;
-    return (w.stability * s.stability + w.centre * s.centre + w.force * s.force + w.curvature * s.curvature) / sum;
+    return (w.stability * s.stability + w.centre * s.centre + w.force * s.force +
+            w.curvature * s.curvature) /
+           sum;
   }
 
   FrameReason combine(std::uint64_t id, const Pose& T_object_hand) {
@@ -280,10 +304,12 @@ struct GraspLister::Impl {
     std::vector<Rated> rated;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const GraspScores s = cheap_scores(found[i]);
-      const auto used = static_cast<double>(std::count_if(found[i].begin(), found[i].end(), [](int k) { return k >= 0; }));
+      const auto used = static_cast<double>(
+          std::count_if(found[i].begin(), found[i].end(), [](int k) { return k >= 0; }));
       rated.push_back({quality(s) + 0.05 * used, i, s});
     }
-    std::stable_sort(rated.begin(), rated.end(), [](const Rated& a, const Rated& b) { return a.rank > b.rank; });
+    std::stable_sort(rated.begin(), rated.end(),
+                     [](const Rated& a, const Rated& b) { return a.rank > b.rank; });
     const double scale = 1 / object->radius();
     double best = -1;
     Rated winner{};
@@ -291,7 +317,8 @@ struct GraspLister::Impl {
     std::size_t closed = 0;
     for (Rated& r : rated) {
       if (closed >= kScoredCombinations) break;
-      const WrenchMatrix w = contact_wrenches(point_contacts(found[r.index]), settings.cone_edges, object->com(), scale);
+      const WrenchMatrix w = contact_wrenches(point_contacts(found[r.index]), settings.cone_edges,
+                                              object->com(), scale);
       ++out.closure_tests;
       if (!force_closure(w)) continue;
       const double e = epsilon(w);
@@ -329,7 +356,8 @@ struct GraspLister::Impl {
     return static_cast<double>(free) / static_cast<double>(object->points().size());
   }
 
-  Grasp make_grasp(std::uint64_t id, const Pose& T_object_hand, const Combination& c, double grasp_epsilon, double grasp_quality) const {
+  Grasp make_grasp(std::uint64_t id, const Pose& T_object_hand, const Combination& c,
+                   double grasp_epsilon, double grasp_quality) const {
     Grasp g;
     g.id = id;
     g.T_object_hand = T_object_hand;
@@ -338,29 +366,34 @@ struct GraspLister::Impl {
     g.epsilon = grasp_epsilon;
     g.quality = grasp_quality;
     for (std::size_t f = 0; f < c.size(); ++f) {
-      const FingerContact* contact = c[f] >= 0 ? &contacts[f][static_cast<std::size_t>(c[f])] : nullptr;
-      const Vector& idle_q = idle[f] == 1 ? hand_geometry->hand.pregrasp() : hand_geometry->hand.rest();
+      const FingerContact* contact =
+          c[f] >= 0 ? &contacts[f][static_cast<std::size_t>(c[f])] : nullptr;
+      const Vector& idle_q =
+          idle[f] == 1 ? hand_geometry->hand.pregrasp() : hand_geometry->hand.rest();
       for (const int a : hand_geometry->hand.fingers()[f].axes) {
         g.hand_joints[a] = contact != nullptr ? contact->q[a] : idle_q[a];
         g.pregrasp_joints[a] = contact != nullptr ? contact->q_open[a] : idle_q[a];
       }
       if (contact == nullptr) continue;
       const SurfacePoint& p = contact->place;
-      g.contacts.push_back({static_cast<std::uint32_t>(f), p.position, p.normal, p.triangle, p.barycentric, friction(), p.curvature});
+      g.contacts.push_back({static_cast<std::uint32_t>(f), p.position, p.normal, p.triangle,
+                            p.barycentric, friction(), p.curvature});
     }
     grip(c, g);
     return g;
   }
 
   void grip(const Combination& c, Grasp& g) const {
-    const GripForces grip = grip_forces(point_contacts(c), object->com(), object->mass(), settings.grip);
+    const GripForces grip =
+        grip_forces(point_contacts(c), object->com(), object->mass(), settings.grip);
     g.margin = grip.margin;
     g.hand_effort = Vector::Zero(g.hand_joints.size());
     const Pose T_hand_object = g.T_object_hand.inverse();
     for (std::size_t k = 0; k < grip.forces.size(); ++k) {
       const std::size_t f = g.contacts[k].finger;
-      hand_geometry->chains[f].add_effort(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step, T_hand_object, g.contacts[k].position,
-                                          grip.forces[k], g.hand_effort);
+      hand_geometry->chains[f].add_effort(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step,
+                                          T_hand_object, g.contacts[k].position, grip.forces[k],
+                                          g.hand_effort);
     }
   }
 
@@ -381,9 +414,12 @@ struct GraspLister::Impl {
   GraspList out;
 };
 
-GraspLister::GraspLister(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
-                         std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun)
-    : impl_(std::make_unique<Impl>(std::move(hand_geometry), std::move(workspaces), std::move(object), settings)) {
+GraspLister::GraspLister(std::shared_ptr<const HandGeometry> hand_geometry,
+                         std::shared_ptr<const FingerWorkspaces> workspaces,
+                         std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
+                         GraspList begun)
+    : impl_(std::make_unique<Impl>(std::move(hand_geometry), std::move(workspaces),
+                                   std::move(object), settings)) {
   if (begun.frames > 0) impl_->out = std::move(begun);
 }
 GraspLister::~GraspLister() = default;
@@ -408,9 +444,11 @@ bool GraspLister::advance(std::uint64_t count) {
 
 GraspList GraspLister::list() const { return merged({impl_->out}); }
 
-std::uint64_t frame_count(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings) {
+std::uint64_t frame_count(const HandGeometry& hand_geometry, const Graspable& object,
+                          const GraspListSettings& settings) {
   if (hand_geometry.hand.pinches()) return PinchSearch(hand_geometry, object, settings).frames();
-  return uniform_positions(object.box(), position_count(object.box(), settings)).size() * std::uint64_t{settings.orientations};
+  return uniform_positions(object.box(), position_count(object.box(), settings)).size() *
+         std::uint64_t{settings.orientations};
 }
 
 GraspList merged(std::vector<GraspList> parts) {
@@ -424,15 +462,18 @@ GraspList merged(std::vector<GraspList> parts) {
     out.closure_tests += parts[i].closure_tests;
   }
   std::sort(out.grasps.begin(), out.grasps.end(), [](const ListedGrasp& a, const ListedGrasp& b) {
-    return a.grasp.quality != b.grasp.quality ? a.grasp.quality > b.grasp.quality : a.grasp.id < b.grasp.id;
+    return a.grasp.quality != b.grasp.quality ? a.grasp.quality > b.grasp.quality
+                                              : a.grasp.id < b.grasp.id;
   });
   return out;
 }
 
-GraspList list_grasps(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
-                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings, const std::function<bool()>& cancelled,
-                      GraspList begun) {
-  GraspLister lister(std::move(hand_geometry), std::move(workspaces), std::move(object), settings, std::move(begun));
+GraspList list_grasps(std::shared_ptr<const HandGeometry> hand_geometry,
+                      std::shared_ptr<const FingerWorkspaces> workspaces,
+                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
+                      const std::function<bool()>& cancelled, GraspList begun) {
+  GraspLister lister(std::move(hand_geometry), std::move(workspaces), std::move(object), settings,
+                     std::move(begun));
   while (lister.advance(64)) {
     if (cancelled && cancelled()) break;
   }

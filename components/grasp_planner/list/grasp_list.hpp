@@ -35,10 +35,10 @@ struct GraspListSettings {
   QualityWeights weights;                ///< of the terms of the quality
   std::uint32_t contacts_per_finger{4};  ///< alternatives kept for each finger of a frame
   std::uint32_t tries_per_finger{24};    ///< candidates checked for them
-  double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
-  double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
-  double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
-  GripForceSettings grip;                ///< how hard it is held, and what it must bear
+  double depth{0.0008};   ///< how deep the model of a touching finger may be in the object [m]
+  double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
+  GripForceSettings grip;        ///< how hard it is held, and what it must bear
   /// Surface this far from the hand counts as room for another hand [m].
   double free_distance{0.03};
   std::uint64_t seed{1};  ///< of the contact points; the same gives the same list
@@ -91,7 +91,8 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
 std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings);
 
 /// Returns how many frames these settings give for a hand on an object.
-std::uint64_t frame_count(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings);
+std::uint64_t frame_count(const HandGeometry& hand_geometry, const Graspable& object,
+                          const GraspListSettings& settings);
 
 /// Returns lists of different frames of the same hand and object as one.
 GraspList merged(std::vector<GraspList> parts);
@@ -100,8 +101,10 @@ class GraspLister {
  public:
   /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is
   /// continued. Empty: from the first frame.
-  GraspLister(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
-              std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun = {});
+  GraspLister(std::shared_ptr<const HandGeometry> hand_geometry,
+              std::shared_ptr<const FingerWorkspaces> workspaces,
+              std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
+              GraspList begun = {});
   ~GraspLister();
   GraspLister(GraspLister&&) noexcept;
 
@@ -122,7 +125,8 @@ class GraspLister {
 };
 
 /// All frames at once; `cancelled` is asked now and then.
-GraspList list_grasps(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspList list_grasps(std::shared_ptr<const HandGeometry> hand_geometry,
+                      std::shared_ptr<const FingerWorkspaces> workspaces,
                       std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
                       const std::function<bool()>& cancelled = {}, GraspList begun = {});
 

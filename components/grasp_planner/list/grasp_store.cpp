@@ -14,7 +14,8 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::uint32_t kVersion = 4;  // of the form on disk and of the method: raise it when either changes
+constexpr std::uint32_t kVersion =
+    4;  // of the form on disk and of the method: raise it when either changes
 
 /// FNV-1a, 64 bit.
 class Hash {
@@ -75,10 +76,13 @@ void put(const V& v, google::protobuf::RepeatedField<double>* out) {
 }
 
 Vector3 vector3(const google::protobuf::RepeatedField<double>& v) { return {v[0], v[1], v[2]}; }
-Vector vector(const google::protobuf::RepeatedField<double>& v) { return Eigen::Map<const Vector>(v.data(), v.size()); }
+Vector vector(const google::protobuf::RepeatedField<double>& v) {
+  return Eigen::Map<const Vector>(v.data(), v.size());
+}
 
 std::optional<ListedGrasp> grasp_from(const config::StoredGrasp& in) {
-  if (in.pose_size() != 12 || in.scores_size() != 4 || in.hand_joints_size() != in.pregrasp_joints_size() ||
+  if (in.pose_size() != 12 || in.scores_size() != 4 ||
+      in.hand_joints_size() != in.pregrasp_joints_size() ||
       in.hand_joints_size() != in.hand_effort_size())
     return std::nullopt;
   ListedGrasp out;
@@ -91,9 +95,10 @@ std::optional<ListedGrasp> grasp_from(const config::StoredGrasp& in) {
   g.pregrasp_joints = vector(in.pregrasp_joints());
   g.hand_effort = vector(in.hand_effort());
   for (const auto& c : in.contacts()) {
-    if (c.position_size() != 3 || c.normal_size() != 3 || c.barycentric_size() != 3) return std::nullopt;
-    g.contacts.push_back(
-        {c.finger(), vector3(c.position()), vector3(c.normal()), c.triangle(), vector3(c.barycentric()), c.friction(), c.curvature()});
+    if (c.position_size() != 3 || c.normal_size() != 3 || c.barycentric_size() != 3)
+      return std::nullopt;
+    g.contacts.push_back({c.finger(), vector3(c.position()), vector3(c.normal()), c.triangle(),
+                          vector3(c.barycentric()), c.friction(), c.curvature()});
   }
   g.epsilon = in.epsilon();
   g.quality = in.quality();
@@ -125,13 +130,16 @@ void put_grasp(const ListedGrasp& in, config::StoredGrasp* out) {
   out->set_epsilon(g.epsilon);
   out->set_quality(g.quality);
   out->set_margin(g.margin);
-  for (const double s : {in.scores.stability, in.scores.centre, in.scores.force, in.scores.curvature}) out->add_scores(s);
+  for (const double s :
+       {in.scores.stability, in.scores.centre, in.scores.force, in.scores.curvature})
+    out->add_scores(s);
   out->set_room(in.room);
 }
 
 }  // namespace
 
-std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const GraspListSettings& s) {
+std::uint64_t list_key(const HandModel& hand, const ObjectModel& object,
+                       const GraspListSettings& s) {
   Hash h;
   h.add(static_cast<std::uint64_t>(kVersion));
   for (const Link& l : hand.model().links()) {
@@ -155,7 +163,9 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
   }
   h.add(hand.grip_force());
   h.add(hand.T_hand_grasp());
-  for (const Vector* v : {&hand.rest(), &hand.pregrasp(), &hand.lower_contact(), &hand.upper_contact()}) h.add(*v);
+  for (const Vector* v :
+       {&hand.rest(), &hand.pregrasp(), &hand.lower_contact(), &hand.upper_contact()})
+    h.add(*v);
   h.add(object.mesh);
   for (const PlacedShape& p : object.parts) h.add(p);
   h.add(object.com);
@@ -190,11 +200,13 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
 std::filesystem::path default_store() {
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0')
     return std::filesystem::path(cache) / "handsel";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') return std::filesystem::path(home) / ".cache" / "handsel";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return std::filesystem::path(home) / ".cache" / "handsel";
   return {};
 }
 
-std::string GraspStore::stem(const std::string& hand, const std::string& object, std::uint64_t key) {
+std::string GraspStore::stem(const std::string& hand, const std::string& object,
+                             std::uint64_t key) {
   const auto plain = [](std::string s) {
     for (char& c : s) {
       if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
@@ -206,12 +218,13 @@ std::string GraspStore::stem(const std::string& hand, const std::string& object,
   return name.str();
 }
 
-std::filesystem::path GraspStore::file(const std::string& hand, const std::string& object, std::uint64_t key, std::uint64_t frames) const {
+std::filesystem::path GraspStore::file(const std::string& hand, const std::string& object,
+                                       std::uint64_t key, std::uint64_t frames) const {
   return folder_ / (stem(hand, object, key) + std::to_string(frames) + ".pb");
 }
 
-std::optional<GraspList> GraspStore::load(const std::string& hand, const std::string& object, std::uint64_t key,
-                                          std::uint64_t max_frames) const {
+std::optional<GraspList> GraspStore::load(const std::string& hand, const std::string& object,
+                                          std::uint64_t key, std::uint64_t max_frames) const {
   if (folder_.empty()) return std::nullopt;
   const std::string begin = stem(hand, object, key);
   std::vector<std::uint64_t> known;
@@ -233,19 +246,23 @@ std::optional<GraspList> GraspStore::load(const std::string& hand, const std::st
 std::optional<GraspList> GraspStore::read(const std::filesystem::path& file, std::uint64_t key) {
   constexpr std::uintmax_t kMaxBytes = 256u << 20;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > kMaxBytes) return std::nullopt;
+  if (!std::filesystem::is_regular_file(file, error) ||
+      std::filesystem::file_size(file, error) > kMaxBytes)
+    return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   config::StoredGraspList stored;
-  if (!stored.ParseFromString(bytes) || stored.version() != kVersion || stored.key() != key || checksum(stored) != stored.checksum()) {
+  if (!stored.ParseFromString(bytes) || stored.version() != kVersion || stored.key() != key ||
+      checksum(stored) != stored.checksum()) {
     return std::nullopt;
   }
   GraspList list;
   list.hand = stored.hand();
   list.object = stored.object();
   list.frames = stored.frames();
-  if (stored.reasons_size() != static_cast<int>(list.reasons.size()) || stored.work_size() != 3) return std::nullopt;
+  if (stored.reasons_size() != static_cast<int>(list.reasons.size()) || stored.work_size() != 3)
+    return std::nullopt;
   std::copy(stored.reasons().begin(), stored.reasons().end(), list.reasons.begin());
   list.finger_solutions = stored.work(0);
   list.touch_tests = stored.work(1);
@@ -267,7 +284,8 @@ bool GraspStore::save(const GraspList& list, std::uint64_t key) const {
   stored.set_object(list.object);
   stored.set_frames(list.frames);
   for (const std::uint64_t r : list.reasons) stored.add_reasons(r);
-  for (const std::uint64_t w : {list.finger_solutions, list.touch_tests, list.closure_tests}) stored.add_work(w);
+  for (const std::uint64_t w : {list.finger_solutions, list.touch_tests, list.closure_tests})
+    stored.add_work(w);
   for (const ListedGrasp& g : list.grasps) put_grasp(g, stored.add_grasps());
   stored.set_checksum(checksum(stored));
   std::error_code error;

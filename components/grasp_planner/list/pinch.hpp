@@ -36,7 +36,8 @@ class PinchMotion {
 
 class PinchSearch {
  public:
-  PinchSearch(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings);
+  PinchSearch(const HandGeometry& hand_geometry, const Graspable& object,
+              const GraspListSettings& settings);
 
   /// Returns the number of frames: places of the surface times turns of the hand about the
   /// surface's normal; as many as the settings' positions and orientations, or fewer.
@@ -55,10 +56,11 @@ class PinchSearch {
 
  private:
   static constexpr std::uint64_t kTurns = 16;
-  std::optional<Found> across(const SurfacePoint& place, const Vector3& along, double thickness, GraspList& counters, FrameReason& why);
+  std::optional<Found> across(const SurfacePoint& place, const Vector3& along, double thickness,
+                              GraspList& counters, FrameReason& why);
   bool touch(std::uint32_t finger, const Pose& T_object_pad, Found& found);
-  bool fingers_touch(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_object_hand, double clearance,
-                     GraspList& counters) const;
+  bool fingers_touch(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_object_hand,
+                     double clearance, GraspList& counters) const;
   void grip(Found& found, std::size_t max_on_a_pad) const;
 
   const HandGeometry& hand_geometry_;

@@ -16,7 +16,8 @@ struct SpherePoint {
   double theta, phi;
 };
 
-// Centre of pixel (face, x, y) of the HEALPix partition with `nside` pixels along each side of its twelve faces.
+// Centre of pixel (face, x, y) of the HEALPix partition with `nside` pixels along each side of its
+// twelve faces.
 SpherePoint healpix_centre(int face, std::uint64_t x, std::uint64_t y, std::uint64_t nside) {
   static constexpr std::array<int, 12> kRing = {2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4};
   static constexpr std::array<int, 12> kColumn = {1, 3, 5, 7, 0, 2, 4, 6, 1, 3, 5, 7};
@@ -38,13 +39,15 @@ SpherePoint healpix_centre(int face, std::uint64_t x, std::uint64_t y, std::uint
   long column = (kColumn[static_cast<std::size_t>(face)] * across + ix - iy + 1 + shift) / 2;
   if (column > 4 * n) column -= 4 * n;
   if (column < 1) column += 4 * n;
-  const double phi = (static_cast<double>(column) - 0.5 * static_cast<double>(shift + 1)) * (kPi / 2) / static_cast<double>(across);
+  const double phi = (static_cast<double>(column) - 0.5 * static_cast<double>(shift + 1)) *
+                     (kPi / 2) / static_cast<double>(across);
   return {std::acos(std::clamp(z, -1.0, 1.0)), phi};
 }
 
 Eigen::Quaterniond hopf(const SpherePoint& s, double psi) {
   const double c = std::cos(s.theta / 2), k = std::sin(s.theta / 2);
-  return {c * std::cos(psi / 2), c * std::sin(psi / 2), k * std::cos(s.phi + psi / 2), k * std::sin(s.phi + psi / 2)};
+  return {c * std::cos(psi / 2), c * std::sin(psi / 2), k * std::cos(s.phi + psi / 2),
+          k * std::sin(s.phi + psi / 2)};
 }
 
 // Order in which the 72 base cells are visited: each next one farthest from those before.
@@ -82,7 +85,8 @@ Eigen::Quaterniond so3_grid_cell(int level, std::uint64_t index) {
   const std::uint64_t base = index >> (3 * level);
   const std::uint64_t nside = 1ULL << level;
   turn += (base % kBaseAngles) * nside;
-  const double psi = 2 * kPi * (static_cast<double>(turn) + 0.5) / static_cast<double>(kBaseAngles * nside);
+  const double psi =
+      2 * kPi * (static_cast<double>(turn) + 0.5) / static_cast<double>(kBaseAngles * nside);
   return hopf(healpix_centre(static_cast<int>(base / kBaseAngles), x, y, nside), psi);
 }
 

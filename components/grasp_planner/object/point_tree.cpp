@@ -15,7 +15,8 @@ PointTree::PointTree(const std::vector<Vector3>& points) : points_(points) {
   box_ = nodes_.front().box;
 }
 
-std::uint32_t PointTree::build(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end) {
+std::uint32_t PointTree::build(std::vector<std::uint32_t>& order, std::size_t begin,
+                               std::size_t end) {
   const auto id = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   Eigen::AlignedBox3d box;
@@ -28,8 +29,10 @@ std::uint32_t PointTree::build(std::vector<std::uint32_t>& order, std::size_t be
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const double middle = box.center()[axis];
-  const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin), last = order.begin() + static_cast<std::ptrdiff_t>(end);
-  auto cut = std::stable_partition(first, last, [&](std::uint32_t i) { return points_[i][axis] <= middle; });
+  const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin),
+             last = order.begin() + static_cast<std::ptrdiff_t>(end);
+  auto cut = std::stable_partition(first, last,
+                                   [&](std::uint32_t i) { return points_[i][axis] <= middle; });
   if (cut == first || cut == last) cut = first + (last - first) / 2;
   const auto split = static_cast<std::size_t>(cut - order.begin());
   const std::uint32_t left = build(order, begin, split);
@@ -39,13 +42,16 @@ std::uint32_t PointTree::build(std::vector<std::uint32_t>& order, std::size_t be
   return id;
 }
 
-void PointTree::inside_ball(const Vector3& centre, double radius, std::vector<std::uint32_t>& out) const {
+void PointTree::inside_ball(const Vector3& centre, double radius,
+                            std::vector<std::uint32_t>& out) const {
   if (nodes_.empty()) return;
   const double limit = radius * radius;
   std::array<std::uint32_t, 64> small{};
   std::vector<std::uint32_t> large;
   std::size_t depth = 0;
-  const auto push = [&](std::uint32_t n) { depth < small.size() ? static_cast<void>(small[depth++] = n) : large.push_back(n); };
+  const auto push = [&](std::uint32_t n) {
+    depth < small.size() ? static_cast<void>(small[depth++] = n) : large.push_back(n);
+  };
   push(0);
   while (depth > 0 || !large.empty()) {
     std::uint32_t id = 0;

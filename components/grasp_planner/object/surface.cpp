@@ -27,11 +27,15 @@ Corners corners(const TriangleMesh& m, std::size_t t) {
 Vector3 area_vector(const Corners& t) { return 0.5 * (t.b - t.a).cross(t.c - t.a); }
 
 std::uint64_t cell_key(const Eigen::Vector3i& c) {
-  const auto part = [](int v) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v + (1 << 20))) & 0x1fffffU; };
+  const auto part = [](int v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v + (1 << 20))) & 0x1fffffU;
+  };
   return part(c.x()) << 42 | part(c.y()) << 21 | part(c.z());
 }
 
-Eigen::Vector3i cell_of(const Vector3& p, double size) { return (p / size).array().floor().cast<int>(); }
+Eigen::Vector3i cell_of(const Vector3& p, double size) {
+  return (p / size).array().floor().cast<int>();
+}
 
 double length_in_ball(const Vector3& a, const Vector3& b, const Vector3& centre, double radius) {
   const Vector3 d = b - a, m = a - centre;
@@ -46,7 +50,8 @@ double length_in_ball(const Vector3& a, const Vector3& b, const Vector3& centre,
 
 using EdgeMap = std::map<std::pair<int, int>, std::vector<std::pair<std::uint32_t, bool>>>;
 
-// Edge -> triangles that have it, and whether they run through it from the lower to the higher vertex.
+// Edge -> triangles that have it, and whether they run through it from the lower to the higher
+// vertex.
 EdgeMap edges_of(const TriangleMesh& mesh) {
   EdgeMap edges;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -61,14 +66,17 @@ EdgeMap edges_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const SurfaceSettings& settings) {
+std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh,
+                                         const SurfaceSettings& settings) {
   std::vector<double> cumulative;
   cumulative.reserve(mesh.triangles.size());
   double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) cumulative.push_back(area += area_vector(corners(mesh, t)).norm());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    cumulative.push_back(area += area_vector(corners(mesh, t)).norm());
   if (!(area > 0)) return {};
   const double step = std::max(settings.step, std::sqrt(area / (0.6 * settings.max_points)));
-  // Candidates: ten for each cell of one step, one per equal share of the area, placed in the triangle by the R2 sequence.
+  // Candidates: ten for each cell of one step, one per equal share of the area, placed in the
+  // triangle by the R2 sequence.
   const auto count = static_cast<std::size_t>(std::ceil(10 * area / (step * step)));
   std::mt19937_64 random(settings.seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -79,7 +87,8 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
   for (std::size_t i = 0; i < count; ++i) {
     const double target = area * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     while (t + 1 < cumulative.size() && cumulative[t] < target) ++t;
-    double u = shift_u + 0.7548776662466927 * static_cast<double>(i), v = shift_v + 0.5698402909980532 * static_cast<double>(i);
+    double u = shift_u + 0.7548776662466927 * static_cast<double>(i),
+           v = shift_v + 0.5698402909980532 * static_cast<double>(i);
     u -= std::floor(u);
     v -= std::floor(v);
     if (u + v > 1) {
@@ -94,7 +103,8 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
     p.triangle = static_cast<std::uint32_t>(t);
     candidates.push_back(p);
   }
-  for (std::size_t i = candidates.size(); i > 1; --i) std::swap(candidates[i - 1], candidates[random() % i]);
+  for (std::size_t i = candidates.size(); i > 1; --i)
+    std::swap(candidates[i - 1], candidates[random() % i]);
   // Keep those with no kept neighbour within the step on the same side of the wall.
   std::vector<SurfacePoint> kept;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> grid;
@@ -108,7 +118,8 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
           const auto found = grid.find(cell_key(cell + Eigen::Vector3i(x, y, z)));
           if (found == grid.end()) continue;
           for (const std::uint32_t i : found->second) {
-            free = free && !(kept[i].normal.dot(p.normal) > 0 && (kept[i].position - p.position).squaredNorm() < apart * apart);
+            free = free && !(kept[i].normal.dot(p.normal) > 0 &&
+                             (kept[i].position - p.position).squaredNorm() < apart * apart);
           }
         }
       }
@@ -122,13 +133,15 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
     positions.push_back(p.position);
     normals.push_back(p.normal);
   }
-  const std::vector<double> curvature = mean_curvature(mesh, positions, normals, settings.curvature_radius);
-  for (std::size_t i = 0; i < kept.size(); ++i) kept[i].curvature = normalised_curvature(curvature[i], settings.curvature_radius);
+  const std::vector<double> curvature =
+      mean_curvature(mesh, positions, normals, settings.curvature_radius);
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    kept[i].curvature = normalised_curvature(curvature[i], settings.curvature_radius);
   return kept;
 }
 
-std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, const std::vector<Vector3>& normals,
-                                   double radius) {
+std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points,
+                                   const std::vector<Vector3>& normals, double radius) {
   struct Bend {
     Vector3 a, b;
     double angle;
@@ -140,29 +153,33 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
     Vector3 facing = area_vector(corners(mesh, users[0].first)).normalized();
     if (users.size() >= 2) {
       facing += area_vector(corners(mesh, users[1].first)).normalized();
-      const Vector3 n0 = area_vector(corners(mesh, users[0].first)), n1 = area_vector(corners(mesh, users[1].first));
+      const Vector3 n0 = area_vector(corners(mesh, users[0].first)),
+                    n1 = area_vector(corners(mesh, users[1].first));
       angle = std::atan2(n0.cross(n1).norm(), n0.dot(n1));
       // Convex when the second triangle lies below the plane of the first.
       const Corners k0 = corners(mesh, users[0].first), k1 = corners(mesh, users[1].first);
       if (n0.dot((k1.a + k1.b + k1.c) - (k0.a + k0.b + k0.c)) > 0) angle = -angle;
     }
     if (std::abs(angle) > 1e-6)
-      bends.push_back(
-          {mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle, facing});
+      bends.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)],
+                       mesh.vertices[static_cast<std::size_t>(edge.second)], angle, facing});
   }
-  // Each bend is entered in every cell that its box, grown by the radius, meets; at most 64 cells along an axis by cutting it.
+  // Each bend is entered in every cell that its box, grown by the radius, meets; at most 64 cells
+  // along an axis by cutting it.
   const double cell = 2 * radius;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> grid;
   std::vector<Bend> pieces;
   for (const Bend& b : bends) {
     const int parts = std::max(1, static_cast<int>(std::ceil((b.b - b.a).norm() / (2 * cell))));
     for (int k = 0; k < parts; ++k) {
-      const Bend piece{b.a + (b.b - b.a) * k / parts, b.a + (b.b - b.a) * (k + 1) / parts, b.angle, b.facing};
+      const Bend piece{b.a + (b.b - b.a) * k / parts, b.a + (b.b - b.a) * (k + 1) / parts, b.angle,
+                       b.facing};
       const auto low = cell_of(piece.a.cwiseMin(piece.b).array() - radius, cell),
                  high = cell_of(piece.a.cwiseMax(piece.b).array() + radius, cell);
       for (int x = low.x(); x <= high.x(); ++x) {
         for (int y = low.y(); y <= high.y(); ++y) {
-          for (int z = low.z(); z <= high.z(); ++z) grid[cell_key({x, y, z})].push_back(static_cast<std::uint32_t>(pieces.size()));
+          for (int z = low.z(); z <= high.z(); ++z)
+            grid[cell_key({x, y, z})].push_back(static_cast<std::uint32_t>(pieces.size()));
         }
       }
       pieces.push_back(piece);
@@ -183,13 +200,16 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
   return out;
 }
 
-double normalised_curvature(double mean_curvature, double radius) { return std::clamp(2 * mean_curvature * radius, 0.0, 1.0); }
+double normalised_curvature(double mean_curvature, double radius) {
+  return std::clamp(2 * mean_curvature * radius, 0.0, 1.0);
+}
 
 Vector3 mass_centre(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Vector3& v : mesh.vertices) box.extend(v);
   const MassProperties filled = mass_properties(mesh);
-  if (filled.volume > 0.02 * box.volume()) return filled.com.cwiseMax(box.min()).cwiseMin(box.max());
+  if (filled.volume > 0.02 * box.volume())
+    return filled.com.cwiseMax(box.min()).cwiseMin(box.max());
   double area = 0;
   Vector3 by_area = Vector3::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -205,7 +225,8 @@ MeshFindings orient(TriangleMesh& mesh) {
   MeshFindings findings;
   const EdgeMap edges = edges_of(mesh);
   const std::size_t n = mesh.triangles.size();
-  std::vector<std::vector<std::pair<std::uint32_t, bool>>> neighbours(n);  // triangle, must one of the two be turned
+  std::vector<std::vector<std::pair<std::uint32_t, bool>>> neighbours(
+      n);  // triangle, must one of the two be turned
   for (const auto& [edge, users] : edges) {
     findings.open_edges += users.size() == 1;
     findings.crowded_edges += users.size() > 2;
@@ -230,7 +251,8 @@ MeshFindings orient(TriangleMesh& mesh) {
     for (std::size_t i = 0; i < c.triangles.size(); ++i) {
       for (const auto& [other, differ] : neighbours[c.triangles[i]]) {
         if (turn[other] >= 0) continue;
-        turn[other] = static_cast<signed char>(turn[c.triangles[i]] ^ static_cast<signed char>(differ));
+        turn[other] =
+            static_cast<signed char>(turn[c.triangles[i]] ^ static_cast<signed char>(differ));
         c.triangles.push_back(other);
       }
     }
@@ -252,8 +274,10 @@ MeshFindings orient(TriangleMesh& mesh) {
   for (const Component& c : components) {
     bool inner = false;
     for (const Component& other : components)
-      inner = inner || (&other != &c && other.box.contains(c.box) && other.box.volume() > c.box.volume());
-    // An inner shell keeps the orientation most of its triangles came with; all others face outward.
+      inner = inner ||
+              (&other != &c && other.box.contains(c.box) && other.box.volume() > c.box.volume());
+    // An inner shell keeps the orientation most of its triangles came with; all others face
+    // outward.
     const bool flip = inner ? 2 * c.as_given < c.triangles.size() : c.volume < 0;
     for (const std::uint32_t t : c.triangles) {
       if ((turn[t] != 0) == flip) continue;
@@ -274,8 +298,9 @@ MeshFindings mend(TriangleMesh& mesh) {
   std::vector<std::array<int, 3>> triangles;
   const auto index = [&](int old) {
     const Vector3& v = mesh.vertices[static_cast<std::size_t>(old)];
-    const auto [at, fresh] = known.try_emplace({std::llround(v.x() / grid), std::llround(v.y() / grid), std::llround(v.z() / grid)},
-                                               static_cast<int>(vertices.size()));
+    const auto [at, fresh] = known.try_emplace(
+        {std::llround(v.x() / grid), std::llround(v.y() / grid), std::llround(v.z() / grid)},
+        static_cast<int>(vertices.size()));
     if (fresh) vertices.push_back(v);
     return at->second;
   };
@@ -283,11 +308,15 @@ MeshFindings mend(TriangleMesh& mesh) {
   for (const auto& t : mesh.triangles) {
     for (const int v : t) used[static_cast<std::size_t>(v)] = true;
     const std::array<int, 3> k = {index(t[0]), index(t[1]), index(t[2])};
-    const auto at = [&](std::size_t i) -> const Vector3& { return vertices[static_cast<std::size_t>(k[i])]; };
-    const double longest = std::max({(at(1) - at(0)).squaredNorm(), (at(2) - at(1)).squaredNorm(), (at(0) - at(2)).squaredNorm()});
+    const auto at = [&](std::size_t i) -> const Vector3& {
+      return vertices[static_cast<std::size_t>(k[i])];
+    };
+    const double longest = std::max({(at(1) - at(0)).squaredNorm(), (at(2) - at(1)).squaredNorm(),
+                                     (at(0) - at(2)).squaredNorm()});
     std::array<int, 3> sorted = k;
     std::sort(sorted.begin(), sorted.end());
-    if ((at(1) - at(0)).cross(at(2) - at(0)).norm() > 1e-9 * longest && seen.insert(sorted).second) triangles.push_back(k);
+    if ((at(1) - at(0)).cross(at(2) - at(0)).norm() > 1e-9 * longest && seen.insert(sorted).second)
+      triangles.push_back(k);
   }
   const auto before = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
   const auto welded = static_cast<std::uint32_t>(before - vertices.size());
@@ -308,9 +337,14 @@ std::vector<std::string> sentences(const MeshFindings& f) {
   say(f.welded, "vertices were there more than once; they were welded.");
   say(f.dropped, "triangles were without area or repeated; they were left out.");
   say(f.turned, "triangles faced the wrong way; they were turned.");
-  say(f.open_edges, "edges are borders of holes; the holes were left open, and a place behind them counts as outside.");
-  say(f.crowded_edges, "edges are shared by more than two triangles; the parts that meet there were oriented one by one.");
-  if (f.components > 1) say(f.components, "parts are not connected; they were taken as one rigid object.");
+  say(f.open_edges,
+      "edges are borders of holes; the holes were left open, and a place behind them counts as "
+      "outside.");
+  say(f.crowded_edges,
+      "edges are shared by more than two triangles; the parts that meet there were oriented one by "
+      "one.");
+  if (f.components > 1)
+    say(f.components, "parts are not connected; they were taken as one rigid object.");
   return out;
 }
 

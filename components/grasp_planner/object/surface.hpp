@@ -33,8 +33,8 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
 /// the mesh's edges (normal cycle). Own method in place of values interpolated from vertices:
 /// independent of the triangulation. An open border counts as an edge that turns by 180 degrees.
 /// `normals`: of the surface at the points; edges of the other side of a thin wall do not count.
-std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, const std::vector<Vector3>& normals,
-                                   double radius);
+std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points,
+                                   const std::vector<Vector3>& normals, double radius);
 
 /// 0 flat ... 1 at least as sharp as a right-angled edge under the ball: min(1, 2 |H| radius).
 double normalised_curvature(double mean_curvature, double radius);

@@ -10,13 +10,15 @@
 namespace handsel::grasp_planner {
 namespace {
 
-double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1) {
+double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vector3& b0,
+                               const Vector3& b1) {
   Vector3 on_a, on_b;
   return nearest_points(a0, a1, b0, b1, on_a, on_b);
 }
 
 /// Barycentric coordinates of the point of the triangle nearest to p.
-Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b,
+                            const Vector3& c) {
   const Vector3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
@@ -36,13 +38,15 @@ Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b
   return {1 - v - w, v, w};
 }
 
-double point_triangle_squared(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+double point_triangle_squared(const Vector3& p, const Vector3& a, const Vector3& b,
+                              const Vector3& c) {
   const Vector3 k = nearest_on_triangle(p, a, b, c);
   return (p - k[0] * a - k[1] * b - k[2] * c).squaredNorm();
 }
 
 // Does the segment pass through the triangle?
-bool crosses(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
+bool crosses(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b,
+             const Vector3& c) {
   const Vector3 d = q - p, e1 = b - a, e2 = c - a, h = d.cross(e2);
   const double det = e1.dot(h);
   if (std::abs(det) < 1e-18) return false;
@@ -54,7 +58,8 @@ bool crosses(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3
   return v >= 0 && u + v <= 1 && t >= 0 && t <= 1;
 }
 
-double segment_triangle_squared(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
+double segment_triangle_squared(const Vector3& p, const Vector3& q, const Vector3& a,
+                                const Vector3& b, const Vector3& c) {
   if (crosses(p, q, a, b, c)) return 0.0;
   double best = std::min(point_triangle_squared(p, a, b, c), point_triangle_squared(q, a, b, c));
   best = std::min(best, segment_segment_squared(p, q, a, b));
@@ -62,8 +67,10 @@ double segment_triangle_squared(const Vector3& p, const Vector3& q, const Vector
   return std::min(best, segment_segment_squared(p, q, c, a));
 }
 
-// Lower bound of the squared distance of a segment (centre, half vector, its box) to a box: by boxes, then by the ball around the segment.
-double box_bound(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& segment, const Vector3& middle, double half) {
+// Lower bound of the squared distance of a segment (centre, half vector, its box) to a box: by
+// boxes, then by the ball around the segment.
+double box_bound(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& segment,
+                 const Vector3& middle, double half) {
   const double by_boxes = box.squaredExteriorDistance(segment);
   const double by_ball = std::max(0.0, std::sqrt(box.squaredExteriorDistance(middle)) - half);
   return std::max(by_boxes, by_ball * by_ball);
@@ -74,8 +81,10 @@ double box_bound(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& segm
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   triangles_.reserve(mesh.triangles.size());
   for (const auto& k : mesh.triangles) {
-    triangles_.push_back({mesh.vertices[static_cast<std::size_t>(k[0])], mesh.vertices[static_cast<std::size_t>(k[1])],
-                          mesh.vertices[static_cast<std::size_t>(k[2])], static_cast<std::uint32_t>(triangles_.size())});
+    triangles_.push_back({mesh.vertices[static_cast<std::size_t>(k[0])],
+                          mesh.vertices[static_cast<std::size_t>(k[1])],
+                          mesh.vertices[static_cast<std::size_t>(k[2])],
+                          static_cast<std::uint32_t>(triangles_.size())});
   }
   if (triangles_.empty()) return;
   build(0, triangles_.size());
@@ -102,7 +111,9 @@ std::uint32_t TriangleTree::build(std::size_t begin, std::size_t end) {
   Eigen::Index axis = 0;
   centres.sizes().maxCoeff(&axis);
   const std::size_t middle = (begin + end) / 2;
-  const auto at = [this](std::size_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto at = [this](std::size_t i) {
+    return triangles_.begin() + static_cast<std::ptrdiff_t>(i);
+  };
   std::nth_element(at(begin), at(middle), at(end), [axis](const Triangle& l, const Triangle& r) {
     return l.a[axis] + l.b[axis] + l.c[axis] < r.a[axis] + r.b[axis] + r.c[axis];
   });
@@ -112,11 +123,16 @@ std::uint32_t TriangleTree::build(std::size_t begin, std::size_t end) {
   return id;
 }
 
-bool TriangleTree::nearer_than(const Vector3& a, const Vector3& b, double radius) const { return search(a, b, radius, true) < radius; }
+bool TriangleTree::nearer_than(const Vector3& a, const Vector3& b, double radius) const {
+  return search(a, b, radius, true) < radius;
+}
 
-double TriangleTree::distance(const Vector3& a, const Vector3& b, double limit) const { return search(a, b, limit, false); }
+double TriangleTree::distance(const Vector3& a, const Vector3& b, double limit) const {
+  return search(a, b, limit, false);
+}
 
-double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bool first_hit) const {
+double TriangleTree::search(const Vector3& a, const Vector3& b, double limit,
+                            bool first_hit) const {
   if (nodes_.empty()) return limit;
   Eigen::AlignedBox3d segment;
   segment.extend(a);
@@ -132,7 +148,8 @@ double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bo
     if (box_bound(node.box, segment, middle, half) >= best) continue;
     if (node.count > 0) {
       for (std::uint32_t i = node.left; i < node.left + node.count; ++i) {
-        best = std::min(best, segment_triangle_squared(a, b, triangles_[i].a, triangles_[i].b, triangles_[i].c));
+        best = std::min(best, segment_triangle_squared(a, b, triangles_[i].a, triangles_[i].b,
+                                                       triangles_[i].c));
       }
       if (best <= 0 || (first_hit && best < limit * limit)) return std::sqrt(best);
     } else {
@@ -155,14 +172,16 @@ SurfaceHit TriangleTree::nearest(const Vector3& p) const {
     const Node& node = nodes_[stack[--depth]];
     if (node.box.squaredExteriorDistance(p) >= best) continue;
     if (node.count == 0) {
-      const bool left_first = nodes_[node.left].box.squaredExteriorDistance(p) < nodes_[node.right].box.squaredExteriorDistance(p);
+      const bool left_first = nodes_[node.left].box.squaredExteriorDistance(p) <
+                              nodes_[node.right].box.squaredExteriorDistance(p);
       stack[depth++] = left_first ? node.right : node.left;
       stack[depth++] = left_first ? node.left : node.right;
       continue;
     }
     for (std::uint32_t i = node.left; i < node.left + node.count; ++i) {
       const Triangle& t = triangles_[i];
-      const Vector3 k = nearest_on_triangle(p, t.a, t.b, t.c), at = k[0] * t.a + k[1] * t.b + k[2] * t.c;
+      const Vector3 k = nearest_on_triangle(p, t.a, t.b, t.c),
+                    at = k[0] * t.a + k[1] * t.b + k[2] * t.c;
       if ((p - at).squaredNorm() >= best) continue;
       best = (p - at).squaredNorm();
       out = {std::sqrt(best), at, (t.b - t.a).cross(t.c - t.a).normalized(), t.index, k};
@@ -191,7 +210,8 @@ void TriangleTree::near_segment(const Vector3& from, const Vector3& to, Visit&& 
   }
 }
 
-void TriangleTree::hits(const Vector3& p, const Vector3& d, double length, std::vector<SurfaceHit>& out) const {
+void TriangleTree::hits(const Vector3& p, const Vector3& d, double length,
+                        std::vector<SurfaceHit>& out) const {
   out.clear();
   if (nodes_.empty()) return;
   near_segment(p, p + length * d, [&](const Triangle& t) {
@@ -203,7 +223,8 @@ void TriangleTree::hits(const Vector3& p, const Vector3& d, double length, std::
     if (u < 0 || v < 0 || u + v > 1 || along < 0 || along > length) return;
     out.push_back({along, p + along * d, e1.cross(e2).normalized(), t.index, {1 - u - v, u, v}});
   });
-  std::sort(out.begin(), out.end(), [](const SurfaceHit& a, const SurfaceHit& b) { return a.along < b.along; });
+  std::sort(out.begin(), out.end(),
+            [](const SurfaceHit& a, const SurfaceHit& b) { return a.along < b.along; });
 }
 
 bool TriangleTree::contains(const Vector3& p) const {

@@ -28,7 +28,8 @@ std::vector<Pose> path_of_object(const std::vector<Pose>& corners, double step);
 /// Returns the motions on which the arm's tip goes through all of these poses without a jump, the
 /// roomiest first; none for an arm that is not one of shoulder, elbow and wrist. `q`: all axes,
 /// where the others are.
-std::vector<CarriedMotion> carried_motions(const RobotModel& robot, const Group& arm, const Vector& q, const std::vector<Pose>& T_root_tip,
+std::vector<CarriedMotion> carried_motions(const RobotModel& robot, const Group& arm,
+                                           const Vector& q, const std::vector<Pose>& T_root_tip,
                                            const CarriedSettings& settings = {});
 
 }  // namespace handsel::grasp_planner

@@ -25,7 +25,8 @@ struct Placed {
 class Side {
  public:
   Side(const HandSide& side, const DoubleSettings& settings) : side_(side), settings_(settings) {
-    taken_ = taken_grasps(*side.list, settings.max_of_each, settings.taken, settings.p_object_middle, side.also);
+    taken_ = taken_grasps(*side.list, settings.max_of_each, settings.taken,
+                          settings.p_object_middle, side.also);
     const std::size_t count = taken_.size();
     placed_.resize(count);
     ways_ = retreat_directions(side.hand_geometry->hand);
@@ -42,16 +43,19 @@ class Side {
   std::size_t index(std::size_t i) const { return taken_[i]; }  // into the list
   const Grasp& grasp(std::size_t i) const { return side_.list->grasps[taken_[i]].grasp; }
   Vector3 wrist(std::size_t i) const { return grasp(i).T_object_hand.linear().col(2); }
-  double rest_score(std::size_t i) const { return side_.rest_score.empty() ? 0.0 : side_.rest_score[taken_[i]]; }
+  double rest_score(std::size_t i) const {
+    return side_.rest_score.empty() ? 0.0 : side_.rest_score[taken_[i]];
+  }
   const Placed& operator[](std::size_t i) const { return placed_[i]; }
 
   // Whether grasp i, opened, gets past the object and the other hand.
   bool leaves(std::size_t i, const HandShape::PlacedHand& other) {
     if (!tried_[i]) prepare(i);
     const Placed& p = placed_[i];
-    return !p.way.empty() && std::none_of(p.way.begin(), p.way.end(), [&](const HandShape::PlacedHand& hand) {
-      return HandShape::hands_touch(hand, other, settings_.retreat_clearance);
-    });
+    return !p.way.empty() &&
+           std::none_of(p.way.begin(), p.way.end(), [&](const HandShape::PlacedHand& hand) {
+             return HandShape::hands_touch(hand, other, settings_.retreat_clearance);
+           });
   }
 
  private:
@@ -94,7 +98,8 @@ void add_normalised(std::vector<DoubleGrasp>& grasps, const Value& value) {
 
 }  // namespace
 
-std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken, const Vector3& p_object_middle,
+std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken,
+                                      const Vector3& p_object_middle,
                                       const std::vector<std::size_t>& also) {
   std::vector<std::size_t> out;
   const auto add = [&out](std::size_t i) {
@@ -106,8 +111,9 @@ std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, 
     return out;
   }
   const std::vector<Eigen::Quaterniond> cells = so3_sequence(so3_grid_size(0));
-  std::map<std::pair<std::size_t, int>, std::size_t> seen;  // how many came before from the same cell and octant
-  std::vector<std::pair<std::size_t, std::size_t>> order;   // that number, index
+  std::map<std::pair<std::size_t, int>, std::size_t>
+      seen;  // how many came before from the same cell and octant
+  std::vector<std::pair<std::size_t, std::size_t>> order;  // that number, index
   for (std::size_t i = 0; i < list.grasps.size(); ++i) {
     const Pose& T = list.grasps[i].grasp.T_object_hand;
     const Eigen::Quaterniond q(T.linear());
@@ -137,7 +143,8 @@ Refusals DoubleList::refusals() const {
   return out;
 }
 
-DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings) {
+DoubleList list_double_grasps(const HandSide& a, const HandSide& b,
+                              const DoubleSettings& settings) {
   Side first(a, settings), second(b, settings);
   DoubleList out;
   const double most = std::cos(settings.min_opposition);
@@ -154,7 +161,8 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Double
         ++out.not_opposed;
         continue;
       }
-      if (HandShape::hands_touch(first[i].closed, second[k].closed, settings.clearance, settings.palm_clearance)) {
+      if (HandShape::hands_touch(first[i].closed, second[k].closed, settings.clearance,
+                                 settings.palm_clearance)) {
         ++out.colliding;
         continue;
       }
@@ -175,7 +183,8 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Double
   }
   add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.quality; });
   add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.rest_score; });
-  std::stable_sort(out.grasps.begin(), out.grasps.end(), [](const DoubleGrasp& x, const DoubleGrasp& y) { return x.score > y.score; });
+  std::stable_sort(out.grasps.begin(), out.grasps.end(),
+                   [](const DoubleGrasp& x, const DoubleGrasp& y) { return x.score > y.score; });
   return out;
 }
 
@@ -183,13 +192,14 @@ double rest_score_of(const RobotModel& robot, const Group& arm, const Vector& ar
   double sum = 0;
   for (std::size_t i = 0; i < arm.axes.size(); ++i) {
     const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[i])];
-    sum += std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot.rest_configuration()[arm.axes[i]]) / (axis.upper - axis.lower);
+    sum += std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot.rest_configuration()[arm.axes[i]]) /
+           (axis.upper - axis.lower);
   }
   return 1 - sum / static_cast<double>(arm.axes.size());
 }
 
-std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
-                                   const std::vector<Pose>& T_root_object) {
+std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, const Vector& q_seed,
+                                   const GraspList& list, const std::vector<Pose>& T_root_object) {
   std::vector<double> out;
   IkOptions options;
   options.restarts = 1;

@@ -38,7 +38,8 @@ enum class Taken : std::uint8_t { best, spread };
 
 /// Indices into the list, `count` at most and those of `also`. `p_object_middle`: of the object's
 /// box.
-std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken, const Vector3& p_object_middle,
+std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken,
+                                      const Vector3& p_object_middle,
                                       const std::vector<std::size_t>& also = {});
 
 struct DoubleSettings {
@@ -46,8 +47,8 @@ struct DoubleSettings {
   Taken taken{Taken::best};                  ///< how those are chosen
   Vector3 p_object_middle{Vector3::Zero()};  ///< for spread grasps
   double clearance{0.0};                     ///< between the hands [m]
-  double palm_clearance{0.0};                ///< between either palm and the other hand, when more [m]
-  double min_opposition{0.0};                ///< [rad] for a transfer: wrists opposed by at least this
+  double palm_clearance{0.0};  ///< between either palm and the other hand, when more [m]
+  double min_opposition{0.0};  ///< [rad] for a transfer: wrists opposed by at least this
   /// For passing the object on: either hand, opened, must be able to come and to leave straight
   /// over `stand_off`, past the object and the other hand. Needs the object.
   const Graspable* passed{};
@@ -66,7 +67,8 @@ struct DoubleList {
 };
 
 /// All pairs that do not collide.
-DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings = {});
+DoubleList list_double_grasps(const HandSide& a, const HandSide& b,
+                              const DoubleSettings& settings = {});
 
 /// Returns the nearness of an arm to its rest configuration, [0, 1]: one minus the mean fraction of
 /// the ranges its axes are away from there.
@@ -74,7 +76,7 @@ double rest_score_of(const RobotModel& robot, const Group& arm, const Vector& ar
 
 /// For each grasp of a list the smaller rest_score_of() of reaching it with the object at its start
 /// and at its goal; -1 when the arm does not reach one of them. `q_seed`: all axes.
-std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
-                                   const std::vector<Pose>& T_root_object);
+std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, const Vector& q_seed,
+                                   const GraspList& list, const std::vector<Pose>& T_root_object);
 
 }  // namespace handsel::grasp_planner

@@ -13,15 +13,21 @@ constexpr double kStretched = 0.95;  // share of its length an arm reaches comfo
 constexpr double kNearest = 0.2;     // [m]
 constexpr int kElbows = 7;
 
-double share(double angle, double positive, double negative) { return angle >= 0 ? angle / positive : -angle / negative; }
+double share(double angle, double positive, double negative) {
+  return angle >= 0 ? angle / positive : -angle / negative;
+}
 
 }  // namespace
 
 std::optional<HumanArm> human_arm(const Person& person, Side side) {
   const bool right = side == Side::right;
-  const auto joint = [&](const char* name) { return static_cast<std::size_t>(body_joint_index(name)); };
-  const std::size_t shoulder = joint(right ? "r_shoulder" : "l_shoulder"), other = joint(right ? "l_shoulder" : "r_shoulder"),
-                    elbow = joint(right ? "r_elbow" : "l_elbow"), wrist = joint(right ? "r_wrist" : "l_wrist");
+  const auto joint = [&](const char* name) {
+    return static_cast<std::size_t>(body_joint_index(name));
+  };
+  const std::size_t shoulder = joint(right ? "r_shoulder" : "l_shoulder"),
+                    other = joint(right ? "l_shoulder" : "r_shoulder"),
+                    elbow = joint(right ? "r_elbow" : "l_elbow"),
+                    wrist = joint(right ? "r_wrist" : "l_wrist");
   if (person.joints.size() < kBodyJoints.size()) return std::nullopt;
   HumanArm arm;
   arm.side = side;
@@ -39,7 +45,9 @@ std::optional<HumanArm> human_arm(const Person& person, Side side) {
 std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_world_wrist) {
   const Vector3 line = T_world_wrist.translation() - arm.shoulder;
   const double d = line.norm();
-  if (d > kStretched * (arm.upper + arm.forearm) || d < std::max(kNearest, std::abs(arm.upper - arm.forearm) + 0.01)) return std::nullopt;
+  if (d > kStretched * (arm.upper + arm.forearm) ||
+      d < std::max(kNearest, std::abs(arm.upper - arm.forearm) + 0.01))
+    return std::nullopt;
   const Vector3 along = line / d;
   // Circle of the elbow about the line.
   const double x = (d * d + arm.upper * arm.upper - arm.forearm * arm.forearm) / (2 * d);
@@ -57,7 +65,8 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
   for (int k = 0; k < kElbows; ++k) {
     const double swivel = 0.5 * std::numbers::pi * k / (kElbows - 1);
     WristPosture p;
-    p.elbow = arm.shoulder + x * along + radius * (std::cos(swivel) * below + std::sin(swivel) * aside);
+    p.elbow =
+        arm.shoulder + x * along + radius * (std::cos(swivel) * below + std::sin(swivel) * aside);
     const Vector3 forearm = (T_world_wrist.translation() - p.elbow) / arm.forearm;
     p.flexion = std::atan2(-forearm.dot(palm), forearm.dot(hand));
     p.radial = std::asin(std::clamp(-forearm.dot(thumb), -1.0, 1.0));
@@ -67,8 +76,9 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
     const Vector3 across = thumb - forearm * forearm.dot(thumb);
     p.pronation = -mirror * std::atan2(forearm.dot(neutral.cross(across)), neutral.dot(across));
     const WristRanges& r = kWristRanges;
-    p.strain = std::max({share(p.flexion, r.flexion, r.extension), share(p.radial, r.radial, r.ulnar),
-                         share(p.pronation, r.pronation, r.supination), p.elevation / r.elevation});
+    p.strain =
+        std::max({share(p.flexion, r.flexion, r.extension), share(p.radial, r.radial, r.ulnar),
+                  share(p.pronation, r.pronation, r.supination), p.elevation / r.elevation});
     if (!best || p.strain < best->strain) best = p;
   }
   return best;

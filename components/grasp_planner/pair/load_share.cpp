@@ -11,15 +11,18 @@ constexpr double kLeastEffort = 0.05;  // [Nm]
 
 }  // namespace
 
-GripLoad carried_load(double mass, const Eigen::Matrix3d& R_world_object, const GripForceSettings& settings) {
-  return {-mass * kGravity * (R_world_object.transpose() * Vector3::UnitZ()), mass * std::max(0.0, settings.acceleration - kGravity)};
+GripLoad carried_load(double mass, const Eigen::Matrix3d& R_world_object,
+                      const GripForceSettings& settings) {
+  return {-mass * kGravity * (R_world_object.transpose() * Vector3::UnitZ()),
+          mass * std::max(0.0, settings.acceleration - kGravity)};
 }
 
-std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const Vector3& centre, const GripLoad& load,
-                                  const GripForceSettings& settings) {
+std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const Vector3& centre,
+                                  const GripLoad& load, const GripForceSettings& settings) {
   std::vector<std::vector<PointContact>> contacts(hands.size());
   for (std::size_t h = 0; h < hands.size(); ++h)
-    for (const Contact& c : hands[h].grasp->contacts) contacts[h].push_back({c.position, -c.normal, c.friction});
+    for (const Contact& c : hands[h].grasp->contacts)
+      contacts[h].push_back({c.position, -c.normal, c.friction});
   const std::vector<GripForces> grips = shared_grip_forces(contacts, centre, load, settings);
   std::vector<LoadShare> out(hands.size());
   for (std::size_t h = 0; h < hands.size(); ++h) {
@@ -33,16 +36,20 @@ std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const V
     const Pose T_hand_object = grasp->T_object_hand.inverse();
     for (std::size_t k = 0; k < forces.size(); ++k) {
       const Contact& c = grasp->contacts[k];
-      hand_geometry->chains[c.finger].add_effort(T_hand_step[c.finger], T_hand_object, c.position, forces[k], effort);
+      hand_geometry->chains[c.finger].add_effort(T_hand_step[c.finger], T_hand_object, c.position,
+                                                 forces[k], effort);
     }
-    if (effort.allFinite() && effort.cwiseAbs().maxCoeff() >= kLeastEffort) out[h].effort = std::move(effort);
+    if (effort.allFinite() && effort.cwiseAbs().maxCoeff() >= kLeastEffort)
+      out[h].effort = std::move(effort);
   }
   return out;
 }
 
-LoadShare bear_part(const BearingHand& hand, double part, const GripLoad& load, const GripForceSettings& settings) {
+LoadShare bear_part(const BearingHand& hand, double part, const GripLoad& load,
+                    const GripForceSettings& settings) {
   Vector3 middle = Vector3::Zero();
-  for (const Contact& c : hand.grasp->contacts) middle += c.position / static_cast<double>(hand.grasp->contacts.size());
+  for (const Contact& c : hand.grasp->contacts)
+    middle += c.position / static_cast<double>(hand.grasp->contacts.size());
   return share_load({hand}, middle, {part * load.weight, part * load.shake}, settings).front();
 }
 

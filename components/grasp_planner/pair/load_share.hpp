@@ -24,15 +24,17 @@ struct LoadShare {
 
 /// The load of an object that is carried in this turn, object frame: its weight is always there,
 /// what `settings.acceleration` exceeds gravity by may come from any side.
-GripLoad carried_load(double mass, const Eigen::Matrix3d& R_world_object, const GripForceSettings& settings);
+GripLoad carried_load(double mass, const Eigen::Matrix3d& R_world_object,
+                      const GripForceSettings& settings);
 
 /// Returns what each hand has to do, in the order of `hands`. `centre` of the load and its
 /// directions: object frame.
-std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const Vector3& centre, const GripLoad& load,
-                                  const GripForceSettings& settings);
+std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const Vector3& centre,
+                                  const GripLoad& load, const GripForceSettings& settings);
 
 /// What one hand bears by itself when the others see to it that nothing turns: this part of the
 /// load, in the middle of its contacts.
-LoadShare bear_part(const BearingHand& hand, double part, const GripLoad& load, const GripForceSettings& settings);
+LoadShare bear_part(const BearingHand& hand, double part, const GripLoad& load,
+                    const GripForceSettings& settings);
 
 }  // namespace handsel::grasp_planner

@@ -12,13 +12,15 @@ std::vector<Vector3> retreat_directions(const HandModel& hand) {
   for (const double tilt : {0.45, 0.9}) {
     for (int k = 0; k < 6; ++k) {
       const double turn = std::numbers::pi / 3 * k;
-      directions.push_back(std::cos(tilt) * away + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
+      directions.push_back(std::cos(tilt) * away +
+                           std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
     }
   }
   return directions;
 }
 
-bool retreat_free(const HandGeometry& hand_geometry, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
+bool retreat_free(const HandGeometry& hand_geometry,
+                  const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
                   const Pose& T_object_hand, const RetreatPath& path, std::uint64_t* tests) {
   for (double s = path.length; s > 0; s -= 2 * kSweepStep) {
     Pose T = T_object_hand;

@@ -25,7 +25,9 @@ struct RetreatPath {
 
 /// Returns whether the opened hand (`T_hand_step`) can follow the path and keep its clearance. The
 /// place it starts from is not checked. `tests`: the number of tests made is added.
-bool retreat_free(const HandGeometry& hand_geometry, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
-                  const Pose& T_object_hand, const RetreatPath& path, std::uint64_t* tests = nullptr);
+bool retreat_free(const HandGeometry& hand_geometry,
+                  const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
+                  const Pose& T_object_hand, const RetreatPath& path,
+                  std::uint64_t* tests = nullptr);
 
 }  // namespace handsel::grasp_planner

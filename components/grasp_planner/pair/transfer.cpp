@@ -11,10 +11,13 @@ namespace {
 
 constexpr double kTiltStep = std::numbers::pi / 12;
 constexpr int kTiltWays = 4;
-constexpr double kDifferent = 0.5;    // [rad] between two partners' hands
-constexpr std::size_t kPlaced = 120;  // best double grasps of one robot grasp that partners are picked from
+constexpr double kDifferent = 0.5;  // [rad] between two partners' hands
+constexpr std::size_t kPlaced =
+    120;  // best double grasps of one robot grasp that partners are picked from
 
-double promise_of(const TransferPartner& p) { return 0.6 * p.opposition / std::numbers::pi + 0.4 * p.quality; }
+double promise_of(const TransferPartner& p) {
+  return 0.6 * p.opposition / std::numbers::pi + 0.4 * p.quality;
+}
 
 // Ways to tilt the object about level axes; one when it stays upright.
 std::vector<Eigen::Matrix3d> tilted(double tilt) {
@@ -22,14 +25,16 @@ std::vector<Eigen::Matrix3d> tilted(double tilt) {
   std::vector<Eigen::Matrix3d> out;
   for (int k = 0; k < kTiltWays; ++k) {
     const double way = 2 * std::numbers::pi * k / kTiltWays;
-    out.push_back(Eigen::AngleAxisd(tilt, Vector3(std::cos(way), std::sin(way), 0)).toRotationMatrix());
+    out.push_back(
+        Eigen::AngleAxisd(tilt, Vector3(std::cos(way), std::sin(way), 0)).toRotationMatrix());
   }
   return out;
 }
 
 }  // namespace
 
-TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object, const TransferSettings& settings)
+TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object,
+                             const TransferSettings& settings)
     : settings_(settings), partners_(robot.list->grasps.size()) {
   DoubleSettings pairs;
   pairs.max_of_each = settings.max_of_each;
@@ -42,36 +47,46 @@ TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const
   doubles_ = list_double_grasps(robot, human, pairs);
   std::vector<std::vector<TransferPartner>> all(partners_.size());
   for (const DoubleGrasp& d : doubles_.grasps)
-    all[d.first].push_back({d.second, human.list->grasps[d.second].grasp.T_object_hand, d.opposition, d.quality});
+    all[d.first].push_back(
+        {d.second, human.list->grasps[d.second].grasp.T_object_hand, d.opposition, d.quality});
   doubles_.grasps = {};
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::stable_sort(all[i].begin(), all[i].end(),
-                     [](const TransferPartner& a, const TransferPartner& b) { return promise_of(a) > promise_of(b); });
+                     [](const TransferPartner& a, const TransferPartner& b) {
+                       return promise_of(a) > promise_of(b);
+                     });
     if (all[i].size() > kPlaced) all[i].resize(kPlaced);
     for (const TransferPartner& p : all[i]) {
       if (partners_[i].size() >= settings.partners) break;
-      const bool alike = std::any_of(partners_[i].begin(), partners_[i].end(), [&](const TransferPartner& o) {
-        return Eigen::AngleAxisd(Eigen::Matrix3d(o.T_object_wrist.linear().transpose() * p.T_object_wrist.linear())).angle() < kDifferent;
-      });
+      const bool alike =
+          std::any_of(partners_[i].begin(), partners_[i].end(), [&](const TransferPartner& o) {
+            return Eigen::AngleAxisd(Eigen::Matrix3d(o.T_object_wrist.linear().transpose() *
+                                                     p.T_object_wrist.linear()))
+                       .angle() < kDifferent;
+          });
       if (!alike) partners_[i].push_back(p);
     }
   }
 }
 
-const std::vector<TransferPartner>& TransferTable::partners(std::size_t robot_grasp) const { return partners_[robot_grasp]; }
+const std::vector<TransferPartner>& TransferTable::partners(std::size_t robot_grasp) const {
+  return partners_[robot_grasp];
+}
 
 double TransferTable::promise(std::size_t robot_grasp) const {
   return partners_[robot_grasp].empty() ? 0.0 : promise_of(partners_[robot_grasp].front());
 }
 
-TransferPlaces::TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot,
-                               const Eigen::Matrix3d& R_world_object, const Vector3& p_object_middle)
+TransferPlaces::TransferPlaces(const Person& person, const HumanArm& arm,
+                               const Vector3& p_world_robot, const Eigen::Matrix3d& R_world_object,
+                               const Vector3& p_object_middle)
     : arm_(arm), R_world_object_(R_world_object), p_object_middle_(p_object_middle) {
   chest_ = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   to_robot_ = p_world_robot - chest_;
   to_robot_.z() = 0;
   to_robot_ = to_robot_.norm() > 1e-3 ? Vector3(to_robot_.normalized()) : Vector3(Vector3::UnitX());
-  // Before the person, the arm bent: from the middle of the chest out to the shoulder, elbow to chest high.
+  // Before the person, the arm bent: from the middle of the chest out to the shoulder, elbow to
+  // chest high.
   const Vector3 across = Vector3::UnitZ().cross(to_robot_);
   const double side = across.dot(arm.outward) >= 0 ? 1.0 : -1.0;
   for (const double ahead : {0.62, 0.54, 0.7}) {
@@ -93,7 +108,9 @@ std::vector<double> tilt_levels(const TransferSettings& s) {
 
 std::optional<TransferPose> TransferPlaces::best(
     const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
-    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach, int max_reaches) const {
+    const std::function<std::optional<Vector>(const Pose& T_world_object,
+                                              const Pose& T_world_hand)>& reach,
+    int max_reaches) const {
   const TransferSettings& s = table.settings();
   const double least_cosine = std::cos(s.max_aim);
   struct Held {
@@ -101,10 +118,12 @@ std::optional<TransferPose> TransferPlaces::best(
     const TransferPartner* partner;
   };
   // Whether the hand of a partner at a place would do; the pose without the arm's joints.
-  const auto judge = [&](const Held& held, const Vector3& place, double max_strain) -> std::optional<TransferPose> {
+  const auto judge = [&](const Held& held, const Vector3& place,
+                         double max_strain) -> std::optional<TransferPose> {
     Vector3 way = place - chest_;
     way.z() = 0;
-    const double cosine = (held.R * held.partner->T_object_wrist.linear().col(2)).dot(way.normalized());
+    const double cosine =
+        (held.R * held.partner->T_object_wrist.linear().col(2)).dot(way.normalized());
     if (cosine < least_cosine) return std::nullopt;
     TransferPose pose;
     pose.T_world_object.linear() = held.R;
@@ -115,20 +134,24 @@ std::optional<TransferPose> TransferPlaces::best(
     pose.wrist = *wrist;
     pose.aim = std::acos(std::min(1.0, cosine));
     pose.tilt = tilt;
-    pose.score = 0.4 * (held.partner->opposition - s.min_opposition) / (std::numbers::pi - s.min_opposition) +
-                 0.4 * (1 - wrist->strain / s.max_strain) + 0.2 * (1 - pose.aim / s.max_aim) - 0.3 * tilt;
+    pose.score = 0.4 * (held.partner->opposition - s.min_opposition) /
+                     (std::numbers::pi - s.min_opposition) +
+                 0.4 * (1 - wrist->strain / s.max_strain) + 0.2 * (1 - pose.aim / s.max_aim) -
+                 0.3 * tilt;
     return pose;
   };
   std::vector<TransferPose> found;
   std::vector<Eigen::Matrix3d> turns;
   for (const Eigen::Matrix3d& R_tilt : tilted(tilt)) {
     for (int k = 0; k < s.headings; ++k)
-      turns.push_back(Eigen::AngleAxisd(2 * std::numbers::pi * k / s.headings, Vector3::UnitZ()) * R_tilt * R_world_object_);
+      turns.push_back(Eigen::AngleAxisd(2 * std::numbers::pi * k / s.headings, Vector3::UnitZ()) *
+                      R_tilt * R_world_object_);
   }
   for (const Eigen::Matrix3d& R : turns) {
     std::vector<Held> likely;  // what is hopeless in the middle is so everywhere
     for (const TransferPartner& partner : table.partners(robot_grasp)) {
-      if (judge({R, &partner}, places_.front(), 1.3 * s.max_strain)) likely.push_back({R, &partner});
+      if (judge({R, &partner}, places_.front(), 1.3 * s.max_strain))
+        likely.push_back({R, &partner});
     }
     for (const Vector3& place : places_) {
       std::optional<TransferPose> at_place;
@@ -139,8 +162,11 @@ std::optional<TransferPose> TransferPlaces::best(
       if (at_place) found.push_back(std::move(*at_place));
     }
   }
-  // The best of every turn first: where the robot's arm does not get to in one, it seldom does a little beside.
-  const auto better = [](const TransferPose& x, const TransferPose& y) { return x.score > y.score; };
+  // The best of every turn first: where the robot's arm does not get to in one, it seldom does a
+  // little beside.
+  const auto better = [](const TransferPose& x, const TransferPose& y) {
+    return x.score > y.score;
+  };
   std::vector<TransferPose> ordered, again;
   for (auto begin = found.begin(); begin != found.end();) {
     const auto end = std::find_if(begin, found.end(), [&](const TransferPose& p) {

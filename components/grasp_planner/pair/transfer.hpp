@@ -37,7 +37,8 @@ struct TransferPartner {
 /// All double grasps of robot and person on one object; made once for an object and kept.
 class TransferTable {
  public:
-  TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object, const TransferSettings& settings = {});
+  TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object,
+                const TransferSettings& settings = {});
 
   /// Returns the person's grasps for grasp `robot_grasp` of the robot's list, best first; empty:
   /// nothing is left for the person.
@@ -75,15 +76,17 @@ std::vector<double> tilt_levels(const TransferSettings& settings);
 class TransferPlaces {
  public:
   /// `p_object_middle`: of the object's box, object frame. `R_world_object`: how it is held now.
-  TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot, const Eigen::Matrix3d& R_world_object,
-                 const Vector3& p_object_middle);
+  TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot,
+                 const Eigen::Matrix3d& R_world_object, const Vector3& p_object_middle);
 
   /// Returns the best place for a grasp of the robot, the object tilted by `tilt` [rad] in some
   /// direction, at which `reach` finds an arm configuration for the robot's hand. `reach` is asked
   /// `max_reaches` times at most, best score first.
-  std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
-                                   const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach,
-                                   int max_reaches) const;
+  std::optional<TransferPose> best(
+      const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
+      const std::function<std::optional<Vector>(const Pose& T_world_object,
+                                                const Pose& T_world_hand)>& reach,
+      int max_reaches) const;
 
  private:
   HumanArm arm_;

@@ -20,11 +20,13 @@ struct CachedGrasps {
 
 class GraspCache {
  public:
-  GraspCache(std::shared_ptr<const HandGeometry> hand_geometry, const GraspListSettings& settings, GraspStore store);
+  GraspCache(std::shared_ptr<const HandGeometry> hand_geometry, const GraspListSettings& settings,
+             GraspStore store);
 
   /// nullptr when cancelled. Throws ConfigError when the object cannot be grasped by any hand (its
   /// mesh).
-  std::shared_ptr<const CachedGrasps> page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
+  std::shared_ptr<const CachedGrasps> page(const ObjectModel& object,
+                                           const std::function<bool()>& cancelled = {});
 
  private:
   std::shared_ptr<const HandGeometry> hand_geometry_;
@@ -38,8 +40,9 @@ class GraspCache {
 /// for. For one thread at a time.
 class TransferCache {
  public:
-  TransferCache(std::shared_ptr<const HandGeometry> robot, std::shared_ptr<const HandGeometry> taker,
-                const GraspListSettings& taker_settings, GraspStore store);
+  TransferCache(std::shared_ptr<const HandGeometry> robot,
+                std::shared_ptr<const HandGeometry> taker, const GraspListSettings& taker_settings,
+                GraspStore store);
 
   /// `page`: of the robot's hand. nullptr when cancelled.
   std::shared_ptr<const TransferTable> table(const ObjectModel& object, const CachedGrasps& page,
@@ -47,7 +50,8 @@ class TransferCache {
   /// The table when it was made already.
   std::shared_ptr<const TransferTable> known(const std::string& object) const;
   /// Of the taker's list; nullptr when cancelled.
-  std::shared_ptr<const CachedGrasps> taker_entry(const ObjectModel& object, const std::function<bool()>& cancelled = {});
+  std::shared_ptr<const CachedGrasps> taker_entry(const ObjectModel& object,
+                                                  const std::function<bool()>& cancelled = {});
 
  private:
   std::shared_ptr<const HandGeometry> robot_, taker_;

@@ -19,15 +19,16 @@ namespace handsel::grasp_planner {
 
 /// An arm with the grasps of its hand on the object.
 struct RegraspArm {
-  Manipulator arm;                      ///< groups of arm and hand in the robot model
-  const HandGeometry* hand_geometry{};  ///< geometry of the hand of this arm; must outlive this struct
-  const GraspList* list{};              ///< grasps of that hand on the object; must outlive this struct
+  Manipulator arm;  ///< groups of arm and hand in the robot model
+  const HandGeometry*
+      hand_geometry{};      ///< geometry of the hand of this arm; must outlive this struct
+  const GraspList* list{};  ///< grasps of that hand on the object; must outlive this struct
 };
 
 /// One hand holds the object, or it stands somewhere.
 struct ObjectState {
-  int arm{-1};                            ///< index of the arm; -1: it stands
-  std::optional<std::size_t> grasp;       ///< index into the arm's list; as a goal it may be left open
+  int arm{-1};                       ///< index of the arm; -1: it stands
+  std::optional<std::size_t> grasp;  ///< index into the arm's list; as a goal it may be left open
   Pose T_world_object{Pose::Identity()};  ///< where it stands
 };
 
@@ -40,12 +41,12 @@ enum class RegraspStepKind { pick, pass, place, join };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
-  RegraspStepKind kind{};                 ///< what happens to the object
-  int from{-1}, to{-1};                   ///< indices of the arm that releases and the arm that takes; -1: none
+  RegraspStepKind kind{};  ///< what happens to the object
+  int from{-1}, to{-1};    ///< indices of the arm that releases and the arm that takes; -1: none
   std::size_t grasp_from{}, grasp_to{};   ///< indices into the lists of these arms
   Pose T_world_object{Pose::Identity()};  ///< where the object is during the step
   Vector q;                               ///< all hands that touch the object closed on it
-  Vector before;                          ///< pick, pass, join: the hand that comes, opened, off the object
+  Vector before;  ///< pick, pass, join: the hand that comes, opened, off the object
   /// Pass, place: the hand that went, opened, off the object; both when two put it down.
   Vector after;
 };
@@ -56,8 +57,8 @@ struct RegraspSettings {
   double clearance{0.004};  ///< between the hands [m]
   /// What is held may lie this far from its planned place when the other hand comes [m].
   double slack{0.005};
-  double stand_off{0.09};   ///< of a hand before it comes and after it went [m]
-  double lift{0.08};        ///< what is picked up or put down must be able to go this far straight up [m]
+  double stand_off{0.09};  ///< of a hand before it comes and after it went [m]
+  double lift{0.08};  ///< what is picked up or put down must be able to go this far straight up [m]
   int handover_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
   /// The search ends when so many picks, passes and places were checked.
   std::uint64_t max_steps_tried{3000};
@@ -82,8 +83,8 @@ class RegraspPlanner {
  public:
   /// `arms`: one or two. The scene's boxes are obstacles; its objects are too, but the one with the
   /// id `object_id`.
-  RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object, ObjectLibrary library, const Scene& scene,
-                 const std::string& object_id);
+  RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object,
+                 ObjectLibrary library, const Scene& scene, const std::string& object_id);
   ~RegraspPlanner();
 
   /// Replaces the settings, which are the defaults before, and forgets what was found.
@@ -97,7 +98,8 @@ class RegraspPlanner {
   /// join, place. All along the path both arms keep the angles of their elbows, stay inside their
   /// limits and touch nothing, and the fingers of both bear the load. ConfigError when there is one
   /// arm.
-  RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled = {});
+  RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal,
+                            const std::function<bool()>& cancelled = {});
 
  private:
   struct Impl;

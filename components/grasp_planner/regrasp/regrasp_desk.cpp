@@ -29,7 +29,9 @@ RegraspKind kind_of(RegraspStepKind kind) {
 handsel::RegraspStep message_of(const RegraspStep& step, const std::vector<RegraspArm>& arms) {
   handsel::RegraspStep out;
   out.kind = kind_of(step.kind);
-  const auto name_of = [&](int arm) { return arm < 0 ? std::string() : arms[static_cast<std::size_t>(arm)].arm.name; };
+  const auto name_of = [&](int arm) {
+    return arm < 0 ? std::string() : arms[static_cast<std::size_t>(arm)].arm.name;
+  };
   out.from = name_of(step.from);
   out.to = name_of(step.to);
   out.T_world_object = step.T_world_object;
@@ -54,28 +56,33 @@ void write(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, Regrasp
 
 }  // namespace
 
-std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot, std::size_t arms,
-                      const ObjectLibrary& library) {
-  if (arms != 2) return "the robot has " + std::to_string(arms) + " arms with hands, to pass an object it needs two";
+std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
+                      std::size_t arms, const ObjectLibrary& library) {
+  if (arms != 2)
+    return "the robot has " + std::to_string(arms) +
+           " arms with hands, to pass an object it needs two";
   if (!scene.robot_known) return "the place of the robot is not known yet";
   if (request.start.size() != robot.dof())
-    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(robot.dof());
-  const auto object =
-      std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
+    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " +
+           std::to_string(robot.dof());
+  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                   [&](const SceneObject& o) { return o.id == request.object; });
   if (object == scene.objects.end()) return "object " + request.object + " is not in the scene";
-  if (object->holder == Holder::robot || object->holder == Holder::human) return request.object + " is held: it must stand first";
-  if (library(object->model) == nullptr) return "there is no description of " + request.object + ", grasps need one";
+  if (object->holder == Holder::robot || object->holder == Holder::human)
+    return request.object + " is held: it must stand first";
+  if (library(object->model) == nullptr)
+    return "there is no description of " + request.object + ", grasps need one";
   return {};
 }
 
-RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage, const ObjectModel& model,
-                             const std::function<bool()>& cancelled) {
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
+                             const ObjectModel& model, const std::function<bool()>& cancelled) {
   const std::vector<ArmGrasps>& arms = stage.arms;
   const Scene& scene = stage.scene;
   RegraspAnswer answer;
   answer.reply.id = request.id;
-  const auto object =
-      std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
+  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                   [&](const SceneObject& o) { return o.id == request.object; });
   if (object == scene.objects.end()) {
     answer.reply.reason = "object " + request.object + " is not in the scene";
     return answer;
@@ -96,10 +103,13 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
   task.goal.T_world_object = request.T_world_goal;
   if (request.both) {
     std::vector<RegraspArm> sides;
-    for (std::size_t a = 0; a < arms.size(); ++a) sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &whole[a]});
-    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene, request.object);
+    for (std::size_t a = 0; a < arms.size(); ++a)
+      sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &whole[a]});
+    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
+                           request.object);
     planner.set_settings(stage.settings);
-    const RegraspPlan plan = planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
+    const RegraspPlan plan =
+        planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
     answer.checked = plan.checked;
     write(plan, sides, answer.reply);
     for (std::size_t a = 0; a < plan.shares.size(); ++a) {
@@ -112,18 +122,22 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
     std::vector<GraspList> firm(arms.size());
     std::vector<RegraspArm> sides;
     for (std::size_t a = 0; a < arms.size(); ++a) {
-      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(), std::back_inserter(firm[a].grasps),
+      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(),
+                   std::back_inserter(firm[a].grasps),
                    [min_margin](const ListedGrasp& g) { return g.grasp.margin >= min_margin; });
       sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &firm[a]});
     }
-    const bool any = std::all_of(firm.begin(), firm.end(), [](const GraspList& list) { return !list.grasps.empty(); });
+    const bool any = std::all_of(firm.begin(), firm.end(),
+                                 [](const GraspList& list) { return !list.grasps.empty(); });
     if (!any && min_margin != kMinMargins.back()) continue;
-    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene, request.object);
+    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
+                           request.object);
     planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan(task, cancelled);
     answer.checked += plan.checked;
     // A firm grip is not worth handing the object to and fro.
-    if (!plan.solved ? !answer.reply.solved : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
+    if (!plan.solved ? !answer.reply.solved
+                     : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
       write(plan, sides, answer.reply);
     }
     const bool better_by_weaker = min_margin >= 0 && answer.reply.steps.size() > kFewest;
@@ -133,7 +147,8 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
 }
 
 Duration regrasp_time(const RegraspAnswer& answer) {
-  return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.checked) + 2e-4 * static_cast<double>(answer.listed));
+  return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.checked) +
+                      2e-4 * static_cast<double>(answer.listed));
 }
 
 }  // namespace handsel::grasp_planner

@@ -19,7 +19,7 @@ namespace handsel::grasp_planner {
 struct ArmGrasps {
   Manipulator arm;                                    ///< groups of arm and hand in the robot model
   std::shared_ptr<const HandGeometry> hand_geometry;  ///< geometry of the hand of this arm
-  std::shared_ptr<GraspCache> cache;                  ///< grasp lists of that hand, made when first asked for
+  std::shared_ptr<GraspCache> cache;  ///< grasp lists of that hand, made when first asked for
 };
 
 struct RegraspAnswer {
@@ -30,8 +30,8 @@ struct RegraspAnswer {
 
 /// Returns why no hands can be searched for the request, one sentence; empty: they can. `arms`:
 /// number of arms with hands.
-std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot, std::size_t arms,
-                      const ObjectLibrary& library);
+std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
+                      std::size_t arms, const ObjectLibrary& library);
 
 /// What an answer is worked out from.
 struct RegraspStage {
@@ -44,8 +44,8 @@ struct RegraspStage {
 
 /// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no
 /// sequence.
-RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage, const ObjectModel& model,
-                             const std::function<bool()>& cancelled = {});
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
+                             const ObjectModel& model, const std::function<bool()>& cancelled = {});
 
 /// Returns the modelled time of the work, from its counts: about what one core needs.
 Duration regrasp_time(const RegraspAnswer& answer);

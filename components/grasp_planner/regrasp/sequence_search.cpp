@@ -5,7 +5,10 @@
 namespace handsel::grasp_planner {
 
 SequenceSearch::SequenceSearch(StepCheck& check, CheckedPasses& passes, const RegraspTask& task)
-    : check_(check), passes_(passes), task_(task), start_{task.start.arm, task.start.grasp.value_or(0)} {
+    : check_(check),
+      passes_(passes),
+      task_(task),
+      start_{task.start.arm, task.start.grasp.value_or(0)} {
   check_task();
   add_places();
   add_grasps();
@@ -16,14 +19,19 @@ SequenceSearch::SequenceSearch(StepCheck& check, CheckedPasses& passes, const Re
 void SequenceSearch::check_task() const {
   const int count = static_cast<int>(check_.arms().size());
   for (const ObjectState* state : {&task_.start, &task_.goal}) {
-    if (state->arm >= count) throw ConfigError("arm " + std::to_string(state->arm) + " is asked for; there are " + std::to_string(count));
+    if (state->arm >= count)
+      throw ConfigError("arm " + std::to_string(state->arm) + " is asked for; there are " +
+                        std::to_string(count));
     if (state->arm < 0 || !state->grasp) continue;
-    const std::size_t listed = check_.arms()[static_cast<std::size_t>(state->arm)].list->grasps.size();
+    const std::size_t listed =
+        check_.arms()[static_cast<std::size_t>(state->arm)].list->grasps.size();
     if (*state->grasp >= listed) {
-      throw ConfigError("grasp " + std::to_string(*state->grasp) + " is asked for; the list has " + std::to_string(listed));
+      throw ConfigError("grasp " + std::to_string(*state->grasp) + " is asked for; the list has " +
+                        std::to_string(listed));
     }
   }
-  if (task_.start.arm >= 0 && !task_.start.grasp) throw ConfigError("the start says which hand holds the object but not with which grasp");
+  if (task_.start.arm >= 0 && !task_.start.grasp)
+    throw ConfigError("the start says which hand holds the object but not with which grasp");
 }
 
 void SequenceSearch::add_places() {
@@ -46,7 +54,8 @@ void SequenceSearch::add_grasps() {
     for (const ObjectState* state : {&task_.start, &task_.goal})
       if (state->arm == a && state->grasp) side.also.push_back(*state->grasp);
     const std::vector<std::size_t> taken =
-        taken_grasps(*arm.list, check_.settings().max_of_each, Taken::spread, check_.object().box().center(), side.also);
+        taken_grasps(*arm.list, check_.settings().max_of_each, Taken::spread,
+                     check_.object().box().center(), side.also);
     sides_.push_back(std::move(side));
     for (const std::size_t i : taken) {
       for (std::size_t p = 0; p < places_.size(); ++p) {
@@ -70,7 +79,8 @@ void SequenceSearch::add_passes() {
   doubles_ = list_double_grasps(sides_[0], sides_[1], pairs);
   for (std::size_t n = 0; n < doubles_.grasps.size(); ++n) {
     const DoubleGrasp& d = doubles_.grasps[n];
-    const double margin = std::min(check_.grasp(0, d.first).margin, check_.grasp(1, d.second).margin);
+    const double margin =
+        std::min(check_.grasp(0, d.first).margin, check_.grasp(1, d.second).margin);
     graph_.add({0, d.first}, {1, d.second}, d.quality, margin, n);
     graph_.add({1, d.second}, {0, d.first}, d.quality, margin, n);
   }
@@ -96,7 +106,8 @@ CheckedStep SequenceSearch::pass(const GraphNode& from, const GraphNode& to) {
     ++out_.checked;
     const DoubleGrasp& d = doubles_.grasps[graph_.pair(from, to)];
     const bool straight = from.arm == 0;
-    it->second = check_.check_pass({from.arm, to.arm, from.index, to.index, straight ? d.retreat_first : d.retreat_second,
+    it->second = check_.check_pass({from.arm, to.arm, from.index, to.index,
+                                    straight ? d.retreat_first : d.retreat_second,
                                     straight ? d.retreat_second : d.retreat_first});
   }
   CheckedStep checked = it->second;
@@ -143,19 +154,23 @@ bool SequenceSearch::take_path(const std::vector<GraphNode>& path) {
 RegraspPlan SequenceSearch::finish() {
   for (const auto& [what, times] : rejected_) {
     const auto colon = what.find(": ");
-    out_.rejected.push_back({std::to_string(times) + " " + what.substr(0, colon), what.substr(colon + 2)});
+    out_.rejected.push_back(
+        {std::to_string(times) + " " + what.substr(0, colon), what.substr(colon + 2)});
   }
   return std::move(out_);
 }
 
 RegraspPlan SequenceSearch::run(const std::function<bool()>& cancelled) {
   while (true) {
-    const std::vector<GraphNode> path = graph_.shortest(start_, [this](const GraphNode& node) { return at_goal(node); });
+    const std::vector<GraphNode> path =
+        graph_.shortest(start_, [this](const GraphNode& node) { return at_goal(node); });
     if (path.empty()) {
       const auto most =
-          std::max_element(rejected_.begin(), rejected_.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+          std::max_element(rejected_.begin(), rejected_.end(),
+                           [](const auto& x, const auto& y) { return x.second < y.second; });
       out_.reason = "no sequence of grasps leads there";
-      if (most != rejected_.end()) out_.reason += "; most often: " + std::to_string(most->second) + " " + most->first;
+      if (most != rejected_.end())
+        out_.reason += "; most often: " + std::to_string(most->second) + " " + most->first;
       return finish();
     }
     if (take_path(path)) {
@@ -163,7 +178,9 @@ RegraspPlan SequenceSearch::run(const std::function<bool()>& cancelled) {
       return finish();
     }
     if (out_.checked >= check_.settings().max_steps_tried || (cancelled && cancelled())) {
-      out_.reason = cancelled && cancelled() ? "cancelled" : "the budget of " + std::to_string(out_.checked) + " judged steps was used up";
+      out_.reason = cancelled && cancelled() ? "cancelled"
+                                             : "the budget of " + std::to_string(out_.checked) +
+                                                   " judged steps was used up";
       return finish();
     }
   }

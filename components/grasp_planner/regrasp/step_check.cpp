@@ -18,14 +18,15 @@ using FingerPoses = std::vector<std::vector<Pose>>;
 
 }  // namespace
 
-StepCheck::StepCheck(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object, ObjectLibrary library,
-                     const Scene& scene, const std::string& object_id)
+StepCheck::StepCheck(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object,
+                     ObjectLibrary library, const Scene& scene, const std::string& object_id)
     : robot_(robot),
       arms_(std::move(arms)),
       object_(object),
       T_root_world_(scene.T_world_base.inverse()),
       world_(robot, std::move(library)) {
-  if (arms_.empty() || arms_.size() > 2) throw ConfigError("a regrasp needs one or two arms, not " + std::to_string(arms_.size()));
+  if (arms_.empty() || arms_.size() > 2)
+    throw ConfigError("a regrasp needs one or two arms, not " + std::to_string(arms_.size()));
   Scene around = scene;
   std::erase_if(around.objects, [&](const SceneObject& x) { return x.id == object_id; });
   world_.set_base(scene.T_world_base);
@@ -35,7 +36,9 @@ StepCheck::StepCheck(const RobotModel& robot, std::vector<RegraspArm> arms, cons
   hand_of_.assign(robot_.links().size(), -1);
   for (std::size_t l = 0; l < robot_.links().size(); ++l) {
     const int joint = robot_.links()[l].parent_joint;
-    if (joint >= 0) hand_of_[l] = hand_of_[static_cast<std::size_t>(robot_.joints()[static_cast<std::size_t>(joint)].parent)];
+    if (joint >= 0)
+      hand_of_[l] = hand_of_[static_cast<std::size_t>(
+          robot_.joints()[static_cast<std::size_t>(joint)].parent)];
     for (std::size_t k = 0; k < arms_.size(); ++k)
       if (static_cast<int>(l) == arms_[k].arm.palm) hand_of_[l] = static_cast<int>(k);
     for (const PlacedShape& p : robot_.links()[l].collision)
@@ -45,26 +48,32 @@ StepCheck::StepCheck(const RobotModel& robot, std::vector<RegraspArm> arms, cons
   for (const RegraspArm& x : arms_) retreats_.push_back(retreat_directions(x.hand_geometry->hand));
 }
 
-const Grasp& StepCheck::grasp(int arm, std::size_t i) const { return arms_[static_cast<std::size_t>(arm)].list->grasps[i].grasp; }
+const Grasp& StepCheck::grasp(int arm, std::size_t i) const {
+  return arms_[static_cast<std::size_t>(arm)].list->grasps[i].grasp;
+}
 
 Vector StepCheck::with(const Vector& q, int arm, const Vector& arm_q, const Vector& hand_q) const {
   const Manipulator& m = arms_[static_cast<std::size_t>(arm)].arm;
   return RobotModel::with(RobotModel::with(q, *m.arm, arm_q), *m.fingers, hand_q);
 }
 
-std::optional<Vector> StepCheck::reach(int arm, const Pose& T_world_hand, const Vector& seed, int restarts) const {
+std::optional<Vector> StepCheck::reach(int arm, const Pose& T_world_hand, const Vector& seed,
+                                       int restarts) const {
   IkOptions options;
   options.max_iterations = 80;
   options.restarts = restarts;
-  return robot_.inverse(*arms_[static_cast<std::size_t>(arm)].arm.arm, T_root_world_ * T_world_hand, seed, options);
+  return robot_.inverse(*arms_[static_cast<std::size_t>(arm)].arm.arm, T_root_world_ * T_world_hand,
+                        seed, options);
 }
 
-bool StepCheck::clear_of_object(const Vector& q, const Pose& T_world_object, int holding, int other) {
+bool StepCheck::clear_of_object(const Vector& q, const Pose& T_world_object, int holding,
+                                int other) {
   robot_.forward(q, T_root_link_);
   for (const auto& [link, shape, T_link_shape] : shapes_) {
     const int hand = hand_of_[static_cast<std::size_t>(link)];
     if (hand >= 0 && (hand == holding || hand == other)) continue;
-    if (touch(*shape, T_world_base_ * T_root_link_[static_cast<std::size_t>(link)] * T_link_shape, *object_.shape(), T_world_object))
+    if (touch(*shape, T_world_base_ * T_root_link_[static_cast<std::size_t>(link)] * T_link_shape,
+              *object_.shape(), T_world_object))
       return false;
   }
   return true;
@@ -72,19 +81,22 @@ bool StepCheck::clear_of_object(const Vector& q, const Pose& T_world_object, int
 
 bool StepCheck::object_in_furniture(const Pose& T_world_object) const {
   return std::any_of(boxes_.begin(), boxes_.end(), [&](const SceneBox& b) {
-    return touch(*CollisionShape::make(Box{b.size}), b.T_world_box, *object_.shape(), T_world_object);
+    return touch(*CollisionShape::make(Box{b.size}), b.T_world_box, *object_.shape(),
+                 T_world_object);
   });
 }
 
 /// Returns the axes with the hand, opened, at its stand-off along `direction` before the grasp, if
 /// the straight path from there is free; the other axes as in `q`.
-std::optional<Vector> StepCheck::straight(int arm, std::size_t i, const Pose& T_world_object, const Vector& q, const Vector& arm_q,
+std::optional<Vector> StepCheck::straight(int arm, std::size_t i, const Pose& T_world_object,
+                                          const Vector& q, const Vector& arm_q,
                                           const Vector3& direction) {
   Pose T = T_world_object * grasp(arm, i).T_object_hand;
   T.translate(Vector3(settings_.stand_off * direction));
   const auto off = reach(arm, T, q, 0);
   if (!off || (*off - arm_q).cwiseAbs().maxCoeff() > kLargestApproach) return std::nullopt;
-  const Vector opened = grasp(arm, i).pregrasp_joints, from = with(q, arm, *off, opened), to = with(q, arm, arm_q, opened);
+  const Vector opened = grasp(arm, i).pregrasp_joints, from = with(q, arm, *off, opened),
+               to = with(q, arm, arm_q, opened);
   if (!world_.check_motion(from, to, kMotionStep).free) return std::nullopt;
   // A straight line of the joints bends in space.
   for (const double ratio : {0.25, 0.5, 0.75, 0.9})
@@ -102,12 +114,14 @@ CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_ob
   step.T_world_object = T_world_object;
   step.q = with(rest, arm, *arm_q, g.hand_joints);
   const Vector opened = with(rest, arm, *arm_q, g.pregrasp_joints);
-  if (!world_.is_free(step.q) || !world_.is_free(opened) || !clear_of_object(step.q, T_world_object, arm))
+  if (!world_.is_free(step.q) || !world_.is_free(opened) ||
+      !clear_of_object(step.q, T_world_object, arm))
     return {{}, "arm or hand would collide"};
   Pose T_lifted = T_world_hand;
   T_lifted.translation().z() += settings_.lift;
   const auto lifted = reach(arm, T_lifted, step.q, 0);
-  if (!lifted || (*lifted - *arm_q).cwiseAbs().maxCoeff() > kLargestApproach || !world_.is_free(with(rest, arm, *lifted, g.hand_joints)))
+  if (!lifted || (*lifted - *arm_q).cwiseAbs().maxCoeff() > kLargestApproach ||
+      !world_.is_free(with(rest, arm, *lifted, g.hand_joints)))
     return {{}, "the arm could not lift it straight up"};
   if (auto off = stand_off(arm, i, T_world_object, opened, *arm_q)) {
     step.before = step.after = std::move(*off);
@@ -116,7 +130,8 @@ CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_ob
   return {{}, "no straight path to or from it is free"};
 }
 
-std::optional<Vector> StepCheck::stand_off(int arm, std::size_t i, const Pose& T_world_object, const Vector& q, const Vector& arm_q) {
+std::optional<Vector> StepCheck::stand_off(int arm, std::size_t i, const Pose& T_world_object,
+                                           const Vector& q, const Vector& arm_q) {
   const Grasp& g = grasp(arm, i);
   FingerPoses T_open;
   const HandGeometry& hand_geometry = *arms_[static_cast<std::size_t>(arm)].hand_geometry;
@@ -124,7 +139,9 @@ std::optional<Vector> StepCheck::stand_off(int arm, std::size_t i, const Pose& T
   std::vector<Vector3> all = retreats_[static_cast<std::size_t>(arm)];
   all.push_back((T_world_object * g.T_object_hand).linear().transpose() * Vector3::UnitZ());
   for (const Vector3& direction : all) {
-    if (!retreat_free(hand_geometry, T_open, object_, g.T_object_hand, {direction, settings_.stand_off, kRetreatClearance})) continue;
+    if (!retreat_free(hand_geometry, T_open, object_, g.T_object_hand,
+                      {direction, settings_.stand_off, kRetreatClearance}))
+      continue;
     if (auto off = straight(arm, i, T_world_object, q, arm_q, direction)) return off;
   }
   return std::nullopt;
@@ -132,16 +149,21 @@ std::optional<Vector> StepCheck::stand_off(int arm, std::size_t i, const Pose& T
 
 /// Returns where the first axis of the arm is, world [m].
 Vector3 StepCheck::shoulder(int arm) const {
-  const Axis& first = robot_.axes()[static_cast<std::size_t>(arms_[static_cast<std::size_t>(arm)].arm.arm->axes.front())];
+  const Axis& first = robot_.axes()[static_cast<std::size_t>(
+      arms_[static_cast<std::size_t>(arm)].arm.arm->axes.front())];
   return T_world_base_ *
-         robot_.link_pose(robot_.rest_configuration(), robot_.joints()[static_cast<std::size_t>(first.joint)].child).translation();
+         robot_
+             .link_pose(robot_.rest_configuration(),
+                        robot_.joints()[static_cast<std::size_t>(first.joint)].child)
+             .translation();
 }
 
 /// Returns places between the arms and turns of the object, those first that let both hands point
 /// away from their shoulders and keep the object upright.
 std::vector<StepCheck::PassPlace> StepCheck::pass_places(const Pass& pass) const {
   static const std::vector<Eigen::Quaterniond> turns = so3_sequence(so3_grid_size(0));
-  const Vector3 a = shoulder(pass.from), b = shoulder(pass.to), middle = 0.5 * (a + b), apart = b - a;
+  const Vector3 a = shoulder(pass.from), b = shoulder(pass.to), middle = 0.5 * (a + b),
+                apart = b - a;
   Vector3 forward = T_world_base_.linear().col(0);
   std::vector<PassPlace> out;
   for (const double ahead : {0.35, 0.45, 0.55}) {
@@ -151,10 +173,13 @@ std::vector<StepCheck::PassPlace> StepCheck::pass_places(const Pass& pass) const
         for (const Eigen::Quaterniond& turn : turns) {
           PassPlace e{Pose::Identity(), 0};
           e.T_world_object.linear() = turn.toRotationMatrix();
-          e.T_world_object.translation() = place - e.T_world_object.linear() * object_.box().center();
-          for (const auto& [arm, index, at] : {std::tuple(pass.from, pass.grasp_from, a), std::tuple(pass.to, pass.grasp_to, b)}) {
+          e.T_world_object.translation() =
+              place - e.T_world_object.linear() * object_.box().center();
+          for (const auto& [arm, index, at] :
+               {std::tuple(pass.from, pass.grasp_from, a), std::tuple(pass.to, pass.grasp_to, b)}) {
             const Pose T = e.T_world_object * grasp(arm, index).T_object_hand;
-            e.score += T.linear().col(2).dot((place - at).normalized()) - 2.0 * std::max(0.0, (T.translation() - at).norm() - 0.75);
+            e.score += T.linear().col(2).dot((place - at).normalized()) -
+                       2.0 * std::max(0.0, (T.translation() - at).norm() - 0.75);
           }
           e.score += 0.3 * e.T_world_object.linear()(2, 2);
           out.push_back(e);
@@ -162,8 +187,10 @@ std::vector<StepCheck::PassPlace> StepCheck::pass_places(const Pass& pass) const
       }
     }
   }
-  std::stable_sort(out.begin(), out.end(), [](const PassPlace& x, const PassPlace& y) { return x.score > y.score; });
-  if (out.size() > static_cast<std::size_t>(settings_.handover_tries)) out.resize(static_cast<std::size_t>(settings_.handover_tries));
+  std::stable_sort(out.begin(), out.end(),
+                   [](const PassPlace& x, const PassPlace& y) { return x.score > y.score; });
+  if (out.size() > static_cast<std::size_t>(settings_.handover_tries))
+    out.resize(static_cast<std::size_t>(settings_.handover_tries));
   return out;
 }
 
@@ -181,20 +208,25 @@ CheckedStep StepCheck::check_pass(const Pass& pass) {
     RegraspStep step;
     step.T_world_object = e.T_world_object;
     step.q = with(with(rest, from, *q_from, g.hand_joints), to, *q_to, h.hand_joints);
-    if (!world_.is_free(step.q) || !clear_of_object(step.q, e.T_world_object, from, to) || object_in_furniture(e.T_world_object)) {
+    if (!world_.is_free(step.q) || !clear_of_object(step.q, e.T_world_object, from, to) ||
+        object_in_furniture(e.T_world_object)) {
       reason = "the arms would collide wherever both reach it";
       continue;
     }
     // It is brought there while the other arm rests, whose hand opens then.
     const Vector closed = with(rest, from, *q_from, g.hand_joints);
-    const Vector opened = RobotModel::with(closed, *arms_[static_cast<std::size_t>(to)].arm.fingers, h.pregrasp_joints);
-    const auto clear = [&](const Vector& q) { return world_.is_free(q) && clear_of_object(q, e.T_world_object, from); };
+    const Vector opened = RobotModel::with(closed, *arms_[static_cast<std::size_t>(to)].arm.fingers,
+                                           h.pregrasp_joints);
+    const auto clear = [&](const Vector& q) {
+      return world_.is_free(q) && clear_of_object(q, e.T_world_object, from);
+    };
     if (!clear(closed) || !clear(opened)) {
       reason = "the other arm, at rest, would be in the way";
       continue;
     }
     auto before = straight(to, k, e.T_world_object, step.q, *q_to, pass.approach_to);
-    auto after = before ? straight(from, i, e.T_world_object, step.q, *q_from, pass.retreat_from) : std::nullopt;
+    auto after = before ? straight(from, i, e.T_world_object, step.q, *q_from, pass.retreat_from)
+                        : std::nullopt;
     if (!after) {
       reason = "the hands could not come and go straight";
       continue;
@@ -213,11 +245,16 @@ CheckedStep StepCheck::check_pass(const Pass& pass) {
 /// Returns whether the hand that comes reaches its poses, and collides with nothing, even where the
 /// object lies in the other hand a little otherwise than planned.
 bool StepCheck::tolerates_slack(int from, int to, const RegraspStep& step) {
-  const Manipulator &mover = arms_[static_cast<std::size_t>(to)].arm, &holder = arms_[static_cast<std::size_t>(from)].arm;
-  const auto arm_of = [](const Vector& q, const Manipulator& m) { return RobotModel::part(q, *m.arm); };
+  const Manipulator &mover = arms_[static_cast<std::size_t>(to)].arm,
+                    &holder = arms_[static_cast<std::size_t>(from)].arm;
+  const auto arm_of = [](const Vector& q, const Manipulator& m) {
+    return RobotModel::part(q, *m.arm);
+  };
   // Where a hand is open the other is closed on the object.
-  const Vector came = with(step.before, to, arm_of(step.q, mover), RobotModel::part(step.before, *mover.fingers));
-  const Vector left = with(step.after, from, arm_of(step.q, holder), RobotModel::part(step.after, *holder.fingers));
+  const Vector came =
+      with(step.before, to, arm_of(step.q, mover), RobotModel::part(step.before, *mover.fingers));
+  const Vector left =
+      with(step.after, from, arm_of(step.q, holder), RobotModel::part(step.after, *holder.fingers));
   for (const Vector& q : {step.before, came, step.q, left, step.after}) {
     const Pose T_world_hand = T_world_base_ * robot_.link_pose(q, mover.palm);
     for (int axis = 0; axis < 3; ++axis) {

@@ -59,11 +59,14 @@ bool TwoHandSearch::find_grasps(std::size_t a) {
   std::size_t firm = 0;
   for (std::size_t n = 0; n < arm.list->grasps.size(); ++n) {
     const Grasp& g = arm.list->grasps[n].grasp;
-    if (bear_part({arm.hand_geometry, &g}, 0.5, load_, check_.settings().grip).margin <= 0) continue;
+    if (bear_part({arm.hand_geometry, &g}, 0.5, load_, check_.settings().grip).margin <= 0)
+      continue;
     ++firm;
     std::vector<Pose> T_root_tip;
-    for (const Pose& T : T_world_path_) T_root_tip.push_back(check_.T_root_world() * T * g.T_object_hand);
-    std::vector<CarriedMotion> found = carried_motions(check_.robot(), *arm.arm.arm, check_.robot().rest_configuration(), T_root_tip);
+    for (const Pose& T : T_world_path_)
+      T_root_tip.push_back(check_.T_root_world() * T * g.T_object_hand);
+    std::vector<CarriedMotion> found = carried_motions(
+        check_.robot(), *arm.arm.arm, check_.robot().rest_configuration(), T_root_tip);
     if (found.empty()) continue;
     reached_[a].grasps.push_back(arm.list->grasps[n]);
     index_[a].push_back(n);
@@ -73,8 +76,10 @@ bool TwoHandSearch::find_grasps(std::size_t a) {
   sides_[a].hand_geometry = arm.hand_geometry;
   sides_[a].list = &reached_[a];
   if (!index_[a].empty()) return true;
-  const std::string all = "by none of " + std::to_string(firm > 0 ? firm : arm.list->grasps.size()) + " grasps ";
-  out_.reason = firm > 0 ? all + "that bear half of it does " + arm.arm.name + " follow it from its start to its goal"
+  const std::string all =
+      "by none of " + std::to_string(firm > 0 ? firm : arm.list->grasps.size()) + " grasps ";
+  out_.reason = firm > 0 ? all + "that bear half of it does " + arm.arm.name +
+                               " follow it from its start to its goal"
                          : all + "do the fingers of " + arm.arm.name + " bear half of it";
   return false;
 }
@@ -87,7 +92,8 @@ DoubleList TwoHandSearch::list_pairs() const {
   pairs.p_object_middle = check_.object().box().center();
   pairs.clearance = check_.settings().clearance;
   DoubleList doubles = list_double_grasps(sides_[0], sides_[1], pairs);
-  for (DoubleGrasp& d : doubles.grasps) d.first = index_[0][d.first], d.second = index_[1][d.second];
+  for (DoubleGrasp& d : doubles.grasps)
+    d.first = index_[0][d.first], d.second = index_[1][d.second];
   for (DoubleGrasp& d : doubles.grasps) {
     const std::vector<LoadShare> shares = shares_of(d);
     d.score = std::min(shares[0].margin, shares[1].margin);
@@ -98,23 +104,26 @@ DoubleList TwoHandSearch::list_pairs() const {
 }
 
 std::vector<LoadShare> TwoHandSearch::shares_of(const DoubleGrasp& pair) const {
-  return share_load(
-      {{check_.arms()[0].hand_geometry, &check_.grasp(0, pair.first)}, {check_.arms()[1].hand_geometry, &check_.grasp(1, pair.second)}},
-      check_.object().com(), load_, check_.settings().grip);
+  return share_load({{check_.arms()[0].hand_geometry, &check_.grasp(0, pair.first)},
+                     {check_.arms()[1].hand_geometry, &check_.grasp(1, pair.second)}},
+                    check_.object().com(), load_, check_.settings().grip);
 }
 
 /// Returns the configurations at start and end of the path, on which both hands are closed on the
 /// object and nothing collides.
-std::optional<std::pair<Vector, Vector>> TwoHandSearch::both_along(const DoubleGrasp& pair, std::string& why) {
+std::optional<std::pair<Vector, Vector>> TwoHandSearch::both_along(const DoubleGrasp& pair,
+                                                                   std::string& why) {
   const std::size_t i = pair.first, k = pair.second;
   const std::vector<CarriedMotion>&first = paths_[0].at(i), &second = paths_[1].at(k);
   why = "arms or hands would collide on the path";
   const auto at = [&](const CarriedMotion& x, const CarriedMotion& y, std::size_t n) {
-    return check_.with(check_.with(check_.robot().rest_configuration(), 0, x.joints[n], check_.grasp(0, i).hand_joints), 1, y.joints[n],
-                       check_.grasp(1, k).hand_joints);
+    return check_.with(check_.with(check_.robot().rest_configuration(), 0, x.joints[n],
+                                   check_.grasp(0, i).hand_joints),
+                       1, y.joints[n], check_.grasp(1, k).hand_joints);
   };
   for (std::size_t sum = 0; sum < 2 * kMotionsTried - 1; ++sum) {
-    for (std::size_t x = sum < kMotionsTried ? 0 : sum - kMotionsTried + 1; x <= std::min(sum, kMotionsTried - 1); ++x) {
+    for (std::size_t x = sum < kMotionsTried ? 0 : sum - kMotionsTried + 1;
+         x <= std::min(sum, kMotionsTried - 1); ++x) {
       if (x >= first.size() || sum - x >= second.size()) continue;
       const CarriedMotion &one = first[x], &other = second[sum - x];
       const auto free = [&](std::size_t n) {
@@ -130,23 +139,31 @@ std::optional<std::pair<Vector, Vector>> TwoHandSearch::both_along(const DoubleG
 }
 
 /// Returns the steps by which the pair takes the object along the path.
-std::optional<std::vector<RegraspStep>> TwoHandSearch::check_pair(const DoubleGrasp& pair, std::string& why) {
+std::optional<std::vector<RegraspStep>> TwoHandSearch::check_pair(const DoubleGrasp& pair,
+                                                                  std::string& why) {
   const std::size_t i = pair.first, k = pair.second;
   const Pose &T_start = T_world_path_.front(), &T_goal = T_world_path_.back();
   const auto ends = both_along(pair, why);
   if (!ends) return std::nullopt;
   const Vector &at_start = ends->first, &at_goal = ends->second;
   const auto opened = [&](const Vector& q, int arm, std::size_t n) {
-    return RobotModel::with(q, *check_.arms()[static_cast<std::size_t>(arm)].arm.fingers, check_.grasp(arm, n).pregrasp_joints);
+    return RobotModel::with(q, *check_.arms()[static_cast<std::size_t>(arm)].arm.fingers,
+                            check_.grasp(arm, n).pregrasp_joints);
   };
-  const auto arm_of = [&](const Vector& q, int arm) { return RobotModel::part(q, *check_.arms()[static_cast<std::size_t>(arm)].arm.arm); };
-  const auto off = [&](const Vector& q, const Pose& T, int arm, std::size_t n) { return check_.stand_off(arm, n, T, q, arm_of(q, arm)); };
+  const auto arm_of = [&](const Vector& q, int arm) {
+    return RobotModel::part(q, *check_.arms()[static_cast<std::size_t>(arm)].arm.arm);
+  };
+  const auto off = [&](const Vector& q, const Pose& T, int arm, std::size_t n) {
+    return check_.stand_off(arm, n, T, q, arm_of(q, arm));
+  };
   RegraspStep first, second, down;
   const Manipulator& other = check_.arms()[1].arm;
   const Vector& rest = check_.robot().rest_configuration();
-  const Vector alone = check_.with(at_start, 1, RobotModel::part(rest, *other.arm), RobotModel::part(rest, *other.fingers));
+  const Vector alone = check_.with(at_start, 1, RobotModel::part(rest, *other.arm),
+                                   RobotModel::part(rest, *other.fingers));
   const auto before_first = off(alone, T_start, 0, i);
-  const auto before_second = before_first ? off(opened(at_start, 0, i), T_start, 1, k) : std::nullopt;
+  const auto before_second =
+      before_first ? off(opened(at_start, 0, i), T_start, 1, k) : std::nullopt;
   const auto after_first = before_second ? off(opened(at_goal, 1, k), T_goal, 0, i) : std::nullopt;
   const auto after_second = after_first ? off(opened(at_goal, 0, i), T_goal, 1, k) : std::nullopt;
   if (!after_second) {
@@ -182,7 +199,8 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
   out_.double_grasps = doubles.grasps.size();
   std::map<std::string, std::uint64_t> rejected;
   for (const DoubleGrasp& d : doubles.grasps) {
-    const Vector3 between = check_.grasp(0, d.first).T_object_hand.translation() - check_.grasp(1, d.second).T_object_hand.translation();
+    const Vector3 between = check_.grasp(0, d.first).T_object_hand.translation() -
+                            check_.grasp(1, d.second).T_object_hand.translation();
     if (between.norm() < check_.settings().min_apart) {
       ++rejected["the hands would be too near each other"];
       continue;
@@ -203,10 +221,13 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
     }
     ++rejected[why];
   }
-  for (const auto& [what, times] : rejected) out_.rejected.push_back({std::to_string(times) + " pairs", what});
+  for (const auto& [what, times] : rejected)
+    out_.rejected.push_back({std::to_string(times) + " pairs", what});
   for (Refusal& r : doubles.refusals()) out_.rejected.push_back(std::move(r));
   if (out_.solved) return std::move(out_);
-  const auto most = std::max_element(rejected.begin(), rejected.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+  const auto most =
+      std::max_element(rejected.begin(), rejected.end(),
+                       [](const auto& x, const auto& y) { return x.second < y.second; });
   out_.reason = "no two grasps take it there together";
   if (most != rejected.end()) out_.reason += "; most often: " + most->first;
   return std::move(out_);
@@ -214,8 +235,11 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
 
 }  // namespace
 
-RegraspPlan carry_together(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled) {
-  if (check.arms().size() != 2) throw ConfigError("two hands at once need two arms, there is " + std::to_string(check.arms().size()));
+RegraspPlan carry_together(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal,
+                           const std::function<bool()>& cancelled) {
+  if (check.arms().size() != 2)
+    throw ConfigError("two hands at once need two arms, there is " +
+                      std::to_string(check.arms().size()));
   return TwoHandSearch(check, T_world_start, T_world_goal).run(cancelled);
 }
 

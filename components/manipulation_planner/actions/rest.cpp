@@ -62,7 +62,8 @@ Routine<Outcome> clear_offer_area(Parts& parts, const std::string& giver, ClearU
   back.goals = parts.area.clear_configurations(*person);
   back.clears_area_for = giver;
   back.accepts_any_offer = until == ClearUntil::any_offer;
-  if (back.goals.empty()) co_return Outcome::failure("no configuration of the arm lies farther back");
+  if (back.goals.empty())
+    co_return Outcome::failure("no configuration of the arm lies farther back");
   Outcome cleared = co_await move(parts, back);
   co_return cleared;
 }

@@ -14,10 +14,17 @@ namespace handsel::path_planner {
 class Budget {
  public:
   Budget(const CollisionWorld& world, std::uint64_t limit, const Hooks& hooks)
-      : check_(world), hooks_(hooks), before_(world.checks()), exact_before_(world.exact_checks()), limit_(limit) {}
+      : check_(world),
+        hooks_(hooks),
+        before_(world.checks()),
+        exact_before_(world.exact_checks()),
+        limit_(limit) {}
 
   /// Returns the states checked so far, and what was charged.
-  std::uint64_t checks() const { return check_.checks() - before_ + exact_more_ * (check_.exact_checks() - exact_before_) + charged_; }
+  std::uint64_t checks() const {
+    return check_.checks() - before_ + exact_more_ * (check_.exact_checks() - exact_before_) +
+           charged_;
+  }
   /// From now on a state that only the exact check could decide counts as so many more: where the
   /// time it takes is what matters.
   void charge_exact(std::uint64_t more) {

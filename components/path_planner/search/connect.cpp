@@ -38,7 +38,8 @@ Found connect(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_
     found.goal = static_cast<std::size_t>(trees[1].root_of(b));
     break;
   }
-  found.nodes = static_cast<std::size_t>(trees[0].size()) + static_cast<std::size_t>(trees[1].size());
+  found.nodes =
+      static_cast<std::size_t>(trees[0].size()) + static_cast<std::size_t>(trees[1].size());
   found.trees.assign(std::make_move_iterator(trees), std::make_move_iterator(trees + 2));
   return found;
 }

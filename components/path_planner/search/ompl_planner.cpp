@@ -38,7 +38,9 @@ class Sampler : public ob::StateSampler {
  public:
   Sampler(const ob::StateSpace* ompl_space, const SearchSpace& space, std::uint64_t seed)
       : ob::StateSampler(ompl_space), space_(space), random_(seed) {}
-  void sampleUniform(ob::State* state) override { to_state(random_.within(space_.lower(), space_.upper()), state); }
+  void sampleUniform(ob::State* state) override {
+    to_state(random_.within(space_.lower(), space_.upper()), state);
+  }
   void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
     const Vector center = to_vector(near, space_.size());
     to_state(random_.within((center.array() - distance).matrix().cwiseMax(space_.lower()),
@@ -58,8 +60,11 @@ class Sampler : public ob::StateSampler {
 
 class Validity : public ob::StateValidityChecker {
  public:
-  Validity(const ob::SpaceInformationPtr& si, SearchSpace& space) : ob::StateValidityChecker(si), space_(space) {}
-  bool isValid(const ob::State* state) const override { return space_.free(to_vector(state, space_.size())); }
+  Validity(const ob::SpaceInformationPtr& si, SearchSpace& space)
+      : ob::StateValidityChecker(si), space_(space) {}
+  bool isValid(const ob::State* state) const override {
+    return space_.free(to_vector(state, space_.size()));
+  }
 
  private:
   SearchSpace& space_;
@@ -67,11 +72,13 @@ class Validity : public ob::StateValidityChecker {
 
 class Motions : public ob::MotionValidator {
  public:
-  Motions(const ob::SpaceInformationPtr& si, SearchSpace& space) : ob::MotionValidator(si), space_(space) {}
+  Motions(const ob::SpaceInformationPtr& si, SearchSpace& space)
+      : ob::MotionValidator(si), space_(space) {}
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     return space_.motion_free(to_vector(from, space_.size()), to_vector(to, space_.size()));
   }
-  bool checkMotion(const ob::State* from, const ob::State* to, std::pair<ob::State*, double>& last_valid) const override {
+  bool checkMotion(const ob::State* from, const ob::State* to,
+                   std::pair<ob::State*, double>& last_valid) const override {
     const Vector a = to_vector(from, space_.size()), b = to_vector(to, space_.size());
     const int last = motion_states(a, b, space_.step()) - 1;
     for (int i = 1; i <= last; ++i) {
@@ -87,10 +94,12 @@ class Motions : public ob::MotionValidator {
   SearchSpace& space_;
 };
 
-/// Mechanical work of the human-aware cost: what T-RRT's transition test needs (integral costs make every motion uphill).
+/// Mechanical work of the human-aware cost: what T-RRT's transition test needs (integral costs make
+/// every motion uphill).
 class Work : public ob::MechanicalWorkOptimizationObjective {
  public:
-  Work(const ob::SpaceInformationPtr& si, const SearchSpace& space) : ob::MechanicalWorkOptimizationObjective(si, 1e-4), space_(space) {}
+  Work(const ob::SpaceInformationPtr& si, const SearchSpace& space)
+      : ob::MechanicalWorkOptimizationObjective(si, 1e-4), space_(space) {}
   ob::Cost stateCost(const ob::State* state) const override {
     return ob::Cost(space_.costs().of(to_vector(state, space_.size())));
   }
@@ -112,7 +121,8 @@ class Seeded : public Planner {
   }
 };
 
-ob::PlannerPtr stock_planner(const ob::SpaceInformationPtr& si, PlannerKind kind, std::uint64_t seed, const Settings& settings) {
+ob::PlannerPtr stock_planner(const ob::SpaceInformationPtr& si, PlannerKind kind,
+                             std::uint64_t seed, const Settings& settings) {
   switch (kind) {
     case PlannerKind::rrt: {
       auto planner = std::make_shared<Seeded<og::RRT>>(si, seed);
@@ -141,7 +151,8 @@ ob::PlannerPtr stock_planner(const ob::SpaceInformationPtr& si, PlannerKind kind
   }
 }
 
-/// Least distance between the part of the tree grown from the start and the goals or the part grown from them.
+/// Least distance between the part of the tree grown from the start and the goals or the part grown
+/// from them.
 double closest_approach(const ob::PlannerData& data, const std::vector<Vector>& goals, int size) {
   constexpr std::size_t kMost = 1500;
   std::vector<Vector> from_start, from_goal = goals;
@@ -160,7 +171,8 @@ double closest_approach(const ob::PlannerData& data, const std::vector<Vector>& 
 
 }  // namespace
 
-BatchPlanner::BatchPlanner(const ob::SpaceInformationPtr& si, SearchSpace& space, PlannerKind kind, std::uint64_t seed)
+BatchPlanner::BatchPlanner(const ob::SpaceInformationPtr& si, SearchSpace& space, PlannerKind kind,
+                           std::uint64_t seed)
     : ob::Planner(si, kind == PlannerKind::trrt     ? "BatchTRRT"
                       : kind == PlannerKind::bitrrt ? "BatchBiTRRT"
                                                     : "BatchRRTConnect"),
@@ -173,7 +185,8 @@ BatchPlanner::BatchPlanner(const ob::SpaceInformationPtr& si, SearchSpace& space
 ob::PlannerStatus BatchPlanner::solve(const ob::PlannerTerminationCondition& stop) {
   checkValidity();
   const ob::State* start = pis_.nextStart();
-  if (start == nullptr || to_vector(start, space_.size()) != space_.start()) return ob::PlannerStatus::INVALID_START;
+  if (start == nullptr || to_vector(start, space_.size()) != space_.start())
+    return ob::PlannerStatus::INVALID_START;
   std::vector<Vector> goals;
   while (const ob::State* goal = pis_.nextGoal()) goals.push_back(to_vector(goal, space_.size()));
   if (goals.empty()) return ob::PlannerStatus::INVALID_GOAL;
@@ -213,19 +226,23 @@ void BatchPlanner::getPlannerData(ob::PlannerData& data) const {
     const Tree& tree = found_.trees[side];
     const std::size_t first = states_.size();
     for (int i = 0; i < tree.size(); ++i) {
-      states_.push_back(std::shared_ptr<ob::State>(si_->allocState(), [si = si_](ob::State* state) { si->freeState(state); }));
+      states_.push_back(std::shared_ptr<ob::State>(
+          si_->allocState(), [si = si_](ob::State* state) { si->freeState(state); }));
       to_state(tree[i], states_.back().get());
       const ob::PlannerDataVertex vertex(states_.back().get(), static_cast<int>(side) + 1);
       if (tree.parent(i) < 0)
         side == 0 ? data.addStartVertex(vertex) : data.addGoalVertex(vertex);
       else
-        data.addEdge(ob::PlannerDataVertex(states_[first + static_cast<std::size_t>(tree.parent(i))].get(), static_cast<int>(side) + 1),
-                     vertex);
+        data.addEdge(
+            ob::PlannerDataVertex(states_[first + static_cast<std::size_t>(tree.parent(i))].get(),
+                                  static_cast<int>(side) + 1),
+            vertex);
     }
   }
 }
 
-Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool stock, std::uint64_t seed) {
+Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind,
+                       bool stock, std::uint64_t seed) {
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   const int n = space.size();
   auto ompl_space = std::make_shared<ob::RealVectorStateSpace>(n);
@@ -237,7 +254,8 @@ Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, Pla
   }
   ompl_space->setBounds(bounds);
   std::uint64_t sampler_seed = seed;
-  ompl_space->setStateSamplerAllocator([&](const ob::StateSpace* s) { return std::make_shared<Sampler>(s, space, sampler_seed++); });
+  ompl_space->setStateSamplerAllocator(
+      [&](const ob::StateSpace* s) { return std::make_shared<Sampler>(s, space, sampler_seed++); });
   auto si = std::make_shared<ob::SpaceInformation>(ompl_space);
   si->setStateValidityChecker(std::make_shared<Validity>(si, space));
   si->setMotionValidator(std::make_shared<Motions>(si, space));
@@ -256,13 +274,16 @@ Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, Pla
     goal_states->addState(state);
   }
   definition->setGoal(goal_states);
-  if (kind == PlannerKind::trrt || kind == PlannerKind::bitrrt) definition->setOptimizationObjective(std::make_shared<Work>(si, space));
+  if (kind == PlannerKind::trrt || kind == PlannerKind::bitrrt)
+    definition->setOptimizationObjective(std::make_shared<Work>(si, space));
 
   const ob::PlannerPtr planner =
-      stock ? stock_planner(si, kind, seed, space.settings()) : ob::PlannerPtr(std::make_shared<BatchPlanner>(si, space, kind, seed));
+      stock ? stock_planner(si, kind, seed, space.settings())
+            : ob::PlannerPtr(std::make_shared<BatchPlanner>(si, space, kind, seed));
   planner->setProblemDefinition(definition);
   planner->setup();
-  const ob::PlannerStatus status = planner->solve(ob::PlannerTerminationCondition([&space] { return space.exhausted(); }));
+  const ob::PlannerStatus status =
+      planner->solve(ob::PlannerTerminationCondition([&space] { return space.exhausted(); }));
 
   Found found;
   if (!stock) {
@@ -271,11 +292,13 @@ Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, Pla
     ob::PlannerData data(si);
     planner->getPlannerData(data);
     found.nodes = data.numVertices();
-    if (status != ob::PlannerStatus::EXACT_SOLUTION) found.closest = closest_approach(data, goals, n);
+    if (status != ob::PlannerStatus::EXACT_SOLUTION)
+      found.closest = closest_approach(data, goals, n);
   }
   if (status != ob::PlannerStatus::EXACT_SOLUTION) return found;
   found.path.clear();
-  for (const ob::State* s : definition->getSolutionPath()->as<og::PathGeometric>()->getStates()) found.path.push_back(to_vector(s, n));
+  for (const ob::State* s : definition->getSolutionPath()->as<og::PathGeometric>()->getStates())
+    found.path.push_back(to_vector(s, n));
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const double d = (goals[i] - found.path.back()).norm();

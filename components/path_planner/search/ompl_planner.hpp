@@ -17,7 +17,8 @@ namespace handsel::path_planner {
 /// definition, the start must be that of the space.
 class BatchPlanner : public ompl::base::Planner {
  public:
-  BatchPlanner(const ompl::base::SpaceInformationPtr& si, SearchSpace& space, PlannerKind kind, std::uint64_t seed);
+  BatchPlanner(const ompl::base::SpaceInformationPtr& si, SearchSpace& space, PlannerKind kind,
+               std::uint64_t seed);
   ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& stop) override;
   void clear() override;
   void getPlannerData(ompl::base::PlannerData& data) const override;
@@ -33,6 +34,7 @@ class BatchPlanner : public ompl::base::Planner {
 };
 
 /// As `search`, through OMPL: its planner of that name, or that of this component.
-Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool stock, std::uint64_t seed);
+Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind,
+                       bool stock, std::uint64_t seed);
 
 }  // namespace handsel::path_planner

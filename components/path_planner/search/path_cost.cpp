@@ -7,15 +7,18 @@ namespace handsel::path_planner {
 
 PathCost::PathCost(const HumanCost& cost, const Problem& problem, const Settings& settings)
     : cost_(cost), problem_(problem), settings_(settings), axes_(problem), to_(problem.start) {
-  only_platform_ = problem.platform_motion && std::all_of(problem.axes.begin(), problem.axes.end(), [&](int axis) {
-                     return std::count(problem.platform_motion->axes.begin(), problem.platform_motion->axes.end(), axis) > 0;
+  only_platform_ = problem.platform_motion &&
+                   std::all_of(problem.axes.begin(), problem.axes.end(), [&](int axis) {
+                     return std::count(problem.platform_motion->axes.begin(),
+                                       problem.platform_motion->axes.end(), axis) > 0;
                    });
   level_ = of(axes_.part(problem.start));
   for (const Vector& goal : problem.goals) level_ = std::min(level_, of(goal));
 }
 
 bool PathCost::concerns_people() const {
-  return cost_.concerned() || (problem_.platform_motion && problem_.platform_motion->cost->anyone());
+  return cost_.concerned() ||
+         (problem_.platform_motion && problem_.platform_motion->cost->anyone());
 }
 
 double PathCost::of(const Vector& q) const {
@@ -31,7 +34,8 @@ void PathCost::fill_costs(const Vector& from, const Vector& to) const {
   costs_.resize(at_.size());
   to_ = axes_.whole(to);
   const Vector& begin = axes_.whole(from);
-  if (!only_platform_) cost_.on_line(begin, to_, at_.data(), static_cast<int>(at_.size()), costs_.data());
+  if (!only_platform_)
+    cost_.on_line(begin, to_, at_.data(), static_cast<int>(at_.size()), costs_.data());
   if (!problem_.platform_motion) return;
   const auto& [x, y, heading] = problem_.platform_motion->axes;
   for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -41,7 +45,8 @@ void PathCost::fill_costs(const Vector& from, const Vector& to) const {
   }
 }
 
-const std::vector<double>& PathCost::at_steps(const Vector& from, const Vector& to, int steps) const {
+const std::vector<double>& PathCost::at_steps(const Vector& from, const Vector& to,
+                                              int steps) const {
   at_.resize(static_cast<std::size_t>(steps));
   costs_.assign(static_cast<std::size_t>(steps), 0.0);
   if (!concerns_people()) return costs_;
@@ -52,7 +57,8 @@ const std::vector<double>& PathCost::at_steps(const Vector& from, const Vector& 
 
 /// Returns the costs at the middles of equal pieces of the motion.
 const std::vector<double>& PathCost::costs_along(const Vector& from, const Vector& to) const {
-  const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / settings_.cost_step)));
+  const int pieces =
+      std::max(1, static_cast<int>(std::ceil((to - from).norm() / settings_.cost_step)));
   at_.resize(static_cast<std::size_t>(pieces));
   for (int i = 0; i < pieces; ++i) at_[static_cast<std::size_t>(i)] = (i + 0.5) / pieces;
   fill_costs(from, to);
@@ -83,7 +89,9 @@ double PathCost::price(const Vector& from, const Vector& to) const {
   double sum = 0;
   if (concerns_people())
     for (double cost : costs_along(from, to)) sum += std::max(0.0, cost - level_);
-  return (sum / static_cast<double>(std::max<std::size_t>(1, costs_.size())) + settings_.length_weight) * length;
+  return (sum / static_cast<double>(std::max<std::size_t>(1, costs_.size())) +
+          settings_.length_weight) *
+         length;
 }
 
 }  // namespace handsel::path_planner

@@ -6,10 +6,13 @@
 
 namespace handsel::path_planner {
 
-Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool heed_cost, std::uint64_t seed) {
-  // What nobody asked for by name goes without OMPL's harness, which takes longer to set up than a short search.
+Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool heed_cost,
+             std::uint64_t seed) {
+  // What nobody asked for by name goes without OMPL's harness, which takes longer to set up than a
+  // short search.
   Found found = kind != PlannerKind::automatic
-                    ? search_with_ompl(space, goals, kind, space.problem().stock || kind == PlannerKind::rrt, seed)
+                    ? search_with_ompl(space, goals, kind,
+                                       space.problem().stock || kind == PlannerKind::rrt, seed)
                 : heed_cost ? transition_connect(space, goals, seed)
                             : connect(space, goals, seed);
   if (space.hooks().searched && !found.trees.empty())

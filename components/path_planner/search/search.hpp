@@ -23,6 +23,7 @@ struct Found {
 /// others are those of this component, or OMPL's where the problem says `stock`. Ends when the
 /// space is exhausted. The same seed gives the same path, also with other searches before it in the
 /// same process: no random number comes from OMPL's own generator.
-Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind planner, bool heed_cost, std::uint64_t seed);
+Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind planner,
+             bool heed_cost, std::uint64_t seed);
 
 }  // namespace handsel::path_planner

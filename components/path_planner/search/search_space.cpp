@@ -8,7 +8,8 @@ namespace handsel::path_planner {
 
 namespace {
 
-constexpr double kForbiddenStep = 0.01;  // [rad] a meter away that is less than half a cell of our own grids
+constexpr double kForbiddenStep =
+    0.01;  // [rad] a meter away that is less than half a cell of our own grids
 
 /// Returns the bounds of the planned axes; of unlimited ones start +- 2 pi.
 std::pair<Vector, Vector> bounds_of(const RobotModel& robot, const Problem& problem) {
@@ -93,7 +94,8 @@ CollisionVerdict SearchSpace::permitted_on_line(const Vector& begin, double step
   const int states = motion_states(begin, all_to_, std::max(step, kForbiddenStep));
   CollisionVerdict verdict;
   for (int i = 0; i < states && verdict.free; ++i)
-    verdict = permitted(begin + (static_cast<double>(i) / std::max(1, states - 1)) * (all_to_ - begin));
+    verdict =
+        permitted(begin + (static_cast<double>(i) / std::max(1, states - 1)) * (all_to_ - begin));
   return verdict;
 }
 
@@ -104,8 +106,11 @@ bool SearchSpace::motion_free(const Vector& from, const Vector& to) {
   const Vector& begin = axes_.whole(from);
   if (world_.surely_free_at_steps(begin, all_to_, step_))
     return !bound_ || permitted_on_line(begin, step_).free;
-  const auto near = [this](const Vector& end, const Vector& q) { return (end - q).cwiseAbs().maxCoeff() < reach_; };
-  return std::any_of(tight_ends_.begin(), tight_ends_.end(), [&](const Vector& end) { return near(end, from) || near(end, to); }) &&
+  const auto near = [this](const Vector& end, const Vector& q) {
+    return (end - q).cwiseAbs().maxCoeff() < reach_;
+  };
+  return std::any_of(tight_ends_.begin(), tight_ends_.end(),
+                     [&](const Vector& end) { return near(end, from) || near(end, to); }) &&
          motion_verdict(from, to, step_).free;
 }
 

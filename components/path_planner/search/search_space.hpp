@@ -19,8 +19,8 @@ namespace handsel::path_planner {
 class SearchSpace : public Budget {
  public:
   /// Bounds of unlimited axes are start +- 2 pi.
-  SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem, const Settings& settings,
-              const Hooks& hooks);
+  SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost,
+              const Problem& problem, const Settings& settings, const Hooks& hooks);
 
   /// Returns the number of axes that are planned for.
   int size() const { return axes_.size(); }

@@ -19,16 +19,20 @@ struct Place {
 class Line {
  public:
   explicit Line(const std::vector<Vector>& path) : path_(path), length_(path.size(), 0.0) {
-    for (std::size_t i = 1; i < path.size(); ++i) length_[i] = length_[i - 1] + (path[i] - path[i - 1]).norm();
+    for (std::size_t i = 1; i < path.size(); ++i)
+      length_[i] = length_[i - 1] + (path[i] - path[i - 1]).norm();
   }
   double length() const { return length_.back(); }
   Place at(double s) const {
-    std::size_t i = static_cast<std::size_t>(std::upper_bound(length_.begin(), length_.end(), s) - length_.begin());
+    std::size_t i = static_cast<std::size_t>(std::upper_bound(length_.begin(), length_.end(), s) -
+                                             length_.begin());
     i = std::clamp<std::size_t>(i, 1, path_.size() - 1);
     const double edge = length_[i] - length_[i - 1];
     return {i - 1, edge > 0 ? std::clamp((s - length_[i - 1]) / edge, 0.0, 1.0) : 0.0};
   }
-  Vector point(const Place& p) const { return path_[p.node] + p.share * (path_[p.node + 1] - path_[p.node]); }
+  Vector point(const Place& p) const {
+    return path_[p.node] + p.share * (path_[p.node + 1] - path_[p.node]);
+  }
 
  private:
   const std::vector<Vector>& path_;
@@ -47,16 +51,18 @@ bool free(SearchSpace& space, const std::vector<Vector>& line) {
   return true;
 }
 
-/// Replaces the path between two places by `inner` when that is cheaper, inside the bounds and free; in that order.
-bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, const Place& from, const Place& to,
-             const std::vector<Vector>& inner) {
+/// Replaces the path between two places by `inner` when that is cheaper, inside the bounds and
+/// free; in that order.
+bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, const Place& from,
+             const Place& to, const std::vector<Vector>& inner) {
   std::vector<Vector> before = {line.point(from)}, after = {line.point(from)};
   for (std::size_t i = from.node + 1; i <= to.node; ++i) before.push_back(path[i]);
   before.push_back(line.point(to));
   for (const Vector& q : inner) after.push_back(q);
   after.push_back(line.point(to));
   if (price(space, after) >= price(space, before) - kGain) return false;
-  if (!std::all_of(inner.begin(), inner.end(), [&](const Vector& q) { return space.inside(q); })) return false;
+  if (!std::all_of(inner.begin(), inner.end(), [&](const Vector& q) { return space.inside(q); }))
+    return false;
   if (!free(space, after)) return false;
   std::vector<Vector> joined(path.begin(), path.begin() + static_cast<long>(from.node) + 1);
   const auto add = [&joined](const Vector& q) {
@@ -77,7 +83,8 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
   int in_vain = 0;
   const auto& asked_on = space.hooks().smooth_on;
   const auto goes_on = [&](int round) {
-    return asked_on ? asked_on() : round < settings.smoothing_rounds && in_vain < settings.max_idle_rounds;
+    return asked_on ? asked_on()
+                    : round < settings.smoothing_rounds && in_vain < settings.max_idle_rounds;
   };
   for (int round = 0; goes_on(round) && !space.exhausted(); ++round) {
     const Line line(path);
@@ -91,13 +98,17 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
     } else {
       double s = random.between(0, line.length());
       const double other = random.between(0, line.length());
-      if (space.costs().of(line.point(line.at(other))) > space.costs().of(line.point(line.at(s)))) s = other;
+      if (space.costs().of(line.point(line.at(other))) > space.costs().of(line.point(line.at(s))))
+        s = other;
       const double half = random.between(0.2, 1.0) * settings.max_edge;
-      const Place from = line.at(std::max(0.0, s - half)), to = line.at(std::min(line.length(), s + half));
-      const Vector center = line.point(line.at(s)), toward = random.within(space.lower(), space.upper()) - center;
+      const Place from = line.at(std::max(0.0, s - half)),
+                  to = line.at(std::min(line.length(), s + half));
+      const Vector center = line.point(line.at(s)),
+                   toward = random.within(space.lower(), space.upper()) - center;
       const double far = std::min(toward.norm(), random.between(0.1, 1.0) * half);
-      gained =
-          toward.norm() > 1e-9 && replace(space, path, line, from, to, {space.upright().restore(center + toward * (far / toward.norm()))});
+      gained = toward.norm() > 1e-9 &&
+               replace(space, path, line, from, to,
+                       {space.upright().restore(center + toward * (far / toward.norm()))});
     }
     in_vain = gained ? 0 : in_vain + 1;
   }
@@ -105,8 +116,10 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
 
 void prune(SearchSpace& space, std::vector<Vector>& path) {
   for (std::size_t i = 1; i + 1 < path.size() && !space.exhausted();) {
-    const double before = space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
-    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) && space.motion_free(path[i - 1], path[i + 1])) {
+    const double before =
+        space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
+    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) &&
+        space.motion_free(path[i - 1], path[i + 1])) {
       path.erase(path.begin() + static_cast<long>(i));
       if (i > 1) --i;
     } else {

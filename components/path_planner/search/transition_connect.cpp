@@ -19,7 +19,8 @@ class Search {
   Search(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_t seed)
       : space_(space),
         random_(seed),
-        test_{{space.settings().initial_temperature, random_}, {space.settings().initial_temperature, random_}},
+        test_{{space.settings().initial_temperature, random_},
+              {space.settings().initial_temperature, random_}},
         trees_{Tree(space.size()), Tree(space.size())} {
     trees_[0].add(space.start(), -1);
     for (const Vector& goal : goals) trees_[1].add(goal, -1);
@@ -53,13 +54,15 @@ class Search {
         found.goal = static_cast<std::size_t>(trees_[1].root_of(b));
       }
     }
-    found.nodes = static_cast<std::size_t>(trees_[0].size()) + static_cast<std::size_t>(trees_[1].size());
+    found.nodes =
+        static_cast<std::size_t>(trees_[0].size()) + static_cast<std::size_t>(trees_[1].size());
     found.trees.assign(std::make_move_iterator(trees_), std::make_move_iterator(trees_ + 2));
     return found;
   }
 
  private:
-  /// From a node toward a target, at most `range` far and as far as the transition test allows; the new node, or the old one.
+  /// From a node toward a target, at most `range` far and as far as the transition test allows; the
+  /// new node, or the old one.
   int advance(int side, int from, const Vector& target, double range, bool* reached = nullptr) {
     const Vector start = trees_[side][from], stop = space_.upright().toward(start, target, range);
     const double length = (stop - start).norm();
@@ -68,14 +71,18 @@ class Search {
       *reached = true;
       return add(side, from, target, space_.costs().of(target));
     }
-    const int steps = std::max(1, static_cast<int>(std::ceil(length / space_.settings().cost_step)));
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(length / space_.settings().cost_step)));
     const std::vector<double>& costs = space_.costs().at_steps(start, stop, steps);
     double last = cost_[side][static_cast<std::size_t>(from)];
     int allowed = 0;
-    for (; allowed < steps && test_[side](last, costs[static_cast<std::size_t>(allowed)]); ++allowed)
+    for (; allowed < steps && test_[side](last, costs[static_cast<std::size_t>(allowed)]);
+         ++allowed)
       last = costs[static_cast<std::size_t>(allowed)];
     if (allowed == 0) return from;
-    const Vector q = allowed == steps ? stop : Vector(start + (stop - start) * (static_cast<double>(allowed) / steps));
+    const Vector q = allowed == steps
+                         ? stop
+                         : Vector(start + (stop - start) * (static_cast<double>(allowed) / steps));
     if (!space_.motion_free(start, q)) return from;
     if (reached) *reached = allowed == steps && stop == target;
     return add(side, from, q, last);

@@ -28,7 +28,8 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
   while (!space.exhausted()) {
     space.charge(1);
     const bool to_goal = random.unit() < kGoalBias;
-    const std::size_t goal = static_cast<std::size_t>(random.unit() * static_cast<double>(goals.size()));
+    const std::size_t goal =
+        static_cast<std::size_t>(random.unit() * static_cast<double>(goals.size()));
     const Vector target =
         to_goal ? goals[goal]
                 : space.upright().restore(random.within(space.lower(), space.upper()));
@@ -36,10 +37,14 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
     const double distance = (target - tree[near]).norm();
     const bool refines = distance < range;
     if (to_goal) found.closest = std::min(found.closest, distance);
-    if (refines && !to_goal && static_cast<double>(refinements) > kRefinementShare * static_cast<double>(tree.size())) continue;
-    const Vector q = refines ? target : Vector(tree[near] + (target - tree[near]) * (range / distance));
+    if (refines && !to_goal &&
+        static_cast<double>(refinements) > kRefinementShare * static_cast<double>(tree.size()))
+      continue;
+    const Vector q =
+        refines ? target : Vector(tree[near] + (target - tree[near]) * (range / distance));
     const double cost = space.costs().of(q);
-    if (!accepts(costs[static_cast<std::size_t>(near)], cost) || !space.motion_free(tree[near], q)) continue;
+    if (!accepts(costs[static_cast<std::size_t>(near)], cost) || !space.motion_free(tree[near], q))
+      continue;
     refinements += refines;
     const int added = tree.add(q, near);
     costs.push_back(cost);

@@ -38,7 +38,8 @@ class Tree {
   int nearest(const Vector& q) {
     const int n = size();
     distances_.head(n) = (columns_.col(0).head(n) - static_cast<float>(q[0])).square();
-    for (int axis = 1; axis < q.size(); ++axis) distances_.head(n) += (columns_.col(axis).head(n) - static_cast<float>(q[axis])).square();
+    for (int axis = 1; axis < q.size(); ++axis)
+      distances_.head(n) += (columns_.col(axis).head(n) - static_cast<float>(q[axis])).square();
     int best = 0;
     distances_.head(n).minCoeff(&best);
     return best;

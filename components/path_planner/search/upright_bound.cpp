@@ -6,33 +6,40 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kTiltStep = 0.03;     // sum over the axes between two states whose tilt is checked [rad]
+constexpr double kTiltStep =
+    0.03;  // sum over the axes between two states whose tilt is checked [rad]
 constexpr double kTiltBetween = 5e-4;  // between them it is at most this much more [rad]
 constexpr double kUprightRange = 0.2;  // longest motion that is bent back to upright [rad]
 constexpr double kMinProgress = 0.05;  // of its length
 
 }  // namespace
 
-UprightBound::UprightBound(const RobotModel& robot, const Problem& problem, Vector lower, Vector upper)
+UprightBound::UprightBound(const RobotModel& robot, const Problem& problem, Vector lower,
+                           Vector upper)
     : robot_(robot),
       problem_(problem),
       axes_(problem),
       lower_(std::move(lower)),
       upper_(std::move(upper)),
-      tool_(robot.tool_link() >= 0 ? robot.tool_link() : static_cast<int>(robot.links().size()) - 1) {}
+      tool_(robot.tool_link() >= 0 ? robot.tool_link()
+                                   : static_cast<int>(robot.links().size()) - 1) {}
 
 double UprightBound::tilt(const Vector& q) const {
   if (!problem_.upright) return 0.0;
-  const Vector3 axis = robot_.link_pose(axes_.whole(q), tool_).linear() * problem_.upright->axis_tool.normalized();
+  const Vector3 axis =
+      robot_.link_pose(axes_.whole(q), tool_).linear() * problem_.upright->axis_tool.normalized();
   return std::acos(std::clamp(axis.dot(problem_.upright->up_root.normalized()), -1.0, 1.0));
 }
 
 bool UprightBound::holds_on_line(const Vector& from, const Vector& to) const {
   if (!problem_.upright) return true;
-  const int last = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().sum() / kTiltStep)));
+  const int last =
+      std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().sum() / kTiltStep)));
   if (!holds(from) || !holds(to)) return false;
   for (int i = 1; i < last; ++i)
-    if (tilt(from + (static_cast<double>(i) / last) * (to - from)) > problem_.upright->max_angle - kTiltBetween) return false;
+    if (tilt(from + (static_cast<double>(i) / last) * (to - from)) >
+        problem_.upright->max_angle - kTiltBetween)
+      return false;
   return true;
 }
 
@@ -56,7 +63,8 @@ Vector UprightBound::restore(Vector q) const {
 }
 
 Vector UprightBound::toward(const Vector& from, const Vector& target, double range) const {
-  const double distance = (target - from).norm(), reach = problem_.upright ? std::min(range, kUprightRange) : range;
+  const double distance = (target - from).norm(),
+               reach = problem_.upright ? std::min(range, kUprightRange) : range;
   Vector end = distance > reach ? Vector(from + (target - from) * (reach / distance)) : target;
   if (!problem_.upright || holds_on_line(from, end)) return end;
   Vector bent = restore(end);

@@ -17,7 +17,9 @@ class UprightBound {
   /// Returns how far what is held leans over [rad]; 0 where nothing asks for it to be upright.
   double tilt(const Vector& q) const;
   /// Returns whether tilt() is within the bound.
-  bool holds(const Vector& q) const { return !problem_.upright || tilt(q) <= problem_.upright->max_angle; }
+  bool holds(const Vector& q) const {
+    return !problem_.upright || tilt(q) <= problem_.upright->max_angle;
+  }
   /// Returns whether the whole straight line is upright. Its ends may be on the bound, what is
   /// between is sampled every few hundredths of a radian.
   bool holds_on_line(const Vector& from, const Vector& to) const;

@@ -15,24 +15,28 @@
 namespace handsel::spark {
 namespace {
 
-constexpr std::array kZoneLimits = {0.1, 0.45, 1.2, 3.6};  // contact, danger, interaction, social [m]
-constexpr std::array kZoneFacts = {FactKind::in_contact_zone, FactKind::in_danger_zone, FactKind::in_interaction_zone,
-                                   FactKind::in_social_zone};
-constexpr double kLoosely = 1.2;        // what began within a limit stays up to this times it
-constexpr double kFieldOfView = 1.05;   // [rad] to either side of where the eyes or, unknown, the body points
+constexpr std::array kZoneLimits = {0.1, 0.45, 1.2,
+                                    3.6};  // contact, danger, interaction, social [m]
+constexpr std::array kZoneFacts = {FactKind::in_contact_zone, FactKind::in_danger_zone,
+                                   FactKind::in_interaction_zone, FactKind::in_social_zone};
+constexpr double kLoosely = 1.2;  // what began within a limit stays up to this times it
+constexpr double kFieldOfView =
+    1.05;  // [rad] to either side of where the eyes or, unknown, the body points
 constexpr double kUnknownExtent = 0.1;  // [m] of a thing without a model
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
 double angle_to(const Person& person, const Vector3& p) {
   const Vector3 from = person.gaze_known ? person.gaze_origin : joint_of(person, "head").position;
-  const Vector3 along = person.gaze_known ? person.gaze_direction : Vector3(torso_axes(person).col(0));
+  const Vector3 along =
+      person.gaze_known ? person.gaze_direction : Vector3(torso_axes(person).col(0));
   return std::acos(std::clamp((p - from).normalized().dot(along), -1.0, 1.0));
 }
 
 }  // namespace
 
-FactFinder::FactFinder(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects)
+FactFinder::FactFinder(const config::SparkSettings& settings,
+                       std::shared_ptr<const RobotModel> robot, ObjectLibrary objects)
     : settings_(settings),
       robot_(std::move(robot)),
       library_(std::move(objects)),
@@ -50,7 +54,8 @@ int FactFinder::zone_level(Zone& zone, double distance, TimePoint now) const {
     zone.last_inside = now;
     return level;
   }
-  const bool beyond = distance > kZoneLimits[static_cast<std::size_t>(zone.level)] + settings_.zone_hysteresis();
+  const bool beyond =
+      distance > kZoneLimits[static_cast<std::size_t>(zone.level)] + settings_.zone_hysteresis();
   if (!beyond) zone.last_inside = now;
   if (beyond && to_seconds(now - zone.last_inside) >= settings_.zone_dwell()) zone.level = level;
   return zone.level;
@@ -60,56 +65,67 @@ RobotPartner FactFinder::partner(const Scene& scene) const {
   const Vector3 base = scene.T_world_base.translation();
   RobotPartner robot{base + Vector3(0, 0, 1.0), base};
   if (scene.robot_known && robot_->tool_link() >= 0)
-    robot.tool = (scene.T_world_base * links_[static_cast<std::size_t>(robot_->tool_link())]).translation();
+    robot.tool =
+        (scene.T_world_base * links_[static_cast<std::size_t>(robot_->tool_link())]).translation();
   return robot;
 }
 
-void FactFinder::robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot, TimePoint now,
-                             std::vector<Candidate>& out) {
+void FactFinder::robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot,
+                             TimePoint now, std::vector<Candidate>& out) {
   HumanState alone;
   alone.people = {person};
   const Separation gap = separation(capsules_, links_, scene.T_world_base, alone);
-  const double approach = speed_toward(joint_of(person, "torso").position, joint_of(person, "torso").velocity, gap.on_robot);
+  const double approach = speed_toward(joint_of(person, "torso").position,
+                                       joint_of(person, "torso").velocity, gap.on_robot);
   const double limit = settings_.approach_speed();
-  out.push_back({FactKind::approaching, person.id, "", approach, approach > limit, approach > limit / kLoosely,
+  out.push_back({FactKind::approaching, person.id, "", approach, approach > limit,
+                 approach > limit / kLoosely,
                  evidence("%.2f m/s toward the robot, %.2f m away", approach, gap.distance)});
   if (person.gaze_known) {
     const double angle = std::min(angle_to(person, robot.tool), angle_to(person, robot.body));
     out.push_back({FactKind::attentive, person.id, "", angle, angle < settings_.attentive_angle(),
-                   angle < kLoosely * settings_.attentive_angle(), evidence("gaze %.0f degrees off the robot", degrees(angle))});
+                   angle < kLoosely * settings_.attentive_angle(),
+                   evidence("gaze %.0f degrees off the robot", degrees(angle))});
   }
   const int level = zone_level(zones_[person.id], gap.distance, now);
   if (level < 4)
-    out.push_back({kZoneFacts[static_cast<std::size_t>(level)], person.id, "", gap.distance, true, true,
-                   evidence("%.2f m from the robot", gap.distance)});
+    out.push_back({kZoneFacts[static_cast<std::size_t>(level)], person.id, "", gap.distance, true,
+                   true, evidence("%.2f m from the robot", gap.distance)});
 }
 
-void FactFinder::gaze_facts(const Scene& scene, const HumanState& people, const Person& person, const RobotPartner& robot,
-                            std::vector<Candidate>& out) const {
+void FactFinder::gaze_facts(const Scene& scene, const HumanState& people, const Person& person,
+                            const RobotPartner& robot, std::vector<Candidate>& out) const {
   if (!person.gaze_known) return;
   const auto look = [&](const std::string& at, const Vector3& where, double radius) {
     const double distance = (where - person.gaze_origin).norm();
     const double beside = angle_to(person, where) - std::atan2(radius, distance);
-    out.push_back({FactKind::looking_at, person.id, at, std::max(0.0, beside), beside < settings_.looking_angle(),
+    out.push_back({FactKind::looking_at, person.id, at, std::max(0.0, beside),
+                   beside < settings_.looking_angle(),
                    beside < kLoosely * settings_.looking_angle(),
-                   evidence("gaze %.0f degrees beside it, %.1f m away", degrees(std::max(0.0, beside)), distance)});
+                   evidence("gaze %.0f degrees beside it, %.1f m away",
+                            degrees(std::max(0.0, beside)), distance)});
   };
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) look(scene.objects[i].id, extents_[i].box.center(), extents_[i].radius);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    look(scene.objects[i].id, extents_[i].box.center(), extents_[i].radius);
   for (const Person& other : people.people)
     if (other.id != person.id) look(other.id, joint_of(other, "head").position, 0.12);
   if (scene.robot_known) look(kRobotName, robot.tool, 0.1);
 }
 
-void FactFinder::hand_facts(const Scene& scene, const Person& person, std::vector<Candidate>& out) const {
+void FactFinder::hand_facts(const Scene& scene, const Person& person,
+                            std::vector<Candidate>& out) const {
   const double torso = joint_of(person, "torso").velocity.norm();
-  out.push_back({FactKind::moving, person.id, "", torso, torso > 2 * settings_.moving_speed(), torso > settings_.moving_speed(),
-                 evidence("body at %.2f m/s", torso)});
+  out.push_back({FactKind::moving, person.id, "", torso, torso > 2 * settings_.moving_speed(),
+                 torso > settings_.moving_speed(), evidence("body at %.2f m/s", torso)});
   for (const SceneObject& object : scene.objects) {
     double nearest = 1e9;
     for (const char* hand : {"l_hand", "r_hand"})
-      nearest = std::min(nearest, (object.T_world_object.translation() - joint_of(person, hand).position).norm());
-    out.push_back({FactKind::hand_near_object, person.id, object.id, nearest, nearest < settings_.near_distance(),
-                   nearest < kLoosely * settings_.near_distance(), evidence("hand %.2f m from its middle", nearest)});
+      nearest = std::min(
+          nearest, (object.T_world_object.translation() - joint_of(person, hand).position).norm());
+    out.push_back({FactKind::hand_near_object, person.id, object.id, nearest,
+                   nearest < settings_.near_distance(),
+                   nearest < kLoosely * settings_.near_distance(),
+                   evidence("hand %.2f m from its middle", nearest)});
   }
 }
 
@@ -120,51 +136,66 @@ FactFinder::Extent FactFinder::extent(const SceneObject& object) const {
     for (const Vector3& v : model->mesh.vertices) e.box.extend(object.T_world_object * v);
   } else {
     e.box = object_extent(nullptr, object.primitive);
-    if (e.box.isEmpty()) e.box = Eigen::AlignedBox3d(Vector3::Constant(-kUnknownExtent / 2), Vector3::Constant(kUnknownExtent / 2));
+    if (e.box.isEmpty())
+      e.box = Eigen::AlignedBox3d(Vector3::Constant(-kUnknownExtent / 2),
+                                  Vector3::Constant(kUnknownExtent / 2));
     e.box.transform(object.T_world_object);
   }
   e.radius = e.box.diagonal().norm() / 2;
   return e;
 }
 
-void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k, std::vector<Candidate>& out) const {
+void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k,
+                            std::vector<Candidate>& out) const {
   const SceneObject &a = scene.objects[i], &b = scene.objects[k];
   const Extent &ea = extents_[i], &eb = extents_[k];
   const double apart = ea.box.exteriorDistance(eb.box);
-  const auto inside = [&](const SceneObject& small, const Extent& es, const SceneObject& large, const Extent& el) {
-    const bool larger = el.box.sizes().x() > es.box.sizes().x() && el.box.sizes().y() > es.box.sizes().y();
+  const auto inside = [&](const SceneObject& small, const Extent& es, const SceneObject& large,
+                          const Extent& el) {
+    const bool larger =
+        el.box.sizes().x() > es.box.sizes().x() && el.box.sizes().y() > es.box.sizes().y();
     const Vector3 low(es.box.center().x(), es.box.center().y(), es.box.min().z());
     const bool within = larger && el.box.contains(low) && el.box.contains(es.box.center());
     const double depth = el.box.max().z() - low.z();
-    out.push_back({FactKind::inside, small.id, large.id, depth, within, within, evidence("its bottom %.2f m below the rim", depth)});
+    out.push_back({FactKind::inside, small.id, large.id, depth, within, within,
+                   evidence("its bottom %.2f m below the rim", depth)});
     return within;
   };
   const bool nested = inside(a, ea, b, eb) | inside(b, eb, a, ea);
   const double limit = settings_.next_distance();
-  out.push_back({FactKind::next_to, a.id, b.id, apart, !nested && apart < limit, !nested && apart < kLoosely * limit,
-                 evidence("%.2f m apart", apart)});
+  out.push_back({FactKind::next_to, a.id, b.id, apart, !nested && apart < limit,
+                 !nested && apart < kLoosely * limit, evidence("%.2f m apart", apart)});
 }
 
-void FactFinder::thing_facts(const Scene& scene, const HumanState& people, std::vector<Candidate>& out) const {
+void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
+                             std::vector<Candidate>& out) const {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     const Vector3 middle = extents_[i].box.center();
     const Vector3 where = object.T_world_object.translation();
     const double speed = object.velocity.norm();
-    out.push_back({FactKind::moving, object.id, "", speed, speed > settings_.moving_speed(), speed > settings_.moving_speed() / 2,
-                   evidence("at %.2f m/s", speed)});
+    out.push_back({FactKind::moving, object.id, "", speed, speed > settings_.moving_speed(),
+                   speed > settings_.moving_speed() / 2, evidence("at %.2f m/s", speed)});
     if (object.holder == Holder::surface)
-      out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, true, true, "its bottom on the top of " + object.holder_id});
+      out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, true, true,
+                     "its bottom on the top of " + object.holder_id});
     if (scene.robot_known && reach_.shoulder >= 0) {
-      const double away = (where - scene.T_world_base * links_[static_cast<std::size_t>(reach_.shoulder)].translation()).norm();
-      out.push_back({FactKind::reachable_by_robot, object.id, "", away, away < 0.95 * reach_.length, away < reach_.length,
-                     evidence("%.2f m from the shoulder of an arm of %.2f m", away, reach_.length)});
+      const double away =
+          (where -
+           scene.T_world_base * links_[static_cast<std::size_t>(reach_.shoulder)].translation())
+              .norm();
+      out.push_back(
+          {FactKind::reachable_by_robot, object.id, "", away, away < 0.95 * reach_.length,
+           away < reach_.length,
+           evidence("%.2f m from the shoulder of an arm of %.2f m", away, reach_.length)});
     }
     for (const Person& person : people.people) {
       const bool reach = within_reach(person, where);
       out.push_back({FactKind::reachable_by_human, object.id, person.id, 1, reach, reach,
-                     evidence("%.2f m from the shoulders' middle", (where - joint_of(person, "neck").position).norm())});
-      const Vector3 eyes = person.gaze_known ? person.gaze_origin : joint_of(person, "head").position;
+                     evidence("%.2f m from the shoulders' middle",
+                              (where - joint_of(person, "neck").position).norm())});
+      const Vector3 eyes =
+          person.gaze_known ? person.gaze_origin : joint_of(person, "head").position;
       const double aside = angle_to(person, middle);
       bool hidden = std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
         return hides(SightBox{box.T_world_box, box.size}, eyes, middle);
@@ -174,8 +205,9 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people, std::
         const Pose T = scene.T_world_base * links_[static_cast<std::size_t>(c.link)];
         hidden = hides(SightCapsule{T * c.a, T * c.b, c.radius}, eyes, middle);
       }
-      out.push_back({FactKind::visible_to, object.id, person.id, aside, !hidden && aside < kFieldOfView,
-                     !hidden && aside < kLoosely * kFieldOfView, evidence("%.0f degrees from where they look", degrees(aside))});
+      out.push_back({FactKind::visible_to, object.id, person.id, aside,
+                     !hidden && aside < kFieldOfView, !hidden && aside < kLoosely * kFieldOfView,
+                     evidence("%.0f degrees from where they look", degrees(aside))});
     }
     for (std::size_t k = i + 1; k < scene.objects.size(); ++k) pair_facts(scene, i, k, out);
   }
@@ -186,7 +218,8 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
   extents_.clear();
   for (const SceneObject& object : scene.objects) extents_.push_back(extent(object));
   std::erase_if(zones_, [&](const auto& zone) {
-    return std::none_of(people.people.begin(), people.people.end(), [&](const Person& person) { return person.id == zone.first; });
+    return std::none_of(people.people.begin(), people.people.end(),
+                        [&](const Person& person) { return person.id == zone.first; });
   });
   const RobotPartner robot = partner(scene);
   std::vector<Candidate> judged, remembered;
@@ -215,13 +248,15 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
         return false;
     }
   };
-  const auto middle = std::stable_partition(judged.begin(), judged.end(), [&](const Candidate& c) { return !own(c); });
+  const auto middle = std::stable_partition(judged.begin(), judged.end(),
+                                            [&](const Candidate& c) { return !own(c); });
   remembered.assign(std::make_move_iterator(middle), std::make_move_iterator(judged.end()));
   judged.erase(middle, judged.end());
   Facts out{0, lasting_.settle(judged, now)};
   for (Fact& fact : instant_.settle(remembered, now)) out.facts.push_back(std::move(fact));
   const Coverage reach = reach_of(*robot_, scene.T_world_base.translation());
-  out.left_out = keep_most_relevant(out.facts, quotas_of(settings_).facts, scene, people, reach).count;
+  out.left_out =
+      keep_most_relevant(out.facts, quotas_of(settings_).facts, scene, people, reach).count;
   return out;
 }
 

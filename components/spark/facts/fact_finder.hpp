@@ -15,14 +15,15 @@
 #include "common/messages/world.hpp"
 #include "common/model/arm_reach.hpp"
 #include "common/model/robot_capsules.hpp"
-#include "components/spark/facts/handover_facts.hpp"
 #include "components/spark/facts/fact_memory.hpp"
+#include "components/spark/facts/handover_facts.hpp"
 
 namespace handsel::spark {
 
 class FactFinder {
  public:
-  FactFinder(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects);
+  FactFinder(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
+             ObjectLibrary objects);
 
   /// The facts that hold now, with how long they have held and what they rest on. Those of the
   /// robot need its state to be known.
@@ -38,12 +39,14 @@ class FactFinder {
     double radius{};          // around its centre
   };
   int zone_level(Zone& zone, double distance, TimePoint now) const;
-  void robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
-  void gaze_facts(const Scene& scene, const HumanState& people, const Person& person, const RobotPartner& robot,
-                  std::vector<Candidate>& out) const;
+  void robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot,
+                   TimePoint now, std::vector<Candidate>& out);
+  void gaze_facts(const Scene& scene, const HumanState& people, const Person& person,
+                  const RobotPartner& robot, std::vector<Candidate>& out) const;
   void hand_facts(const Scene& scene, const Person& person, std::vector<Candidate>& out) const;
   void thing_facts(const Scene& scene, const HumanState& people, std::vector<Candidate>& out) const;
-  void pair_facts(const Scene& scene, std::size_t i, std::size_t k, std::vector<Candidate>& out) const;
+  void pair_facts(const Scene& scene, std::size_t i, std::size_t k,
+                  std::vector<Candidate>& out) const;
   Extent extent(const SceneObject& object) const;
   RobotPartner partner(const Scene& scene) const;
 

@@ -11,18 +11,22 @@ namespace handsel::spark {
 namespace {
 
 constexpr double kTowardPartner = 0.0;  // cosine: what is held out is not held away from somebody
-constexpr double kReachBeyond = 0.5;    // [m] a hand reaches for what is no farther than this beyond the arm
+constexpr double kReachBeyond =
+    0.5;  // [m] a hand reaches for what is no farther than this beyond the arm
 
 /// How far the hand is before its shoulder, as a share of the arm's length.
 double stretch(const Person& person, Side side) {
   const bool left = side == Side::left;
-  const Vector3 from_shoulder =
-      joint_of(person, left ? "l_hand" : "r_hand").position - joint_of(person, left ? "l_shoulder" : "r_shoulder").position;
+  const Vector3 from_shoulder = joint_of(person, left ? "l_hand" : "r_hand").position -
+                                joint_of(person, left ? "l_shoulder" : "r_shoulder").position;
   return from_shoulder.dot(torso_axes(person).col(0)) / std::max(0.1, arm_length(person));
 }
 
 Side nearer_hand(const Person& person, const Vector3& p) {
-  return (joint_of(person, "l_hand").position - p).norm() < (joint_of(person, "r_hand").position - p).norm() ? Side::left : Side::right;
+  return (joint_of(person, "l_hand").position - p).norm() <
+                 (joint_of(person, "r_hand").position - p).norm()
+             ? Side::left
+             : Side::right;
 }
 
 }  // namespace
@@ -31,31 +35,36 @@ std::set<std::string> HandoverFacts::holders(const SceneObject& object) {
   std::set<std::string> now;
   const std::set<std::string>& before = holders_[object.id];
   for (const ObjectGrip& grip : object.grips)
-    if (!grip.person.empty() && grip.force > (before.count(grip.person) ? settings_.grip_lost() : settings_.grip_force()))
+    if (!grip.person.empty() &&
+        grip.force > (before.count(grip.person) ? settings_.grip_lost() : settings_.grip_force()))
       now.insert(grip.person);
   if (object.grips.empty() && object.holder == Holder::human) now.insert(object.holder_id);
   if (object.grips.empty() && object.holder == Holder::robot) now.insert(kRobotName);
   return now;
 }
 
-void HandoverFacts::held_and_released(const SceneObject& object, TimePoint now, std::vector<Candidate>& out) {
+void HandoverFacts::held_and_released(const SceneObject& object, TimePoint now,
+                                      std::vector<Candidate>& out) {
   const std::set<std::string> hold = holders(object), before = holders_[object.id];
   for (const std::string& who : hold) {
-    const auto grip = std::find_if(object.grips.begin(), object.grips.end(), [&](const ObjectGrip& g) { return g.person == who; });
+    const auto grip = std::find_if(object.grips.begin(), object.grips.end(),
+                                   [&](const ObjectGrip& g) { return g.person == who; });
     const bool robot = who == kRobotName;
-    out.push_back({robot ? FactKind::held_by_robot : FactKind::held_by_human, object.id, robot ? "" : who, 1, true, true,
+    out.push_back({robot ? FactKind::held_by_robot : FactKind::held_by_human, object.id,
+                   robot ? "" : who, 1, true, true,
                    grip != object.grips.end() ? evidence("grip %.1f N", grip->force)
                    : robot                    ? "load on the hand that is there"
                                               : "in the hand, on nothing else"});
   }
   for (const std::string& who : before)
-    if (!hold.empty() && !hold.count(who)) released_[{object.id, who}] = {now, "released while " + *hold.begin() + " holds it"};
+    if (!hold.empty() && !hold.count(who))
+      released_[{object.id, who}] = {now, "released while " + *hold.begin() + " holds it"};
   for (const std::string& who : hold) released_.erase({object.id, who});
   holders_[object.id] = hold;
 }
 
-void HandoverFacts::offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot, TimePoint now,
-                            std::vector<Candidate>& out) {
+void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
+                            const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out) {
   for (const Person& giver : people.people) {
     if (!holders_[object.id].count(giver.id)) continue;
     const BodyJoint& torso = joint_of(giver, "torso");
@@ -67,22 +76,29 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
     for (const Person& other : people.people) {
       const Vector3& there = joint_of(other, "torso").position;
       const double to_them = held.dot(level(there - torso.position));
-      if (other.id == giver.id || to_them < aim || (there - torso.position).norm() > settings_.offer_range()) continue;
+      if (other.id == giver.id || to_them < aim ||
+          (there - torso.position).norm() > settings_.offer_range())
+        continue;
       partner = there;
       whom = other.id;
       aim = to_them;
     }
     const double away = (partner - object.T_world_object.translation()).norm();
-    const double toward = speed_toward(object.T_world_object.translation(), object.velocity - torso.velocity, partner);
+    const double toward = speed_toward(object.T_world_object.translation(),
+                                       object.velocity - torso.velocity, partner);
     const bool near = away < settings_.offer_range();
     const bool goes_over = holders_[object.id].size() > 1 ||
-                           std::any_of(released_.begin(), released_.end(), [&](const auto& r) { return r.first.first == object.id; });
-    const bool held_out = !goes_over && std::abs(toward) < settings_.offer_speed() && aim > kTowardPartner &&
-                          stretch(giver, nearer_hand(giver, object.T_world_object.translation())) > settings_.stretched();
+                           std::any_of(released_.begin(), released_.end(),
+                                       [&](const auto& r) { return r.first.first == object.id; });
+    const bool held_out = !goes_over && std::abs(toward) < settings_.offer_speed() &&
+                          aim > kTowardPartner &&
+                          stretch(giver, nearer_hand(giver, object.T_world_object.translation())) >
+                              settings_.stretched();
     const bool begins = near && (toward > settings_.offer_speed() || held_out);
     const bool back = toward < -settings_.offer_speed();
     const Pair pair{giver.id, object.id};
-    const std::string seen = evidence("toward %.40s at %.2f m/s, %.2f m away", whom.c_str(), toward, away);
+    const std::string seen =
+        evidence("toward %.40s at %.2f m/s, %.2f m away", whom.c_str(), toward, away);
     out.push_back({FactKind::offering, giver.id, object.id, toward, begins, near && !back, seen});
     if (begins)
       offering_[pair] = now;
@@ -95,8 +111,8 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
   }
 }
 
-void HandoverFacts::reached_for(const Person& person, const std::string& target, const Vector3& where, TimePoint now,
-                                std::vector<Candidate>& out) {
+void HandoverFacts::reached_for(const Person& person, const std::string& target,
+                                const Vector3& where, TimePoint now, std::vector<Candidate>& out) {
   const BodyJoint& torso = joint_of(person, "torso");
   double toward = -1e9, distance = 0, back = 1e9;
   for (const char* side : {"l_hand", "r_hand"}) {
@@ -110,17 +126,21 @@ void HandoverFacts::reached_for(const Person& person, const std::string& target,
   }
   const Pair pair{person.id, target};
   if (toward > -1e9)
-    out.push_back({FactKind::reaching, person.id, target, toward, toward > settings_.reach_speed(), toward > settings_.reach_speed() / 3,
+    out.push_back({FactKind::reaching, person.id, target, toward, toward > settings_.reach_speed(),
+                   toward > settings_.reach_speed() / 3,
                    evidence("hand at %.2f m/s, %.2f m away", toward, distance)});
   if (toward > settings_.reach_speed())
     reaching_[pair] = now;
-  else if (const auto reached = reaching_.find(pair); reached != reaching_.end() && back < -settings_.reach_speed()) {
-    if (to_seconds(now - reached->second) < settings_.memory()) withdrawn_[pair] = {now, evidence("hand back at %.2f m/s", -back)};
+  else if (const auto reached = reaching_.find(pair);
+           reached != reaching_.end() && back < -settings_.reach_speed()) {
+    if (to_seconds(now - reached->second) < settings_.memory())
+      withdrawn_[pair] = {now, evidence("hand back at %.2f m/s", -back)};
     reaching_.erase(reached);
   }
 }
 
-void HandoverFacts::waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out) {
+void HandoverFacts::waited_for(const Person& person, const Scene& scene,
+                               std::vector<Candidate>& out) {
   double most = 0, speed = 0;
   Vector3 hand = Vector3::Zero();
   for (const Side side : {Side::left, Side::right}) {
@@ -138,11 +158,13 @@ void HandoverFacts::waited_for(const Person& person, const Scene& scene, std::ve
     const bool waits = most > settings_.stretched() && speed < settings_.reach_speed();
     const bool still = most > 0.9 * settings_.stretched() && speed < 3 * settings_.reach_speed();
     out.push_back({FactKind::waiting_to_receive, person.id, object.id, distance, waits, still,
-                   evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s", 100 * most, distance, speed)});
+                   evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s", 100 * most,
+                            distance, speed)});
   }
 }
 
-/// What is remembered of objects that are no longer in the scene, and of people and moments that are over.
+/// What is remembered of objects that are no longer in the scene, and of people and moments that
+/// are over.
 void HandoverFacts::forget(const Scene& scene, const HumanState& people, TimePoint now) {
   std::set<std::string> there{kRobotName};
   for (const SceneObject& object : scene.objects) there.insert(object.id);
@@ -156,22 +178,28 @@ void HandoverFacts::forget(const Scene& scene, const HumanState& people, TimePoi
   std::erase_if(reaching_, over);
 }
 
-void HandoverFacts::find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now,
-                         std::vector<Candidate>& out) {
+void HandoverFacts::find(const Scene& scene, const HumanState& people, const RobotPartner& robot,
+                         TimePoint now, std::vector<Candidate>& out) {
   forget(scene, people, now);
   for (const SceneObject& object : scene.objects) held_and_released(object, now, out);
   for (const SceneObject& object : scene.objects) offered(object, people, robot, now, out);
   for (const Person& person : people.people) {
-    if (std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return holders_[o.id].count(person.id) > 0; }))
-      std::erase_if(reaching_, [&](const auto& reached) { return reached.first.first == person.id; });  // a hand that has it comes back
+    if (std::any_of(scene.objects.begin(), scene.objects.end(),
+                    [&](const SceneObject& o) { return holders_[o.id].count(person.id) > 0; }))
+      std::erase_if(reaching_, [&](const auto& reached) {
+        return reached.first.first == person.id;
+      });  // a hand that has it comes back
     for (const SceneObject& object : scene.objects)
-      if (!holders_[object.id].count(person.id)) reached_for(person, object.id, object.T_world_object.translation(), now, out);
+      if (!holders_[object.id].count(person.id))
+        reached_for(person, object.id, object.T_world_object.translation(), now, out);
     reached_for(person, kRobotName, robot.tool, now, out);
     waited_for(person, scene, out);
   }
   const auto tell = [&](FactKind kind, std::map<Pair, Moment>& moments) {
-    std::erase_if(moments, [&](const auto& m) { return to_seconds(now - m.second.at) > settings_.memory(); });
-    for (const auto& [pair, moment] : moments) out.push_back({kind, pair.first, pair.second, 1, true, true, moment.evidence});
+    std::erase_if(
+        moments, [&](const auto& m) { return to_seconds(now - m.second.at) > settings_.memory(); });
+    for (const auto& [pair, moment] : moments)
+      out.push_back({kind, pair.first, pair.second, 1, true, true, moment.evidence});
   };
   tell(FactKind::released, released_);
   tell(FactKind::withdrawn, withdrawn_);

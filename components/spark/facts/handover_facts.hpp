@@ -27,7 +27,8 @@ class HandoverFacts {
   /// Adds the candidates of this sample. An object with force sensors is held by everybody whose
   /// grip exceeds `grip_force` until it falls below `grip_lost`, so that both have it during the
   /// handover; any other by its one holder. Only what another still holds counts as released.
-  void find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
+  void find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now,
+            std::vector<Candidate>& out);
 
  private:
   using Pair = std::pair<std::string, std::string>;
@@ -37,8 +38,10 @@ class HandoverFacts {
   };
   std::set<std::string> holders(const SceneObject& object);
   void held_and_released(const SceneObject& object, TimePoint now, std::vector<Candidate>& out);
-  void offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
-  void reached_for(const Person& person, const std::string& target, const Vector3& where, TimePoint now, std::vector<Candidate>& out);
+  void offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot,
+               TimePoint now, std::vector<Candidate>& out);
+  void reached_for(const Person& person, const std::string& target, const Vector3& where,
+                   TimePoint now, std::vector<Candidate>& out);
   void forget(const Scene& scene, const HumanState& people, TimePoint now);
   void waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out);
 

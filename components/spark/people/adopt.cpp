@@ -7,16 +7,19 @@ namespace handsel::spark {
 namespace {
 
 bool is_complete(const Person& person) {
-  return std::equal(person.joints.begin(), person.joints.end(), kBodyJoints.begin(), kBodyJoints.end(),
+  return std::equal(person.joints.begin(), person.joints.end(), kBodyJoints.begin(),
+                    kBodyJoints.end(),
                     [](const BodyJoint& joint, const auto& name) { return joint.name == name; });
 }
 
 }  // namespace
 
-/// Returns the track of the same person: the same id, or a body seen where they were last seen; nullptr: there is none.
+/// Returns the track of the same person: the same id, or a body seen where they were last seen;
+/// nullptr: there is none.
 Track* PeopleTracker::same_as(const Person& lost) {
   ObservedPerson body;
-  for (const BodyJoint& joint : lost.joints) body.joints.push_back({joint.name, joint.position, 1.0});
+  for (const BodyJoint& joint : lost.joints)
+    body.joints.push_back({joint.name, joint.position, 1.0});
   Track* nearest = nullptr;
   double min_distance = settings_.association_distance();
   for (Track& track : tracks_) {
@@ -24,7 +27,9 @@ Track* PeopleTracker::same_as(const Person& lost) {
     const double away = distance(track, body);
     const double walked = settings_.association_distance() + settings_.lost_speed() * lost.age;
     if (track.person.id == lost.id && away <= walked) return &track;
-    const bool taken = track.adopted || std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == lost.id; });
+    const bool taken =
+        track.adopted || std::any_of(tracks_.begin(), tracks_.end(),
+                                     [&](const Track& t) { return t.person.id == lost.id; });
     if (taken || away > min_distance) continue;
     nearest = &track;
     min_distance = away;
@@ -44,7 +49,8 @@ void PeopleTracker::adopt(const std::vector<Person>& lost, TimePoint now, TimePo
     gone.person = person;
     gone.person.hands.clear();
     gone.person.gaze_known = false;
-    if (std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == person.id; }))
+    if (std::any_of(tracks_.begin(), tracks_.end(),
+                    [&](const Track& t) { return t.person.id == person.id; }))
       gone.person.id = "person" + std::to_string(++unnamed_);  // somebody else is called so by now
     gone.born = gone.seen = now - from_seconds(person.age);
     gone.adopted = true;

@@ -20,7 +20,9 @@ const std::array<std::size_t, 7> kTrunkJoints = trunk_joints();
 
 }  // namespace
 
-bool of_trunk(std::size_t joint) { return std::find(kTrunkJoints.begin(), kTrunkJoints.end(), joint) != kTrunkJoints.end(); }
+bool of_trunk(std::size_t joint) {
+  return std::find(kTrunkJoints.begin(), kTrunkJoints.end(), joint) != kTrunkJoints.end();
+}
 
 void BodyMotion::Point::add(const Vector3& position, double noise, TimePoint at) {
   const double since = sampled ? to_seconds(at - *sampled) : 2 * kGap;
@@ -31,7 +33,8 @@ void BodyMotion::Point::add(const Vector3& position, double noise, TimePoint at)
   sampled = at;
 }
 
-void BodyMotion::update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise, TimePoint at) {
+void BodyMotion::update(std::vector<BodyJoint>& body,
+                        const std::array<double, kBodyJoints.size()>& noise, TimePoint at) {
   constexpr double kCount = static_cast<double>(kTrunkJoints.size());
   Vector3 middle = Vector3::Zero();
   double noisiest = 0, variance = 0;
@@ -39,7 +42,8 @@ void BodyMotion::update(std::vector<BodyJoint>& body, const std::array<double, k
     middle += body[i].position / kCount;
     noisiest = std::max(noisiest, noise[i]);
   }
-  for (const std::size_t i : kTrunkJoints) variance += std::pow(noise[i] > 0 ? noise[i] : noisiest, 2);
+  for (const std::size_t i : kTrunkJoints)
+    variance += std::pow(noise[i] > 0 ? noise[i] : noisiest, 2);
   const double of_middle = std::sqrt(variance) / kCount;
   if (noisiest > 0) trunk_.add(middle, of_middle, at);
   for (std::size_t i = 0; i < body.size(); ++i) {

@@ -23,7 +23,8 @@ class BodyMotion {
   /// Takes in where the joints (kBodyJoints) were seen at `at`, never before the last such time,
   /// and writes their velocities to `body`. `noise`: standard deviation of each coordinate [m], 0
   /// for a joint of which there is no news.
-  void update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise, TimePoint at);
+  void update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise,
+              TimePoint at);
 
  private:
   struct Point {

@@ -15,19 +15,20 @@ constexpr int kAverageOver = 60;             // looks
 constexpr double kCorrection = 0.02;         // [m]
 constexpr double kLeast = 0.6, kMost = 2.2;  // [m]
 
-constexpr std::array<std::pair<const char*, const char*>, 13> kBones = {{{"l_shoulder", "l_elbow"},
-                                                                         {"r_shoulder", "r_elbow"},
-                                                                         {"l_elbow", "l_wrist"},
-                                                                         {"r_elbow", "r_wrist"},
-                                                                         {"l_hip", "l_knee"},
-                                                                         {"r_hip", "r_knee"},
-                                                                         {"l_knee", "l_ankle"},
-                                                                         {"r_knee", "r_ankle"},
-                                                                         {"neck", "torso"},
-                                                                         {"torso", "waist"},
-                                                                         {"l_shoulder", "r_shoulder"},
-                                                                         {"neck", "l_shoulder"},
-                                                                         {"neck", "r_shoulder"}}};
+constexpr std::array<std::pair<const char*, const char*>, 13> kBones = {
+    {{"l_shoulder", "l_elbow"},
+     {"r_shoulder", "r_elbow"},
+     {"l_elbow", "l_wrist"},
+     {"r_elbow", "r_wrist"},
+     {"l_hip", "l_knee"},
+     {"r_hip", "r_knee"},
+     {"l_knee", "l_ankle"},
+     {"r_knee", "r_ankle"},
+     {"neck", "torso"},
+     {"torso", "waist"},
+     {"l_shoulder", "r_shoulder"},
+     {"neck", "l_shoulder"},
+     {"neck", "r_shoulder"}}};
 
 struct Bone {
   int from, to;
@@ -40,7 +41,10 @@ const std::array<Bone, kBones.size()>& bones() {
     const auto body = standing_body(Vector3::Zero(), 0, 1);
     for (std::size_t i = 0; i < out.size(); ++i) {
       const int a = body_joint_index(kBones[i].first), b = body_joint_index(kBones[i].second);
-      out[i] = {a, b, (body[static_cast<std::size_t>(a)].position - body[static_cast<std::size_t>(b)].position).norm()};
+      out[i] = {
+          a, b,
+          (body[static_cast<std::size_t>(a)].position - body[static_cast<std::size_t>(b)].position)
+              .norm()};
     }
     return out;
   }();
@@ -52,12 +56,15 @@ const std::array<Bone, kBones.size()>& bones() {
 void BodySize::see(const ObservedPerson& body) {
   std::array<const ObservedJoint*, kBodyJoints.size()> seen{};
   for (const ObservedJoint& joint : body.joints)
-    if (const int i = body_joint_index(joint.name); i >= 0 && joint.confidence >= kSure && joint.position.allFinite())
+    if (const int i = body_joint_index(joint.name);
+        i >= 0 && joint.confidence >= kSure && joint.position.allFinite())
       seen[static_cast<std::size_t>(i)] = &joint;
   std::vector<double> said;
   for (const Bone& bone : bones()) {
-    const ObservedJoint *a = seen[static_cast<std::size_t>(bone.from)], *b = seen[static_cast<std::size_t>(bone.to)];
-    if (a != nullptr && b != nullptr) said.push_back((a->position - b->position).norm() / bone.share);
+    const ObservedJoint *a = seen[static_cast<std::size_t>(bone.from)],
+                        *b = seen[static_cast<std::size_t>(bone.to)];
+    if (a != nullptr && b != nullptr)
+      said.push_back((a->position - b->position).norm() / bone.share);
   }
   if (said.empty()) return;
   const auto middle = said.begin() + static_cast<std::ptrdiff_t>(said.size() / 2);

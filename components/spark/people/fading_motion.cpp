@@ -41,17 +41,21 @@ void FadingMotion::reset(const Vector3& position, double noise) {
   position_ = position;
   velocity_.setZero();
   acceleration_.setZero();
-  covariance_ = Vector3(noise * noise, kFirstSpeed * kFirstSpeed, model_.acceleration * model_.acceleration).asDiagonal();
+  covariance_ =
+      Vector3(noise * noise, kFirstSpeed * kFirstSpeed, model_.acceleration * model_.acceleration)
+          .asDiagonal();
 }
 
 void FadingMotion::update(const Vector3& seen, double dt, double noise) {
   const Eigen::Matrix3d A = transition(model_, dt);
   const double usual = model_.acceleration + model_.acceleration_per_speed * velocity_.norm();
   const Vector3 position = position_ + A(0, 1) * velocity_ + A(0, 2) * acceleration_;
-  const Vector3 velocity = A(1, 1) * velocity_ + A(1, 2) * acceleration_, surprise = seen - position;
+  const Vector3 velocity = A(1, 1) * velocity_ + A(1, 2) * acceleration_,
+                surprise = seen - position;
   const Eigen::Matrix3d moved = A * covariance_ * A.transpose();
   Eigen::Matrix3d P = moved + pushed(model_, dt, usual);
-  if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (P(0, 0) + noise * noise)) P = moved + pushed(model_, dt, kSudden * usual);
+  if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (P(0, 0) + noise * noise))
+    P = moved + pushed(model_, dt, kSudden * usual);
   const Vector3 gain = P.col(0) / (P(0, 0) + noise * noise);
   position_ = position + gain.x() * surprise;
   velocity_ = velocity + gain.y() * surprise;
@@ -62,7 +66,9 @@ void FadingMotion::update(const Vector3& seen, double dt, double noise) {
 FadingMotion::Expected FadingMotion::at(double horizon) const {
   const Eigen::Matrix3d A = transition(model_, horizon);
   const Eigen::Matrix3d P =
-      A * covariance_ * A.transpose() + pushed(model_, horizon, model_.acceleration + model_.acceleration_per_speed * velocity_.norm());
+      A * covariance_ * A.transpose() +
+      pushed(model_, horizon,
+             model_.acceleration + model_.acceleration_per_speed * velocity_.norm());
   return {position_ + A(0, 1) * velocity_ + A(0, 2) * acceleration_, std::sqrt(P(0, 0))};
 }
 

@@ -8,10 +8,12 @@ namespace {
 
 constexpr FadingModel kHand{0.15, 0.04, 1.2, 4};
 constexpr FadingModel kTrunk{1, 0.04, 1, 0};
-constexpr double kSure = 4;        // standard deviations in the radius
-constexpr double kMean = 0.5;      // of several joints is so much less noisy
-constexpr double kChecked = 0.2;   // what was expected of this moment, so long ago, is compared with what came [s]
-constexpr double kMargin = 1.2;    // a ball that was missed is made larger than would have sufficed by this factor
+constexpr double kSure = 4;    // standard deviations in the radius
+constexpr double kMean = 0.5;  // of several joints is so much less noisy
+constexpr double kChecked =
+    0.2;  // what was expected of this moment, so long ago, is compared with what came [s]
+constexpr double kMargin =
+    1.2;  // a ball that was missed is made larger than would have sufficed by this factor
 constexpr double kMemory = 2;      // and shrinks again within [s]
 constexpr std::size_t kMost = 64;  // promises kept
 
@@ -41,7 +43,8 @@ void HandPredictor::update(const Vector3& hand, const Vector3& trunk, double dt,
 
 HandPredictor::Ball HandPredictor::at(double horizon, double factor) const {
   const FadingMotion::Expected hand = hand_.at(horizon), trunk = trunk_.at(horizon);
-  return {hand.position + trunk.position, factor * kSure * std::hypot(hand.deviation, trunk.deviation)};
+  return {hand.position + trunk.position,
+          factor * kSure * std::hypot(hand.deviation, trunk.deviation)};
 }
 
 }  // namespace handsel::spark

@@ -33,11 +33,13 @@ class JointMotion {
     const double r = noise * noise;
     const auto predicted = [&](double acceleration) {
       const double q = acceleration * acceleration * dt * dt;
-      return std::array<double, 3>{pp_ + 2 * dt * pv_ + dt * dt * vv_ + q * dt * dt / 4, pv_ + dt * vv_ + q * dt / 2, vv_ + q};
+      return std::array<double, 3>{pp_ + 2 * dt * pv_ + dt * dt * vv_ + q * dt * dt / 4,
+                                   pv_ + dt * vv_ + q * dt / 2, vv_ + q};
     };
     auto p = predicted(agility_.calm);
     const Vector3 surprise = seen - expected;
-    if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (p[0] + r)) p = predicted(agility_.sudden);
+    if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (p[0] + r))
+      p = predicted(agility_.sudden);
     const double gain = p[0] / (p[0] + r), gain_velocity = p[1] / (p[0] + r);
     position_ = expected + gain * surprise;
     velocity_ += gain_velocity * surprise;

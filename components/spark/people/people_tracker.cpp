@@ -9,23 +9,28 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameId = 0.15;        // a body with the id they had is preferred by this [m]
-constexpr double kPause = 0.3;          // under another id a person comes back no farther than walked [s]
-constexpr double kGrid = 0.3;           // places of a lost person are tried this far apart [m]
-constexpr double kFarthest = 5;         // and no farther than this [m]
-constexpr double kWidest = 4;           // max extent of a body: beyond, joints are not compared [m]
+constexpr double kSameId = 0.15;  // a body with the id they had is preferred by this [m]
+constexpr double kPause = 0.3;    // under another id a person comes back no farther than walked [s]
+constexpr double kGrid = 0.3;     // places of a lost person are tried this far apart [m]
+constexpr double kFarthest = 5;   // and no farther than this [m]
+constexpr double kWidest = 4;     // max extent of a body: beyond, joints are not compared [m]
 constexpr double kMaxInflation = 1000;  // farther than any robot; HumanState has room for 10 km [m]
 
 const int kHead = body_joint_index("head"), kTorso = body_joint_index("torso");
 
-const Vector3& position(const Person& person, int joint) { return person.joints[static_cast<std::size_t>(joint)].position; }
+const Vector3& position(const Person& person, int joint) {
+  return person.joints[static_cast<std::size_t>(joint)].position;
+}
 
 bool same(const std::vector<ObservedPerson>& a, const std::vector<ObservedPerson>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const ObservedPerson& x, const ObservedPerson& y) {
-    return x.gaze_direction == y.gaze_direction &&
-           std::equal(x.joints.begin(), x.joints.end(), y.joints.begin(), y.joints.end(),
-                      [](const ObservedJoint& j, const ObservedJoint& k) { return j.name == k.name && j.position == k.position; });
-  });
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [](const ObservedPerson& x, const ObservedPerson& y) {
+        return x.gaze_direction == y.gaze_direction &&
+               std::equal(x.joints.begin(), x.joints.end(), y.joints.begin(), y.joints.end(),
+                          [](const ObservedJoint& j, const ObservedJoint& k) {
+                            return j.name == k.name && j.position == k.position;
+                          });
+      });
 }
 
 /// A body of which only the gaze is known is where its eyes are.
@@ -44,7 +49,8 @@ Vector3 middle_of(const ObservedPerson& body) {
 }  // namespace
 
 /// For every body of the observation the track it is of, or -1: the nearest pairs first.
-std::vector<int> PeopleTracker::associate(const HumanObservation& observation, TimePoint seen) const {
+std::vector<int> PeopleTracker::associate(const HumanObservation& observation,
+                                          TimePoint seen) const {
   std::vector<std::tuple<double, int, int>> pairs;
   for (std::size_t b = 0; b < observation.people.size(); ++b) {
     const ObservedPerson body = with_head(observation.people[b]);
@@ -54,10 +60,12 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation, T
       const auto known = track.bodies.find(observation.source);
       const bool same_id = known != track.bodies.end() && known->second == body.body;
       const double gap = std::max(0.0, track.age(seen));
-      const double reach = settings_.association_distance() + settings_.lost_speed() * (same_id ? gap : std::min(gap, kPause));
+      const double reach = settings_.association_distance() +
+                           settings_.lost_speed() * (same_id ? gap : std::min(gap, kPause));
       if ((middle - position(track.person, kTorso)).head<2>().norm() > reach + kWidest) continue;
       const double d = distance(track, body);
-      if (d <= reach) pairs.emplace_back(d - (same_id ? kSameId : 0.0), static_cast<int>(b), static_cast<int>(t));
+      if (d <= reach)
+        pairs.emplace_back(d - (same_id ? kSameId : 0.0), static_cast<int>(b), static_cast<int>(t));
     }
   }
   std::sort(pairs.begin(), pairs.end());
@@ -75,19 +83,22 @@ void PeopleTracker::add(const ObservedPerson& body, const std::string& source, T
   if (body.joints.empty()) return;
   Track fresh;
   const bool name_free =
-      !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == body.body; });
+      !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(),
+                                         [&](const Track& t) { return t.person.id == body.body; });
   fresh.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
   fresh.born = fresh.seen = seen;
   fresh.bodies[source] = body.body;
   const auto from = sources_.find(source);
   update(fresh, body, seen, 0, settings_);
   if (fresh.person.joints.empty()) return;
-  fresh.came_in = from != sources_.end() && at_boundary(from->second, position(fresh.person, kTorso), settings_.edge());
+  fresh.came_in = from != sources_.end() &&
+                  at_boundary(from->second, position(fresh.person, kTorso), settings_.edge());
   tracks_.push_back(std::move(fresh));
 }
 
 /// Whether a person anywhere in the grown volume would show head or chest to a source.
-bool PeopleTracker::seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const {
+bool PeopleTracker::seen_empty(const Track& track, TimePoint now,
+                               const Obstacles& obstacles) const {
   const double radius = settings_.lost_speed() * track.age(now);
   if (radius > kFarthest) return false;
   const auto shows = [&](const Vector3& shift) {
@@ -120,7 +131,8 @@ void PeopleTracker::confine(Track& track, TimePoint now) const {
     // An adopted person was lost before this process began to observe: empty_after without a
     // gap stands for the time before.
     const bool observed_on =
-        source.unbroken <= track.seen || (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after());
+        source.unbroken <= track.seen ||
+        (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after());
     const bool watched = recent(source, now) && source.seen > track.seen && observed_on;
     if (watched && at_boundary(source, position(track.person, kTorso), settings_.edge()))
       track.left_by = name, track.confined = source.seen;
@@ -128,7 +140,8 @@ void PeopleTracker::confine(Track& track, TimePoint now) const {
   const auto found = sources_.find(track.left_by);
   if (found == sources_.end()) return;
   const Source& source = found->second;
-  if (source.unbroken <= track.confined || to_seconds(source.seen - source.unbroken) >= settings_.empty_after())
+  if (source.unbroken <= track.confined ||
+      to_seconds(source.seen - source.unbroken) >= settings_.empty_after())
     track.confined = std::max(track.confined, source.seen);
 }
 
@@ -140,11 +153,13 @@ Track* PeopleTracker::successor(const Track& gone, TimePoint now) {
   double nearest = std::numeric_limits<double>::infinity();
   for (Track& other : tracks_) {
     const double d = (position(other.person, kTorso) - position(gone.person, kTorso)).norm();
-    const bool called_so = std::any_of(other.bodies.begin(), other.bodies.end(), [&](const auto& body) {
-      const auto before = gone.bodies.find(body.first);
-      return before != gone.bodies.end() && before->second == body.second;
-    });
-    if (&other == &gone || other.born <= gone.seen || d >= nearest || (d > walked && !called_so)) continue;
+    const bool called_so =
+        std::any_of(other.bodies.begin(), other.bodies.end(), [&](const auto& body) {
+          const auto before = gone.bodies.find(body.first);
+          return before != gone.bodies.end() && before->second == body.second;
+        });
+    if (&other == &gone || other.born <= gone.seen || d >= nearest || (d > walked && !called_so))
+      continue;
     out = &other;
     nearest = d;
   }
@@ -157,7 +172,9 @@ Track* PeopleTracker::re_entered(const Track& gone, TimePoint now) {
   Track* other = successor(gone, now);
   if (other == nullptr || !other->came_in) return nullptr;
   const double walked = settings_.association_distance() + settings_.lost_speed() * gone.age(now);
-  return (position(other->person, kTorso) - position(gone.person, kTorso)).norm() <= walked ? other : nullptr;
+  return (position(other->person, kTorso) - position(gone.person, kTorso)).norm() <= walked
+             ? other
+             : nullptr;
 }
 
 void PeopleTracker::erase(std::size_t index, Track* name_goes_to) {
@@ -189,15 +206,18 @@ Source* PeopleTracker::find_source(const HumanObservation& observation, TimePoin
   const auto [entry, first] = sources_.try_emplace(observation.source);
   if (!first) return &entry->second;
   entry->second.coverage = observation.coverage;
-  if (const auto eye = eyes_.find(observation.source); eye != eyes_.end()) entry->second.eye = eye->second;
+  if (const auto eye = eyes_.find(observation.source); eye != eyes_.end())
+    entry->second.eye = eye->second;
   return &entry->second;
 }
 
-void PeopleTracker::refuse(const HumanObservation& observation, const std::string& why, TimePoint now) {
+void PeopleTracker::refuse(const HumanObservation& observation, const std::string& why,
+                           TimePoint now) {
   if (Source* source = find_source(observation, now)) source->unknown_age = why;
 }
 
-std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles, const Coverage* reach,
+std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePoint seen,
+                                     const Obstacles& obstacles, const Coverage* reach,
                                      double latency) {
   Source* const found = find_source(observation, seen);
   if (found == nullptr) return 0;
@@ -206,12 +226,16 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
   source.unknown_age.clear();
   const bool same_stamp = observation.stamp != 0 && observation.stamp == source.stamp;
   if (!same_stamp && !first && seen < source.seen) return 0;
-  source.repeats = !first && (same_stamp || (!observation.people.empty() && same(observation.people, source.people)));
+  source.repeats =
+      !first &&
+      (same_stamp || (!observation.people.empty() && same(observation.people, source.people)));
   if (source.repeats) return 0;
   source.stamp = observation.stamp;
   source.latency = latency;
-  const bool moved = source.coverage.low != observation.coverage.low || source.coverage.high != observation.coverage.high;
-  if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory()) source.unbroken = seen;
+  const bool moved = source.coverage.low != observation.coverage.low ||
+                     source.coverage.high != observation.coverage.high;
+  if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory())
+    source.unbroken = seen;
   source.coverage = observation.coverage;
   source.seen = seen;
   source.people = observation.people;
@@ -238,8 +262,9 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
 }
 
 std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
-  return std::erase_if(
-      tracks_, [&](const Track& track) { return track.age(now) > settings_.lost_after() && (id.empty() || track.person.id == id); });
+  return std::erase_if(tracks_, [&](const Track& track) {
+    return track.age(now) > settings_.lost_after() && (id.empty() || track.person.id == id);
+  });
 }
 
 /// How far a lost or doubted person may be from the last body [m].
@@ -249,21 +274,26 @@ double PeopleTracker::inflation(const Track& track, TimePoint now) const {
   if (unseen > settings_.lost_after()) {
     out = std::min(kMaxInflation, settings_.lost_speed() * unseen);
     if (!track.left_by.empty())
-      out = std::min(out, settings_.edge() + settings_.lost_speed() * std::max(0.0, to_seconds(now - track.confined)));
+      out = std::min(out, settings_.edge() + settings_.lost_speed() *
+                                                 std::max(0.0, to_seconds(now - track.confined)));
   }
   return now < track.doubted_until ? std::max(out, track.doubt) : out;
 }
 
 LeftOut PeopleTracker::keep_nearest(TimePoint now, const Coverage& reach) {
-  const auto rank = [&](const Track& track) { return Rank{0, distance_to_arm(track.person, reach) - inflation(track, now)}; };
+  const auto rank = [&](const Track& track) {
+    return Rank{0, distance_to_arm(track.person, reach) - inflation(track, now)};
+  };
   return keep_lowest(tracks_, quotas_of(settings_).tracks, rank);
 }
 
-/// Whether a new source is listened to: at the quota it takes the place of the one that has been silent for longest.
+/// Whether a new source is listened to: at the quota it takes the place of the one that has been
+/// silent for longest.
 bool PeopleTracker::room_for_source(TimePoint seen) {
   if (sources_.size() < quotas_of(settings_).sources) return true;
   const auto oldest =
-      std::min_element(sources_.begin(), sources_.end(), [](const auto& a, const auto& b) { return a.second.seen < b.second.seen; });
+      std::min_element(sources_.begin(), sources_.end(),
+                       [](const auto& a, const auto& b) { return a.second.seen < b.second.seen; });
   if (recent(oldest->second, seen) || eyes_.contains(oldest->first)) {
     ++refused_observations_;
     return false;
@@ -278,7 +308,8 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
   for (const Track& track : tracks_) {
     Person person = track.person;
     person.age = std::max(0.0, track.age(now));
-    person.gaze_known = track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory();
+    person.gaze_known =
+        track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory();
     person.inflation = inflation(track, now);
     if (person.age <= settings_.lost_after()) person.hands = hands_ahead(track, person, now);
     out.people.push_back(std::move(person));

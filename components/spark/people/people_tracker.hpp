@@ -34,7 +34,8 @@ namespace handsel::spark {
 class PeopleTracker {
  public:
   /// `eyes`: viewpoint of each source, by name [m]; without, a source sees all of its coverage.
-  explicit PeopleTracker(const config::SparkSettings& settings, std::map<std::string, Vector3> eyes = {})
+  explicit PeopleTracker(const config::SparkSettings& settings,
+                         std::map<std::string, Vector3> eyes = {})
       : settings_(settings), eyes_(std::move(eyes)) {}
 
   /// `seen`: when the observation was captured (arrival less its age). `latency`: its age at
@@ -42,8 +43,9 @@ class PeopleTracker {
   /// news, and does not make its source live. Where `reach` is given, only the nearest bodies, by
   /// the quota, become new people; whoever is known already is followed all the same. Returns how
   /// many bodies became nobody.
-  std::uint32_t observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles = {},
-                        const Coverage* reach = nullptr, double latency = 0);
+  std::uint32_t observe(const HumanObservation& observation, TimePoint seen,
+                        const Obstacles& obstacles = {}, const Coverage* reach = nullptr,
+                        double latency = 0);
   /// An observation whose age is not known shows nothing; `why`: one sentence, for trouble().
   void refuse(const HumanObservation& observation, const std::string& why, TimePoint now);
   /// An operator says that a lost person is gone: `id`, or everybody lost when it is empty. Who is
@@ -70,8 +72,12 @@ class PeopleTracker {
   double inflation(const Track& track, TimePoint now) const;
   bool room_for_source(TimePoint seen);
   Source* find_source(const HumanObservation& observation, TimePoint seen);
-  bool live(const Source& source, TimePoint now) const { return source.age(now) <= settings_.max_view_age(); }
-  bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
+  bool live(const Source& source, TimePoint now) const {
+    return source.age(now) <= settings_.max_view_age();
+  }
+  bool recent(const Source& source, TimePoint now) const {
+    return to_seconds(now - source.seen) <= settings_.coverage_memory();
+  }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
   void confine(Track& track, TimePoint now) const;
   Track* successor(const Track& gone, TimePoint now);

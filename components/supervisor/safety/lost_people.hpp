@@ -18,7 +18,8 @@ class LostPeople {
  public:
   /// `after`: age from which a person counts as lost [s]; `max_people`: those lost most recently
   /// are remembered; `restored`: people lost before the start, `age` counts from `now`.
-  LostPeople(double after, std::size_t max_people, const std::vector<Person>& restored, TimePoint now);
+  LostPeople(double after, std::size_t max_people, const std::vector<Person>& restored,
+             TimePoint now);
 
   /// Takes what SPARK shows. `writer` tells one SPARK process from another.
   void on(const HumanState& people, TimePoint arrival, std::uint64_t writer);

@@ -6,8 +6,11 @@
 namespace handsel::supervisor {
 
 void Permission::on(const ComponentHealth& health, TimePoint arrival) {
-  if (std::find(settings_.required().begin(), settings_.required().end(), health.component) == settings_.required().end()) return;
-  if (health.state == HealthState::ok || health.state == HealthState::degraded) alive_[health.component] = arrival;
+  if (std::find(settings_.required().begin(), settings_.required().end(), health.component) ==
+      settings_.required().end())
+    return;
+  if (health.state == HealthState::ok || health.state == HealthState::degraded)
+    alive_[health.component] = arrival;
   if (health.state == HealthState::stopping) alive_.erase(health.component);
 }
 
@@ -22,7 +25,8 @@ void Permission::find_missing(TimePoint now) {
   missing_.clear();
   for (const auto& component : settings_.required()) {
     const auto it = alive_.find(component);
-    if (it == alive_.end() || to_seconds(now - it->second) > settings_.health_timeout()) missing_.push_back(component);
+    if (it == alive_.end() || to_seconds(now - it->second) > settings_.health_timeout())
+      missing_.push_back(component);
   }
 }
 
@@ -31,19 +35,22 @@ Permission::Acknowledgement Permission::awaited() const {
   constexpr std::uint32_t kDrive = 1U << static_cast<unsigned>(Cause::drive_not_enabled);
   if (!status_known_) return Acknowledgement::none;
   if (status_.mode == Mode::fault) return Acknowledgement::of_fault;
-  return status_.mode == Mode::stop && (status_.causes & kDrive) != 0 ? Acknowledgement::of_drives : Acknowledgement::none;
+  return status_.mode == Mode::stop && (status_.causes & kDrive) != 0 ? Acknowledgement::of_drives
+                                                                      : Acknowledgement::none;
 }
 
 void Permission::acknowledge() { acknowledgement_ = awaited(); }
 
 std::uint64_t Permission::acknowledged() const {
-  return acknowledgement_ == Acknowledgement::of_fault ? std::numeric_limits<std::uint64_t>::max() : acknowledged_;
+  return acknowledgement_ == Acknowledgement::of_fault ? std::numeric_limits<std::uint64_t>::max()
+                                                       : acknowledged_;
 }
 
 bool Permission::missed_stop(bool permitted_at_start) const {
   constexpr std::uint32_t kAwaits = 1U << static_cast<unsigned>(Cause::awaits_person);
   const bool has_go = go_.allowed && status_.epoch == go_.epoch;
-  return status_known_ && (status_.causes & kAwaits) != 0 && ((first_status_ && permitted_at_start) || has_go);
+  return status_known_ && (status_.causes & kAwaits) != 0 &&
+         ((first_status_ && permitted_at_start) || has_go);
 }
 
 void Permission::withdraw(const std::string& reason) {
@@ -51,7 +58,8 @@ void Permission::withdraw(const std::string& reason) {
   go_.reason = reason;
 }
 
-/// A drive that was stopped by a person or by its own reflex waits for a person's acknowledgement; the permission to move comes after it.
+/// A drive that was stopped by a person or by its own reflex waits for a person's acknowledgement;
+/// the permission to move comes after it.
 void Permission::acknowledge_drives() {
   ++go_.epoch;
   go_.acknowledge = true;
@@ -71,10 +79,12 @@ void Permission::grant(bool fault) {
 
 const Go& Permission::step(const PermissionState& state, TimePoint now) {
   find_missing(now);
-  if (acknowledgement_ != awaited()) acknowledgement_ = Acknowledgement::none;  // what was acknowledged is over
+  if (acknowledgement_ != awaited())
+    acknowledgement_ = Acknowledgement::none;  // what was acknowledged is over
   go_.state_revision = state.revision;
   go_.override_factor = state.override_factor;
-  const bool running = status_known_ && status_.motion == MotionState::running && status_.mode < Mode::hold;
+  const bool running =
+      status_known_ && status_.motion == MotionState::running && status_.mode < Mode::hold;
   if (!state.permits)
     withdraw(state.reason);
   else if (suspended_)
@@ -86,12 +96,14 @@ const Go& Permission::step(const PermissionState& state, TimePoint now) {
     return go_;
   }
 
-  constexpr std::uint32_t kPermission = 1U << static_cast<unsigned>(Cause::no_go) | 1U << static_cast<unsigned>(Cause::awaits_person);
+  constexpr std::uint32_t kPermission =
+      1U << static_cast<unsigned>(Cause::no_go) | 1U << static_cast<unsigned>(Cause::awaits_person);
   const bool waits = status_.mode >= Mode::hold || !go_.allowed;
   const bool fault = status_.mode == Mode::fault;
   if (acknowledgement_ == Acknowledgement::of_drives) acknowledge_drives();
   const bool acknowledged = !fault || acknowledgement_ == Acknowledgement::of_fault;
-  const bool now_clear = waits && state.stored && (status_.causes & ~kPermission) == 0 && acknowledged;
+  const bool now_clear =
+      waits && state.stored && (status_.causes & ~kPermission) == 0 && acknowledged;
   if (now_clear && !clear_) clear_since_ = now;
   clear_ = now_clear;
   if (clear_ && to_seconds(now - clear_since_) >= settings_.resume_delay()) grant(fault);

@@ -9,17 +9,23 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr const char* kHint = "; next: handsel task ";  // begins what a person can do about it, at the end of a reason
-constexpr std::size_t kMaxDetail = 100;                 // characters of a cause inside the reason, which has room for 256
+constexpr const char* kHint =
+    "; next: handsel task ";  // begins what a person can do about it, at the end of a reason
+constexpr std::size_t kMaxDetail =
+    100;  // characters of a cause inside the reason, which has room for 256
 
 constexpr std::uint32_t kFaultCauses = bit(Cause::tracking_error) | bit(Cause::limit_violation);
 
-/// Returns whether the robot side stands in this mode because of a person or of its own protection, not for want of set-points.
+/// Returns whether the robot side stands in this mode because of a person or of its own protection,
+/// not for want of set-points.
 bool is_stop(DriveMode mode) {
-  return mode == DriveMode::protective_stop || mode == DriveMode::user_stop || mode == DriveMode::emergency_stop;
+  return mode == DriveMode::protective_stop || mode == DriveMode::user_stop ||
+         mode == DriveMode::emergency_stop;
 }
 
-bool is_pressed(DriveMode mode) { return mode == DriveMode::user_stop || mode == DriveMode::emergency_stop; }
+bool is_pressed(DriveMode mode) {
+  return mode == DriveMode::user_stop || mode == DriveMode::emergency_stop;
+}
 
 std::string text_of(DriveMode mode) { return kDriveModeNames[static_cast<std::size_t>(mode)]; }
 
@@ -39,11 +45,13 @@ DurableState unknown_state(std::uint64_t revision, const std::string& reason) {
   return state;
 }
 
-SafetyLatches::SafetyLatches(DurableState restored) : state_(std::move(restored)), permitted_at_start_(permits()) {
+SafetyLatches::SafetyLatches(DurableState restored)
+    : state_(std::move(restored)), permitted_at_start_(permits()) {
   const std::string why = state_.safety.reason.substr(0, state_.safety.reason.find(kHint));
   if (state_.safety.fault) fault_reason_ = why;
   if (state_.safety.awaits_person && !state_.safety.fault) stop_reason_ = why;
-  if (state_.safety.awaits_person && state_.safety.fault) stop_reason_ = "a stop from before the restart";
+  if (state_.safety.awaits_person && state_.safety.fault)
+    stop_reason_ = "a stop from before the restart";
 }
 
 void SafetyLatches::change() {
@@ -67,11 +75,14 @@ void SafetyLatches::pause() {
 }
 
 std::string SafetyLatches::why_not_yet() const {
-  return is_pressed(drive_) ? "the robot is in " + text_of(drive_) + "; release the robot's stop first" : "";
+  return is_pressed(drive_)
+             ? "the robot is in " + text_of(drive_) + "; release the robot's stop first"
+             : "";
 }
 
 std::string SafetyLatches::resume() {
-  if (state_.safety.fault) return "a fault stands; deal with its cause, then `handsel task acknowledge`";
+  if (state_.safety.fault)
+    return "a fault stands; deal with its cause, then `handsel task acknowledge`";
   if (std::string why = why_not_yet(); !why.empty()) return why;
   state_.safety.paused = state_.safety.awaits_person = false;
   change();
@@ -94,16 +105,20 @@ void SafetyLatches::set_override(double factor) {
 
 void SafetyLatches::on(const RobotState& robot) {
   const DriveMode before = std::exchange(drive_, robot.mode);
-  const bool entered = robot.mode != before && is_stop(robot.mode) && (is_pressed(robot.mode) || !is_stop(before));
+  const bool entered =
+      robot.mode != before && is_stop(robot.mode) && (is_pressed(robot.mode) || !is_stop(before));
   if (!entered) return;
   state_.safety.awaits_person = true;
-  stop_reason_ = "the robot was in " + text_of(robot.mode) + (robot.refusal.empty() ? "" : ": " + robot.refusal);
+  stop_reason_ = "the robot was in " + text_of(robot.mode) +
+                 (robot.refusal.empty() ? "" : ": " + robot.refusal);
   change();
 }
 
 void SafetyLatches::on(const ExecutionStatus& status, std::uint64_t acknowledged) {
   const bool present = (status.causes & kFaultCauses) != 0;
-  if (status.mode != Mode::fault || state_.safety.fault || (status.epoch < acknowledged && !present)) return;
+  if (status.mode != Mode::fault || state_.safety.fault ||
+      (status.epoch < acknowledged && !present))
+    return;
   state_.safety.fault = true;
   fault_reason_ = status.reason.empty() ? "a fault of the controller" : status.reason;
   change();

@@ -56,7 +56,9 @@ class SafetyLatches {
   void set_lost(std::vector<Person> lost, Stamp stamp);
 
   /// Returns whether no pause, fault or wait for a person is latched.
-  bool permits() const { return !state_.safety.paused && !state_.safety.fault && !state_.safety.awaits_person; }
+  bool permits() const {
+    return !state_.safety.paused && !state_.safety.fault && !state_.safety.awaits_person;
+  }
   /// Returns whether the state permitted motion when it was restored.
   bool permitted_at_start() const { return permitted_at_start_; }
   /// Current safety state; its reason says why permits() is false.

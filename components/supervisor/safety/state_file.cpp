@@ -34,23 +34,29 @@ struct Silent : google::protobuf::io::ErrorCollector {
   void AddError(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
 };
 
-bool within(double value, double low, double high) { return std::isfinite(value) && value >= low && value <= high; }
+bool within(double value, double low, double high) {
+  return std::isfinite(value) && value >= low && value <= high;
+}
 
 bool good(const config::StoredPoint& p) {
-  return within(p.x(), -kMaxCoordinate, kMaxCoordinate) && within(p.y(), -kMaxCoordinate, kMaxCoordinate) &&
+  return within(p.x(), -kMaxCoordinate, kMaxCoordinate) &&
+         within(p.y(), -kMaxCoordinate, kMaxCoordinate) &&
          within(p.z(), -kMaxCoordinate, kMaxCoordinate);
 }
 
 bool good(const config::StoredPerson& person) {
-  return within(person.stature(), 0.3, 3.0) && within(person.age(), 0, kMaxAge) && within(person.inflation(), 0, 2 * kMaxAge) &&
-         person.joints_size() <= kMaxJoints &&
-         std::all_of(person.joints().begin(), person.joints().end(), [](const auto& joint) { return good(joint.position()); });
+  return within(person.stature(), 0.3, 3.0) && within(person.age(), 0, kMaxAge) &&
+         within(person.inflation(), 0, 2 * kMaxAge) && person.joints_size() <= kMaxJoints &&
+         std::all_of(person.joints().begin(), person.joints().end(),
+                     [](const auto& joint) { return good(joint.position()); });
 }
 
 bool good(const config::StoredSafetyState& state) {
-  return state.revision() > 0 && state.permission_revision() > 0 && state.permission_revision() <= state.revision() &&
-         within(state.override_factor(), 0, 1) && state.lost_size() <= kMaxPeople &&
-         std::all_of(state.lost().begin(), state.lost().end(), [](const auto& person) { return good(person); });
+  return state.revision() > 0 && state.permission_revision() > 0 &&
+         state.permission_revision() <= state.revision() && within(state.override_factor(), 0, 1) &&
+         state.lost_size() <= kMaxPeople &&
+         std::all_of(state.lost().begin(), state.lost().end(),
+                     [](const auto& person) { return good(person); });
 }
 
 Person person_of(const config::StoredPerson& stored, double since) {
@@ -81,7 +87,8 @@ std::string write_state(const DurableState& state, Stamp written) {
   stored.set_fault(s.fault);
   stored.set_awaits_person(s.awaits_person);
   stored.set_reason(s.reason);
-  const double since = s.stamp > 0 ? std::max(0.0, static_cast<double>(written - s.stamp) * 1e-9) : 0.0;
+  const double since =
+      s.stamp > 0 ? std::max(0.0, static_cast<double>(written - s.stamp) * 1e-9) : 0.0;
   for (const Person& person : s.lost) {
     config::StoredPerson& out = *stored.add_lost();
     out.set_id(person.id);
@@ -116,7 +123,8 @@ std::variant<DurableState, StateDamage> read_state(const std::string& text, Stam
   google::protobuf::TextFormat::Parser parser;
   Silent silent;
   parser.RecordErrorsTo(&silent);
-  if (!parser.ParseFromString(body, &stored)) return StateDamage{"its fields are not those of this version"};
+  if (!parser.ParseFromString(body, &stored))
+    return StateDamage{"its fields are not those of this version"};
   if (!good(stored)) return StateDamage{"a field is out of range"};
 
   DurableState state;

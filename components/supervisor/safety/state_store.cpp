@@ -17,7 +17,8 @@ constexpr std::size_t kMaxBytes = 1 << 20;  // a full state takes 40 kB
 /// A file descriptor that closes itself.
 class File {
  public:
-  File(const std::filesystem::path& path, int flags) : fd_(open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
+  File(const std::filesystem::path& path, int flags)
+      : fd_(open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
   ~File() {
     if (fd_ >= 0) close(fd_);
   }
@@ -60,7 +61,8 @@ bool read_all(int fd, std::string& text) {
 
 }  // namespace
 
-StateStore::StateStore(std::filesystem::path folder) : folder_(std::move(folder)), file_(folder_ / "safety_state") {}
+StateStore::StateStore(std::filesystem::path folder)
+    : folder_(std::move(folder)), file_(folder_ / "safety_state") {}
 
 std::string StateStore::save(const DurableState& state, Stamp now) const {
   std::error_code error;
@@ -69,7 +71,8 @@ std::string StateStore::save(const DurableState& state, Stamp now) const {
   const std::filesystem::path temporary = folder_ / "safety_state.new";
   {
     const File out(temporary, O_WRONLY | O_CREAT | O_TRUNC);
-    if (!out.good() || !write_all(out.fd(), write_state(state, now)) || fsync(out.fd()) != 0) return failure(temporary, "written");
+    if (!out.good() || !write_all(out.fd(), write_state(state, now)) || fsync(out.fd()) != 0)
+      return failure(temporary, "written");
   }
   if (std::rename(temporary.c_str(), file_.c_str()) != 0) return failure(file_, "replaced");
   const File folder(folder_, O_RDONLY | O_DIRECTORY);
@@ -82,7 +85,8 @@ std::optional<DurableState> StateStore::read(std::uint64_t revision, Stamp now) 
   {
     const File in(file_, O_RDONLY);
     if (!in.good() && errno == ENOENT) return std::nullopt;
-    if (!in.good() || !read_all(in.fd(), text)) return unknown_state(revision, failure(file_, "read"));
+    if (!in.good() || !read_all(in.fd(), text))
+      return unknown_state(revision, failure(file_, "read"));
   }
   auto state = read_state(text, now);
   if (const auto* damage = std::get_if<StateDamage>(&state))

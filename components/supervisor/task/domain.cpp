@@ -14,7 +14,8 @@ namespace {
 
 class Compiler {
  public:
-  Compiler(const config::TaskDomain& description, const TextPlace& place) : description_(description), place_(place) {}
+  Compiler(const config::TaskDomain& description, const TextPlace& place)
+      : description_(description), place_(place) {}
 
   Domain compile() {
     declare();
@@ -100,12 +101,14 @@ class Compiler {
     out.extra = conditions_.extras(a.extra(), at, scope);
   }
 
-  Call call(const std::string& text, Scope& scope, std::vector<Test>& before, const std::string& where) const {
+  Call call(const std::string& text, Scope& scope, std::vector<Test>& before,
+            const std::string& where) const {
     const std::vector<std::string> parts = words(text);
     if (parts.empty()) throw_at(where, "a step is empty; it is written like \"move ?o ?t\"");
     Call out;
     const auto named = [&](const auto& list) {
-      const auto it = std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.name == parts[0]; });
+      const auto it = std::find_if(list.begin(), list.end(),
+                                   [&](const auto& entry) { return entry.name == parts[0]; });
       return it == list.end() ? -1 : static_cast<int>(it - list.begin());
     };
     out.index = named(domain_.tasks);
@@ -139,10 +142,12 @@ class Compiler {
         conditions_.term(word.substr(0, word.find_last_not_of(",.;:") + 1), head, at.of("text"));
     if (out.text.empty()) out.text = out.name;
     out.achieved = conditions_.tests(t.achieved(), at, "achieved", head);
-    for (int i = 0; i < t.methods_size(); ++i) out.methods.push_back(method(t.methods(i), at.inside("methods", i), out));
+    for (int i = 0; i < t.methods_size(); ++i)
+      out.methods.push_back(method(t.methods(i), at.inside("methods", i), out));
   }
 
-  CompiledMethod method(const config::Method& m, const TextPlace& at, const CompiledTask& task) const {
+  CompiledMethod method(const config::Method& m, const TextPlace& at,
+                        const CompiledTask& task) const {
     CompiledMethod out;
     out.name = m.name();
     out.cost = conditions_.cost(m.cost(), at);
@@ -152,11 +157,13 @@ class Compiler {
       scope.bound.push_back(false);
     }
     out.tests = conditions_.tests(m.when(), at, "when", scope);
-    for (int i = static_cast<int>(task.parameters.size()); i < static_cast<int>(scope.names.size()); ++i)
+    for (int i = static_cast<int>(task.parameters.size()); i < static_cast<int>(scope.names.size());
+         ++i)
       conditions_.bind_by_type(i, scope, out.tests,
                                at.of("variables", i - static_cast<int>(task.parameters.size())));
     out.extra = conditions_.extras(m.extra(), at, scope);
-    for (int i = 0; i < m.steps_size(); ++i) out.steps.push_back(step(m.steps(i), at.inside("steps", i), scope));
+    for (int i = 0; i < m.steps_size(); ++i)
+      out.steps.push_back(step(m.steps(i), at.inside("steps", i), scope));
     out.names = scope.names;
     out.types = scope.types;
     return out;
@@ -189,7 +196,8 @@ class Compiler {
       out.ordered = true,
       out.order = conditions_.closed(all.order_by(), scope, here.of("order_by"));
     if (all.steps().empty()) throw_at(at.of("all"), "needs steps");
-    for (int i = 0; i < all.steps_size(); ++i) out.calls.push_back(call(all.steps(i), scope, out.tests, here.of("steps", i)));
+    for (int i = 0; i < all.steps_size(); ++i)
+      out.calls.push_back(call(all.steps(i), scope, out.tests, here.of("steps", i)));
     out.skip_cost = conditions_.cost(all.skip_cost(), here, "skip_cost");
     for (const int v : out.own) scope.names[static_cast<std::size_t>(v)] += " (of an all)";
     return out;
@@ -204,17 +212,21 @@ class Compiler {
 }  // namespace
 
 int Domain::task(const std::string& name) const {
-  const auto at = std::find_if(tasks.begin(), tasks.end(), [&](const CompiledTask& t) { return t.name == name; });
+  const auto at = std::find_if(tasks.begin(), tasks.end(),
+                               [&](const CompiledTask& t) { return t.name == name; });
   return at == tasks.end() ? -1 : static_cast<int>(at - tasks.begin());
 }
 
-Domain compile_domain(const config::TaskDomain& description, const TextPlace& place) { return Compiler(description, place).compile(); }
+Domain compile_domain(const config::TaskDomain& description, const TextPlace& place) {
+  return Compiler(description, place).compile();
+}
 
 Domain load_domain(const std::filesystem::path& file) {
   config::TaskDomain description;
   google::protobuf::TextFormat::ParseInfoTree places;
   load_text_proto(file, description, places);
-  return compile_domain(description, TextPlace(file.string(), &places, description.GetDescriptor()));
+  return compile_domain(description,
+                        TextPlace(file.string(), &places, description.GetDescriptor()));
 }
 
 Domain parse_domain(const std::string& text, const std::string& name) {

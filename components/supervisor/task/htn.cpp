@@ -17,7 +17,8 @@ std::vector<PlanLine> with_something_to_do(const std::vector<PlanLine>& tree) {
   std::vector<PlanLine> out;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     bool any = i == 0 || tree[i].action >= 0 || tree[i].skipped;
-    for (std::size_t k = i + 1; k < tree.size() && tree[k].depth > tree[i].depth && !any; ++k) any = tree[k].action >= 0 || tree[k].skipped;
+    for (std::size_t k = i + 1; k < tree.size() && tree[k].depth > tree[i].depth && !any; ++k)
+      any = tree[k].action >= 0 || tree[k].skipped;
     if (any) out.push_back(tree[i]);
   }
   return out;
@@ -25,7 +26,8 @@ std::vector<PlanLine> with_something_to_do(const std::vector<PlanLine>& tree) {
 
 class Search {
  public:
-  Search(const Domain& domain, const World& world, const Forbidden& forbidden, const PlanLimits& limits)
+  Search(const Domain& domain, const World& world, const Forbidden& forbidden,
+         const PlanLimits& limits)
       : domain_(domain), world_(world), ground_{world_}, forbidden_(forbidden), limits_(limits) {}
 
   Plan run(int task, const std::vector<std::string>& args) {
@@ -38,10 +40,11 @@ class Search {
     best_.nodes = nodes_;
     best_.proven = nodes_ < limits_.nodes && !too_deep_;
     if (!best_.found) {
-      best_.reason = !blame_.empty()           ? blame_
-                     : too_deep_               ? "the tasks of the domain lead ever deeper without an end"
-                     : nodes_ >= limits_.nodes ? "no plan was found in " + std::to_string(limits_.nodes) + " states"
-                                               : "there is no method to " + task_text(task, frame_of(world_, args));
+      best_.reason = !blame_.empty() ? blame_
+                     : too_deep_     ? "the tasks of the domain lead ever deeper without an end"
+                     : nodes_ >= limits_.nodes
+                         ? "no plan was found in " + std::to_string(limits_.nodes) + " states"
+                         : "there is no method to " + task_text(task, frame_of(world_, args));
     }
     return std::move(best_);
   }
@@ -69,7 +72,8 @@ class Search {
     std::uint64_t h = rest ? rest->hash : 7;
     const auto mix = [&h](std::uint64_t v) { h = (h ^ v) * 1099511628211ULL, h ^= h >> 31; };
     mix(static_cast<std::uint64_t>(item.kind) * 2 + (item.call.action ? 1 : 0));
-    mix(item.kind == Item::Kind::call ? static_cast<std::uint64_t>(item.call.index) : reinterpret_cast<std::uintptr_t>(item.step));
+    mix(item.kind == Item::Kind::call ? static_cast<std::uint64_t>(item.call.index)
+                                      : reinterpret_cast<std::uintptr_t>(item.step));
     for (const Symbol s : *item.frame) mix(static_cast<std::uint64_t>(s) + 1000003);
     const double min_cost = item.min_cost + (rest ? rest->min_cost : 0);
     return std::make_shared<const Link>(Link{std::move(item), rest, min_cost, h});
@@ -181,7 +185,8 @@ class Search {
       bind({method.tests, method, state, found}, 0, frame);
       if (choices.size() == before) blame(lacking_);
     }
-    std::stable_sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) { return a.estimate < b.estimate; });
+    std::stable_sort(choices.begin(), choices.end(),
+                     [](const Choice& a, const Choice& b) { return a.estimate < b.estimate; });
     for (const Choice& choice : choices) {
       Agenda next = agenda->rest;
       for (auto s = choice.method->steps.rbegin(); s != choice.method->steps.rend(); ++s) {
@@ -233,7 +238,8 @@ class Search {
     }
     std::vector<int> open;
     for (const Term& t : test.literal.args)
-      if (t.variable >= 0 && frame[static_cast<std::size_t>(t.variable)] == kUnbound) open.push_back(t.variable);
+      if (t.variable >= 0 && frame[static_cast<std::size_t>(t.variable)] == kUnbound)
+        open.push_back(t.variable);
     if (open.empty()) {
       if (ground_.holds(test.literal, frame, state))
         bind(problem, at + 1, frame);
@@ -276,10 +282,13 @@ class Search {
     const CompiledMethod& method = *method_of_[&s];
     const std::function<void()> found = [&] {
       const double* value = s.ordered ? state.find(ground_.atom(s.order, frame)) : nullptr;
-      ones.push_back({frame, s.ordered && value == nullptr ? 1e9 : value != nullptr ? *value : 0.0});
+      ones.push_back({frame, s.ordered && value == nullptr ? 1e9
+                             : value != nullptr            ? *value
+                                                           : 0.0});
     };
     bind({s.tests, method, state, found}, 0, frame);
-    std::stable_sort(ones.begin(), ones.end(), [](const One& a, const One& b) { return a.order < b.order; });
+    std::stable_sort(ones.begin(), ones.end(),
+                     [](const One& a, const One& b) { return a.order < b.order; });
     Agenda next = agenda->rest;
     for (auto o = ones.rbegin(); o != ones.rend(); ++o) {
       Item one;
@@ -307,9 +316,11 @@ class Search {
     here_ = before;
     const Call& first = item.step->calls.front();
     const Item what = call_item(first, *item.frame, 0);
-    const std::string text =
-        first.action ? planned(domain_, ground_, first.index, *what.frame).text() : task_text(first.index, *what.frame);
-    tree_.push_back({text, item.depth, -1, true, mine.empty() ? "there is no method to do it" : mine});
+    const std::string text = first.action
+                                 ? planned(domain_, ground_, first.index, *what.frame).text()
+                                 : task_text(first.index, *what.frame);
+    tree_.push_back(
+        {text, item.depth, -1, true, mine.empty() ? "there is no method to do it" : mine});
     step(state, agenda->rest, cost + item.step->skip_cost);
     tree_.resize(lines);
   }
@@ -358,7 +369,8 @@ std::string PlannedAction::text() const {
   }
 }
 
-Plan make_plan(const Domain& domain, const World& world, int task, const std::vector<std::string>& args, const Forbidden& forbidden,
+Plan make_plan(const Domain& domain, const World& world, int task,
+               const std::vector<std::string>& args, const Forbidden& forbidden,
                const PlanLimits& limits) {
   return Search(domain, world, forbidden, limits).run(task, args);
 }

@@ -19,7 +19,9 @@ struct PlannedAction {
   std::vector<std::string> args;       ///< of the domain's action
   double cost{};                       ///< with extra costs in the state of the plan
   std::string text() const;            ///< "give mug to anna"
-  friend bool operator==(const PlannedAction& a, const PlannedAction& b) { return a.action == b.action && a.args == b.args; }
+  friend bool operator==(const PlannedAction& a, const PlannedAction& b) {
+    return a.action == b.action && a.args == b.args;
+  }
 };
 
 /// A line of the tree: a task, or one of the actions.
@@ -58,7 +60,8 @@ using Forbidden = std::map<std::string, std::string>;
 /// Branch and bound: methods and bindings cheapest first, by their cost and a lower bound of
 /// what they lead to; an alternative that costs as much as the best one found is left. The same
 /// question has the same answer. `args`: of the task, "-" = left out.
-Plan make_plan(const Domain& domain, const World& world, int task, const std::vector<std::string>& args, const Forbidden& forbidden,
+Plan make_plan(const Domain& domain, const World& world, int task,
+               const std::vector<std::string>& args, const Forbidden& forbidden,
                const PlanLimits& limits);
 
 }  // namespace handsel::supervisor

@@ -7,10 +7,13 @@ namespace {
 
 constexpr std::uint32_t kMaxDepth = 16;  // idl/task.idl
 
-bool over(StepState state) { return state == StepState::done || state == StepState::failed || state == StepState::dropped; }
+bool over(StepState state) {
+  return state == StepState::done || state == StepState::failed || state == StepState::dropped;
+}
 
 /// Of a task from its parts: [first, last) of the tree.
-StepState together(const std::vector<PlanStep>& tree, std::size_t first, std::size_t last, const std::vector<bool>& leaf) {
+StepState together(const std::vector<PlanStep>& tree, std::size_t first, std::size_t last,
+                   const std::vector<bool>& leaf) {
   bool waiting = false, done = false, failed = false, dropped = false;
   for (std::size_t i = first; i < last; ++i) {
     if (!leaf[i]) continue;
@@ -43,7 +46,8 @@ void Progress::mark(StepState state, const std::string& reason) {
 }
 
 void Progress::note_dropped(const std::string& reason) {
-  if (!reason.empty() && std::find(dropped_.begin(), dropped_.end(), reason) == dropped_.end()) dropped_.push_back(reason);
+  if (!reason.empty() && std::find(dropped_.begin(), dropped_.end(), reason) == dropped_.end())
+    dropped_.push_back(reason);
 }
 
 void Progress::done() {
@@ -72,7 +76,8 @@ void Progress::put_away() {
     }
     bool any = false;
     for (std::size_t k = i + 1; k < plan_.tree.size() && plan_.tree[k].depth > line.depth; ++k)
-      any = any || (plan_.tree[k].action >= 0 && over(marks_[static_cast<std::size_t>(plan_.tree[k].action)].state));
+      any = any || (plan_.tree[k].action >= 0 &&
+                    over(marks_[static_cast<std::size_t>(plan_.tree[k].action)].state));
     if (any) past_.push_back({line.text, line.depth, StepState::waiting, ""});
   }
   for (std::size_t i = 0; i < plan_.actions.size(); ++i)
@@ -82,7 +87,9 @@ void Progress::put_away() {
 void Progress::adopt(Plan plan, const std::function<std::string(const PlannedAction&)>& why) {
   for (std::size_t i = next_; i < plan_.actions.size(); ++i) {
     Mark& m = marks_[i];
-    if (over(m.state) || std::find(plan.actions.begin(), plan.actions.end(), plan_.actions[i]) != plan.actions.end()) continue;
+    if (over(m.state) ||
+        std::find(plan.actions.begin(), plan.actions.end(), plan_.actions[i]) != plan.actions.end())
+      continue;
     m = {StepState::dropped, why(plan_.actions[i])};
     note_dropped(m.reason);
   }
@@ -92,7 +99,8 @@ void Progress::adopt(Plan plan, const std::function<std::string(const PlannedAct
   next_ = 0;
 }
 
-void Progress::adopt_after_running(Plan plan, const std::function<std::string(const PlannedAction&)>& why) {
+void Progress::adopt_after_running(Plan plan,
+                                   const std::function<std::string(const PlannedAction&)>& why) {
   const PlannedAction running = plan_.actions[next_];
   const Mark mark = marks_[next_];
   for (PlanLine& line : plan.tree)

@@ -26,7 +26,9 @@ class Progress {
   void adopt_after_running(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
 
   /// Action that is due or running; nullptr: all are over. Invalid after the plan is replaced.
-  const PlannedAction* current() const { return next_ < plan_.actions.size() ? &plan_.actions[next_] : nullptr; }
+  const PlannedAction* current() const {
+    return next_ < plan_.actions.size() ? &plan_.actions[next_] : nullptr;
+  }
   /// Actions from the current one on, or after it.
   std::vector<PlannedAction> left(bool after = false) const;
   /// Plan adopted last, with its actions already done.

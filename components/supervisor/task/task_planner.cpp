@@ -14,17 +14,21 @@ std::string names(const World& world, Type type) {
 }
 
 bool is_model(const Scene& scene, const std::string& text) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.model == text; });
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const SceneObject& o) { return o.model == text; });
 }
 
 class Resolver {
  public:
-  Resolver(const World& world, const Scene& scene, TaskQuery& out) : world_(world), scene_(scene), out_(out) {}
+  Resolver(const World& world, const Scene& scene, TaskQuery& out)
+      : world_(world), scene_(scene), out_(out) {}
 
   void object(const std::string& text, bool or_model = false) {
-    if (text.empty() || world_.is(Type::object, text) || (or_model && is_model(scene_, text))) return;
+    if (text.empty() || world_.is(Type::object, text) || (or_model && is_model(scene_, text)))
+      return;
     const std::string there = names(world_, Type::object);
-    unseen(text, std::string("there is nothing called ") + text + " here; " + (there.empty() ? "nothing is seen" : "there is " + there));
+    unseen(text, std::string("there is nothing called ") + text + " here; " +
+                     (there.empty() ? "nothing is seen" : "there is " + there));
   }
   void surface(const std::string& text) {
     if (text.empty() || world_.is(Type::surface, text)) return;
@@ -35,7 +39,8 @@ class Resolver {
   void person(const std::string& text) {
     if (text.empty() || world_.is(Type::human, text)) return;
     const std::string there = names(world_, Type::human);
-    unseen(text, "nobody called " + text + " is in sight" + (there.empty() ? "; nobody is" : "; in sight is " + there));
+    unseen(text, "nobody called " + text + " is in sight" +
+                     (there.empty() ? "; nobody is" : "; in sight is " + there));
   }
   void want(const std::string& text, const char* task, const char* what) {
     if (text.empty()) refuse(std::string(task) + " needs the name of " + what);
@@ -51,7 +56,8 @@ class Resolver {
     out_.unseen = text;
   }
   bool is_box(const std::string& text) const {
-    return std::any_of(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == text; });
+    return std::any_of(scene_.boxes.begin(), scene_.boxes.end(),
+                       [&](const SceneBox& b) { return b.id == text; });
   }
   const World& world_;
   const Scene& scene_;
@@ -67,7 +73,8 @@ std::string text_of(const TaskGoal& goal) {
     case TaskKind::give:
       return "give " + thing + " to " + who;
     case TaskKind::receive:
-      return "receive " + thing + " from " + who + (goal.onto.empty() ? "" : " and place it on " + goal.onto);
+      return "receive " + thing + " from " + who +
+             (goal.onto.empty() ? "" : " and place it on " + goal.onto);
     case TaskKind::place:
       return "place " + thing + " on " + goal.surface;
     case TaskKind::clear:
@@ -81,7 +88,8 @@ std::string text_of(const TaskGoal& goal) {
   }
 }
 
-TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world, const Scene& scene) {
+TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world,
+                    const Scene& scene) {
   TaskQuery out;
   out.task = domain.task(name(goal.kind));
   if (out.task < 0) {
@@ -116,7 +124,9 @@ TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& wor
       resolve.want(goal.surface, task, "a surface");
       resolve.surface(goal.surface);
       resolve.surface(goal.onto);
-      if (goal.onto == goal.surface) resolve.refuse(goal.surface + " cannot be cleared onto itself; name another surface or none");
+      if (goal.onto == goal.surface)
+        resolve.refuse(goal.surface +
+                       " cannot be cleared onto itself; name another surface or none");
       out.args = {goal.surface, or_nothing(goal.onto)};
       break;
     case TaskKind::tidy:
@@ -127,7 +137,8 @@ TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& wor
       out.args = {goal.object, goal.onto};
       break;
     case TaskKind::go_to:
-      if (!goal.surface.empty() && goal.surface != "rest") resolve.refuse("there is no configuration called " + goal.surface + "; there is rest");
+      if (!goal.surface.empty() && goal.surface != "rest")
+        resolve.refuse("there is no configuration called " + goal.surface + "; there is rest");
       out.args = {or_nothing(goal.surface)};
       break;
     default:
@@ -138,8 +149,8 @@ TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& wor
   }
   const std::size_t wanted = domain.tasks[static_cast<std::size_t>(out.task)].types.size();
   if (out.args.size() != wanted)
-    resolve.refuse("the domain's task " + std::string(task) + " has " + std::to_string(wanted) + " parameters, this goal fills " +
-                   std::to_string(out.args.size()));
+    resolve.refuse("the domain's task " + std::string(task) + " has " + std::to_string(wanted) +
+                   " parameters, this goal fills " + std::to_string(out.args.size()));
   return out;
 }
 

@@ -23,7 +23,8 @@ std::string text_of(const TaskGoal& goal);
 
 /// Resolves the names of the goal against the objects, surfaces and people of the world. The result
 /// has a reason when a name is missing, unknown or of the wrong type.
-TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world, const Scene& scene);
+TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world,
+                    const Scene& scene);
 
 /// Before anything is done: it is so already; empty: it is not.
 std::string already(const TaskGoal& goal);

@@ -12,7 +12,8 @@ constexpr std::size_t kMaxRefusals = 64;
 constexpr const char* kRunsActions = "manipulation_planner";
 
 bool only_rests(const Plan& plan) {
-  return std::all_of(plan.actions.begin(), plan.actions.end(), [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
+  return std::all_of(plan.actions.begin(), plan.actions.end(),
+                     [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
 }
 
 TaskGoal normal(TaskGoal goal) {
@@ -155,7 +156,8 @@ void TaskRun::search(TimePoint now, TaskWishes& wishes) {
          query.needs_person ? "nobody is in sight to " + problem_.text() : query.reason);
 }
 
-/// A required component that stays away ends the task, unless an action runs that may end without it.
+/// A required component that stays away ends the task, unless an action runs that may end without
+/// it.
 bool TaskRun::is_stranded(TimePoint now, const std::vector<std::string>& missing) {
   const bool long_missing = missing_.lasts(!missing.empty(), now, settings_.missing_timeout());
   return long_missing && (dispatch_.state() == ActionDispatch::State::idle ||
@@ -322,7 +324,8 @@ void TaskRun::give_up(const std::string& reason, TimePoint now) {
 
 void TaskRun::all_done(TimePoint now) {
   if (failures_.recovering()) return finish(TaskState::failed, failures_.reason());
-  if (const std::string out = left_out(progress_.plan()); !out.empty()) return finish(TaskState::failed, "not all of it was done: " + out);
+  if (const std::string out = left_out(progress_.plan()); !out.empty())
+    return finish(TaskState::failed, "not all of it was done: " + out);
   const std::string lacking = problem_.unachieved(believed(now));
   if (!lacking.empty()) {
     if (effects_.pending(now)) return;

@@ -24,7 +24,8 @@ struct TaskWishes {
 
 class TaskRun {
  public:
-  TaskRun(const config::SupervisorSettings& settings, const Domain& domain, Situation& situation, const TaskGoal& goal, TimePoint now);
+  TaskRun(const config::SupervisorSettings& settings, const Domain& domain, Situation& situation,
+          const TaskGoal& goal, TimePoint now);
 
   enum class Start { begun, refused, unsure };
   /// Evaluates the goal and makes the first plan. `unsure`: what is named is not seen yet, or not
@@ -33,7 +34,8 @@ class TaskRun {
 
   /// Runs one cycle: follows the running action, plans again, sends the next action. `missing`:
   /// required components that are gone; `next_id`: id of the next action, counted up.
-  void step(TimePoint now, const std::vector<std::string>& missing, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
+  void step(TimePoint now, const std::vector<std::string>& missing, std::uint64_t go_epoch,
+            std::uint64_t& next_id, TaskWishes& wishes);
   /// Shows the task as paused or running; a task that is over keeps its state. No action is sent
   /// while paused.
   void pause(bool paused);

@@ -28,7 +28,8 @@ PathPiece piece_of(const TrajectoryCommand& command, double begin, double offset
 
 }  // namespace
 
-ArmMotion::ArmMotion(const ArmSettings& settings, const RobotModel& robot, const std::vector<int>& axes)
+ArmMotion::ArmMotion(const ArmSettings& settings, const RobotModel& robot,
+                     const std::vector<int>& axes)
     : settings_(settings), robot_(robot), movers_(robot, axes), runner_(settings.period) {}
 
 bool ArmMotion::joins(const TrajectoryCommand& command) const noexcept {
@@ -48,11 +49,13 @@ std::string ArmMotion::accept(const TrajectoryCommand& command, const MotionStat
 
 std::string ArmMotion::start(const TrajectoryCommand& command, const MotionState3& sent) {
   for (int axis : movers_.axes())
-    if (sent.velocity[axis] != 0.0 || sent.acceleration[axis] != 0.0) return "the arm is still in motion";
+    if (sent.velocity[axis] != 0.0 || sent.acceleration[axis] != 0.0)
+      return "the arm is still in motion";
   std::string reason = why_not_from_rest(command, robot_, sent.position, settings_.start_tolerance);
   if (!reason.empty()) return reason;
   MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
-  for (std::size_t i = 0; i < command.axes.size(); ++i) here.position[static_cast<Eigen::Index>(i)] = sent.position[command.axes[i]];
+  for (std::size_t i = 0; i < command.axes.size(); ++i)
+    here.position[static_cast<Eigen::Index>(i)] = sent.position[command.axes[i]];
   const MotionState3 there = rest_state(command.trajectory.at(0.0).position);
   Trajectory path = command.trajectory;
   double bridged = 0.0;
@@ -64,7 +67,8 @@ std::string ArmMotion::start(const TrajectoryCommand& command, const MotionState
     bridged = path.duration();
     append(path, command.trajectory);
   } else {
-    for (std::size_t i = 0; i < path.axes.size(); ++i) path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
+    for (std::size_t i = 0; i < path.axes.size(); ++i)
+      path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
   }
   reason = runner_.start(path, path_limits(robot_, command.axes));
   if (!reason.empty()) return reason;
@@ -76,7 +80,9 @@ std::string ArmMotion::start(const TrajectoryCommand& command, const MotionState
 }
 
 std::string ArmMotion::switch_to(const TrajectoryCommand& command, const MotionState3& sent) {
-  if (command.axes != path_axes_) return "it moves other axes than trajectory " + std::to_string(queue_.current().id) + ", which runs";
+  if (command.axes != path_axes_)
+    return "it moves other axes than trajectory " + std::to_string(queue_.current().id) +
+           ", which runs";
   if (state_ == ArmState::stopping) return switch_from_stop(command, sent);
   const double before = runner_.time();
   double leave = before;
@@ -84,7 +90,8 @@ std::string ArmMotion::switch_to(const TrajectoryCommand& command, const MotionS
     const double wanted = queue_.last().offset + command.switch_at;
     leave = std::max(leave, std::min(wanted, runner_.duration()));
   }
-  if (leave > before && queue_.full()) return std::to_string(CommandQueue::kMaxWaiting) + " trajectories wait already";
+  if (leave > before && queue_.full())
+    return std::to_string(CommandQueue::kMaxWaiting) + " trajectories wait already";
   const bool before_end = leave < runner_.duration();
   const double reach = before_end ? settings_.switch_reach : settings_.start_tolerance;
   std::string reason = runner_.switch_at(leave, command.trajectory, reach);
@@ -95,7 +102,8 @@ std::string ArmMotion::switch_to(const TrajectoryCommand& command, const MotionS
   return {};
 }
 
-std::string ArmMotion::switch_from_stop(const TrajectoryCommand& command, const MotionState3& sent) {
+std::string ArmMotion::switch_from_stop(const TrajectoryCommand& command,
+                                        const MotionState3& sent) {
   MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
   for (std::size_t i = 0; i < path_axes_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -104,9 +112,11 @@ std::string ArmMotion::switch_from_stop(const TrajectoryCommand& command, const 
     here.acceleration[k] = sent.acceleration[path_axes_[i]];
   }
   for (int axis : movers_.axes()) {
-    const auto found = std::find(path_axes_.begin(), path_axes_.end(), static_cast<std::uint32_t>(axis));
+    const auto found =
+        std::find(path_axes_.begin(), path_axes_.end(), static_cast<std::uint32_t>(axis));
     if (found == path_axes_.end() && sent.velocity[axis] != 0.0)
-      return "axis " + robot_.axes()[static_cast<std::size_t>(axis)].name + ", which it does not move, is still in motion";
+      return "axis " + robot_.axes()[static_cast<std::size_t>(axis)].name +
+             ", which it does not move, is still in motion";
   }
   std::string reason = runner_.start_from(here, command.trajectory, settings_.switch_reach);
   if (!reason.empty()) return reason;
@@ -139,7 +149,8 @@ void ArmMotion::interrupt_path(bool rejoin) noexcept {
 }
 
 bool ArmMotion::rejoin(const MotionState3& sent) noexcept {
-  for (std::size_t i = 0; i < path_axes_.size(); ++i) sample_.position[static_cast<Eigen::Index>(i)] = sent.position[path_axes_[i]];
+  for (std::size_t i = 0; i < path_axes_.size(); ++i)
+    sample_.position[static_cast<Eigen::Index>(i)] = sent.position[path_axes_[i]];
   sample_.velocity.setZero();
   sample_.acceleration.setZero();
   goal_ = PathGoal::end;
@@ -168,7 +179,8 @@ void ArmMotion::step(ArmOrder order, double wanted, SetPoints& set_points) noexc
   }
   bool resting = true;
   for (int axis : movers_.axes()) {
-    const auto found = std::find(path_axes_.begin(), path_axes_.end(), static_cast<std::uint32_t>(axis));
+    const auto found =
+        std::find(path_axes_.begin(), path_axes_.end(), static_cast<std::uint32_t>(axis));
     const bool on_path = running() && found != path_axes_.end();
     const bool rests = movers_[axis].at_rest() && !set_points.moves(axis);
     if (on_path || (state_ == ArmState::at_rest && rests)) continue;

@@ -24,9 +24,11 @@ void AxisMover::begin() noexcept {
   segment_ = 0;
 }
 
-void AxisMover::go_to(double target, const AxisLimits& limits, const AxisLimits& max_velocity) noexcept {
+void AxisMover::go_to(double target, const AxisLimits& limits,
+                      const AxisLimits& max_velocity) noexcept {
   AxisLimits used = limits;
-  if (std::abs(state_.velocity + state_.acceleration * std::abs(state_.acceleration) / (2.0 * limits.jerk)) > limits.velocity) {
+  if (std::abs(state_.velocity + state_.acceleration * std::abs(state_.acceleration) /
+                                     (2.0 * limits.jerk)) > limits.velocity) {
     used.acceleration = max_velocity.acceleration;
     used.jerk = max_velocity.jerk;
   }
@@ -45,11 +47,13 @@ void AxisMover::stop(const AxisLimits& limits) noexcept {
     reset(state_.position);
     return;
   }
-  critical_movement(state_.velocity, state_.acceleration, 0.0, 0.0, limits.acceleration, limits.jerk, profile_);
+  critical_movement(state_.velocity, state_.acceleration, 0.0, 0.0, limits.acceleration,
+                    limits.jerk, profile_);
   begin();
   AxisState end = state_;
   for (int k = 0; k < profile_.count; ++k)
-    end = advanced(end, profile_.segments[static_cast<std::size_t>(k)].duration, profile_.segments[static_cast<std::size_t>(k)].jerk);
+    end = advanced(end, profile_.segments[static_cast<std::size_t>(k)].duration,
+                   profile_.segments[static_cast<std::size_t>(k)].jerk);
   target_ = end.position;
 }
 
@@ -61,7 +65,8 @@ const AxisState& AxisMover::step(double dt) noexcept {
     elapsed_ -= s.duration;
   }
   state_ = at_rest() ? AxisState{target_, 0.0, 0.0}
-                     : advanced(segment_start_, elapsed_, profile_.segments[static_cast<std::size_t>(segment_)].jerk);
+                     : advanced(segment_start_, elapsed_,
+                                profile_.segments[static_cast<std::size_t>(segment_)].jerk);
   return state_;
 }
 

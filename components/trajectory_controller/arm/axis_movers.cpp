@@ -15,7 +15,9 @@ void AxisMovers::stop_from(const MotionState3& from) noexcept {
 
 void AxisMovers::stop(int axis) noexcept { at(axis).stop(limits_of(robot_.stop_limits(), axis)); }
 
-void AxisMovers::go_to(int axis, double target) noexcept { go_to(axis, target, limits_of(robot_.comfort_limits(), axis)); }
+void AxisMovers::go_to(int axis, double target) noexcept {
+  go_to(axis, target, limits_of(robot_.comfort_limits(), axis));
+}
 
 void AxisMovers::go_to(int axis, double target, const AxisLimits& limits) noexcept {
   at(axis).go_to(target, limits, limits_of(robot_.stop_limits(), axis));

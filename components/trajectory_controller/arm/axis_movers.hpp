@@ -19,7 +19,9 @@ class AxisMovers {
   /// Axes that are moved.
   const std::vector<int>& axes() const noexcept { return axes_; }
   /// Mover of an axis; `axis` is not checked.
-  const AxisMover& operator[](int axis) const noexcept { return movers_[static_cast<std::size_t>(axis)]; }
+  const AxisMover& operator[](int axis) const noexcept {
+    return movers_[static_cast<std::size_t>(axis)];
+  }
 
   /// Puts all axes at rest at `position`, all axes of the robot [rad, m].
   void reset(const Vector& position) noexcept;

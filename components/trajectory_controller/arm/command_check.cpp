@@ -13,15 +13,18 @@ namespace {
 constexpr double kAtRest = 1e-6;
 
 /// Returns why the trajectory does not fit the axes that the command names.
-std::string why_not_axes(const TrajectoryCommand& command, const RobotModel& robot, const AxisGroups& groups) {
+std::string why_not_axes(const TrajectoryCommand& command, const RobotModel& robot,
+                         const AxisGroups& groups) {
   if (command.trajectory.size() != static_cast<int>(command.axes.size()))
-    return "it has " + std::to_string(command.trajectory.size()) + " axes and names " + std::to_string(command.axes.size());
+    return "it has " + std::to_string(command.trajectory.size()) + " axes and names " +
+           std::to_string(command.axes.size());
   const auto count = static_cast<std::size_t>(groups.size());
   std::vector<char> used(count, 0);
   for (std::uint32_t axis : command.axes) {
     if (axis >= count) return "axis " + std::to_string(axis) + " does not exist";
     const std::string& name = robot.axes()[axis].name;
-    if (groups.part(static_cast<int>(axis)) != Part::arm) return "axis " + name + " is not moved by trajectories";
+    if (groups.part(static_cast<int>(axis)) != Part::arm)
+      return "axis " + name + " is not moved by trajectories";
     if (used[axis]++) return "axis " + name + " comes twice";
   }
   return {};
@@ -29,7 +32,8 @@ std::string why_not_axes(const TrajectoryCommand& command, const RobotModel& rob
 
 }  // namespace
 
-KinematicLimits limits_of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) {
+KinematicLimits limits_of_axes(const KinematicLimits& limits,
+                               const std::vector<std::uint32_t>& axes) {
   KinematicLimits part;
   const auto n = static_cast<Eigen::Index>(axes.size());
   part.velocity.resize(n);
@@ -51,12 +55,16 @@ std::string why_not_now(const CommandHead& head, const CommandConditions& now) {
   if (head.age > now.max_age) return "it is " + std::to_string(head.age) + " s old";
   const std::uint64_t epoch = now.permission.go().epoch;
   if (!now.permission.received() || head.epoch != epoch)
-    return "its epoch " + std::to_string(head.epoch) + " is not the one in force, " + std::to_string(epoch);
-  if (now.mode >= Mode::stop) return std::string("the controller is in mode ") + handsel::name(now.mode) + ": " + handsel::name(now.cause);
+    return "its epoch " + std::to_string(head.epoch) + " is not the one in force, " +
+           std::to_string(epoch);
+  if (now.mode >= Mode::stop)
+    return std::string("the controller is in mode ") + handsel::name(now.mode) + ": " +
+           handsel::name(now.cause);
   return {};
 }
 
-std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot, const AxisGroups& groups) {
+std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot,
+                               const AxisGroups& groups) {
   if (command.axes.empty() && command.trajectory.size() == 0) return {};
   if (!std::isfinite(command.switch_at)) return "its switch_at is not a number";
   std::string reason = why_not_axes(command, robot, groups);
@@ -72,13 +80,14 @@ std::string why_not_executable(const TrajectoryCommand& command, const RobotMode
       return "axis " + axis.name + " does not end at rest";
     const AxisExtremes reach = extremes(command.trajectory.axes[i]);
     if (reach.lowest < axis.lower - kAtRest || reach.highest > axis.upper + kAtRest)
-      return "axis " + axis.name + " would reach [" + std::to_string(reach.lowest) + ", " + std::to_string(reach.highest) +
-             "] rad, outside its bounds";
+      return "axis " + axis.name + " would reach [" + std::to_string(reach.lowest) + ", " +
+             std::to_string(reach.highest) + "] rad, outside its bounds";
   }
   return {};
 }
 
-std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel& robot, const Vector& position, double tolerance) {
+std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel& robot,
+                              const Vector& position, double tolerance) {
   const MotionState3 first = command.trajectory.at(0.0);
   for (std::size_t i = 0; i < command.axes.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -86,7 +95,8 @@ std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel
     if (std::abs(first.velocity[k]) > kAtRest || std::abs(first.acceleration[k]) > kAtRest)
       return "axis " + axis.name + " does not start at rest";
     const double off = std::abs(first.position[k] - position[command.axes[i]]);
-    if (!(off <= tolerance)) return "axis " + axis.name + " starts " + std::to_string(off) + " rad from the set-point";
+    if (!(off <= tolerance))
+      return "axis " + axis.name + " starts " + std::to_string(off) + " rad from the set-point";
   }
   return {};
 }

@@ -33,13 +33,16 @@ std::string why_not_now(const CommandHead& head, const CommandConditions& now);
 
 /// Returns why a trajectory cannot be run: axes, limits, bounds, end at rest. One sentence; empty:
 /// it can. A command without axes is a stop, which can.
-std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot, const AxisGroups& groups);
+std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot,
+                               const AxisGroups& groups);
 
 /// Returns why a trajectory cannot begin at rest at `position` (all axes) or within `tolerance`
 /// [rad] of it, one sentence; empty: it can.
-std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel& robot, const Vector& position, double tolerance);
+std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel& robot,
+                              const Vector& position, double tolerance);
 
 /// Returns the limits of some axes of the robot, in their order.
-KinematicLimits limits_of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes);
+KinematicLimits limits_of_axes(const KinematicLimits& limits,
+                               const std::vector<std::uint32_t>& axes);
 
 }  // namespace handsel::trajectory_controller

@@ -51,8 +51,10 @@ void Compliance::aim_away(const ComplianceInputs& in) noexcept {
 /// Each new demand for rest is answered by rest first; a push that lasts then moves the arm again.
 bool Compliance::waits_for_rest(const ComplianceInputs& in) noexcept {
   constexpr std::uint32_t kHeld = 1U;  // Hold or Stop itself: the bit of no cause
-  constexpr std::uint32_t kSilence = bit(Cause::robot_state_silent) | bit(Cause::human_state_silent);
-  constexpr std::uint32_t kDemands = kSilence | bit(Cause::drive_not_enabled) | bit(Cause::awaits_person);
+  constexpr std::uint32_t kSilence =
+      bit(Cause::robot_state_silent) | bit(Cause::human_state_silent);
+  constexpr std::uint32_t kDemands =
+      kSilence | bit(Cause::drive_not_enabled) | bit(Cause::awaits_person);
   // A contact ends the permission as well, so the word of the supervisor counts.
   const bool permitted = in.inputs.permission.gate().allowed();
   const std::uint32_t always = permitted ? kHeld : kHeld | bit(Cause::no_go);
@@ -69,7 +71,8 @@ Compliance::Wish Compliance::find_wish(const ComplianceInputs& in) noexcept {
   const bool silent = (in.verdict.causes & bit(Cause::robot_state_silent)) != 0;
   if (!in.allowed) return Wish::none;
   if (!waits && in.contact.pushed() && !silent) return Wish::comply;
-  const bool retreats = in.verdict.mode < Mode::hold && settings_.retreat_reach > 0.0 && in.recoils && in.nearest.link >= 0;
+  const bool retreats = in.verdict.mode < Mode::hold && settings_.retreat_reach > 0.0 &&
+                        in.recoils && in.nearest.link >= 0;
   return retreats ? Wish::retreat : Wish::none;
 }
 
@@ -107,7 +110,8 @@ void Compliance::step(const ComplianceInputs& in) noexcept {
     const int axis = arm_.movers().axes()[i];
     const double push = pushed ? in.contact.push(i) : 0.0;
     const double beyond = std::abs(push) / settings_.torque - 1.0;
-    const double ratio = pushed ? std::copysign(std::clamp(beyond, 0.0, 1.0), push) : factor * away_[axis];
+    const double ratio =
+        pushed ? std::copysign(std::clamp(beyond, 0.0, 1.0), push) : factor * away_[axis];
     if (arm_at_rest && ratio == 0.0) {
       if (!arm_.movers()[axis].at_rest()) arm_.movers().stop(axis);
     } else if (arm_at_rest && chooses) {

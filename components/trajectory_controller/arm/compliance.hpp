@@ -46,7 +46,9 @@ class Compliance {
   /// Returns whether it does so because of a push.
   bool complying() const noexcept { return moving_ && wish_ != Wish::retreat; }
   /// Velocity of a retreat that is wished for, all axes [rad/s]; nullptr: none is.
-  const Vector* retreat() const noexcept { return wish_ == Wish::retreat ? &retreat_velocity_ : nullptr; }
+  const Vector* retreat() const noexcept {
+    return wish_ == Wish::retreat ? &retreat_velocity_ : nullptr;
+  }
 
  private:
   enum class Wish : char { none, comply, retreat };

@@ -15,14 +15,21 @@ constexpr double kSlack = 1e-6;  // [rad] beyond a bound by rounding
 
 constexpr double kTogether = 0.5;  // [s] of a trajectory that begins nearly as the arm moves
 
-double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
+double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
 
-/// Whether a trajectory begins as `from` moves: then all of it is run, but for what brings the two together.
-bool begins_alike(const MotionState3& from, const MotionState3& first, const KinematicLimits& limits) {
+/// Whether a trajectory begins as `from` moves: then all of it is run, but for what brings the two
+/// together.
+bool begins_alike(const MotionState3& from, const MotionState3& first,
+                  const KinematicLimits& limits) {
   constexpr double kNear = 0.02, kShare = 0.1;
   return apart(from.position, first.position) <= kNear &&
-         ((from.velocity - first.velocity).cwiseAbs().array() <= kShare * limits.velocity.array()).all() &&
-         ((from.acceleration - first.acceleration).cwiseAbs().array() <= kShare * limits.acceleration.array()).all();
+         ((from.velocity - first.velocity).cwiseAbs().array() <= kShare * limits.velocity.array())
+             .all() &&
+         ((from.acceleration - first.acceleration).cwiseAbs().array() <=
+          kShare * limits.acceleration.array())
+             .all();
 }
 
 }  // namespace
@@ -45,7 +52,8 @@ const Trajectory& PathRunner::path() const {
 }
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
-  constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way: farther on, the way there cuts corners
+  constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way:
+                                   // farther on, the way there cuts corners
   constexpr int kTries = 10;       // in this short a window; the time of a cycle goes with them
   if (finished_) return false;
   SwitchSettings settings;
@@ -64,27 +72,34 @@ std::string PathRunner::why_out_of_bounds() const {
   const SegmentTable& path = scaling_.path();
   MotionState3 at = rest_state(Eigen::VectorXd::Zero(axes()));
   const double joins = offset() + scaling_.joined_at();
-  for (int k = path.find(scaling_.switched_at(), 0), cursor = k; k < path.segments() && path.knot(k) < joins; ++k) {
+  for (int k = path.find(scaling_.switched_at(), 0), cursor = k;
+       k < path.segments() && path.knot(k) < joins; ++k) {
     path.evaluate(path.knot(k), cursor = k, at);
     for (Eigen::Index i = 0; i < axes(); ++i) {
       if (!(limits_.lower[i] < limits_.upper[i])) continue;
       const Segment piece{path.knot(k + 1) - path.knot(k), path.jerks(cursor)[i]};
-      const AxisExtremes reached = extremes({at.position[i], at.velocity[i], at.acceleration[i]}, &piece, 1);
-      if (reached.lowest >= limits_.lower[i] - kSlack && reached.highest <= limits_.upper[i] + kSlack) continue;
-      return "the motion that leads over to it would take axis " + std::to_string(i) + " to [" + std::to_string(reached.lowest) + ", " +
-             std::to_string(reached.highest) + "] rad, outside its bounds";
+      const AxisExtremes reached =
+          extremes({at.position[i], at.velocity[i], at.acceleration[i]}, &piece, 1);
+      if (reached.lowest >= limits_.lower[i] - kSlack &&
+          reached.highest <= limits_.upper[i] + kSlack)
+        continue;
+      return "the motion that leads over to it would take axis " + std::to_string(i) + " to [" +
+             std::to_string(reached.lowest) + ", " + std::to_string(reached.highest) +
+             "] rad, outside its bounds";
     }
   }
   return {};
 }
 
 template <class Switch>
-std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go) {
+std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& next, double reach,
+                                  bool from_rest, Switch&& go) {
   if (std::string why = why_not_runnable(next, limits_.motion); !why.empty()) return why;
   SwitchSettings settings;
   MotionState3 there = next.at(0.0);
   if (begins_alike(from, there, limits_.motion)) {
-    settings.last = from_rest || same_motion(from, there) ? 0.0 : std::min(kTogether, next.duration());
+    settings.last =
+        from_rest || same_motion(from, there) ? 0.0 : std::min(kTogether, next.duration());
   } else {
     constexpr int kLooks = 200;
     double nearest = std::numeric_limits<double>::infinity();
@@ -99,9 +114,12 @@ std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& ne
       if (settings.first < 0) settings.first = t;
       settings.last = t;
     }
-    if (settings.first < 0) return "it comes no nearer than " + std::to_string(nearest) + " rad to where the motion before it is left";
+    if (settings.first < 0)
+      return "it comes no nearer than " + std::to_string(nearest) +
+             " rad to where the motion before it is left";
   }
-  if (const SwitchOutcome outcome = go(SegmentTable(next), settings); outcome != SwitchOutcome::ok) return reason(outcome);
+  if (const SwitchOutcome outcome = go(SegmentTable(next), settings); outcome != SwitchOutcome::ok)
+    return reason(outcome);
   if (std::string why = why_out_of_bounds(); !why.empty()) {
     scaling_.undo_switch();
     return why;
@@ -122,14 +140,18 @@ std::string PathRunner::switch_at(double leave, const Trajectory& next, double r
     if (scaling_.alpha() < 0) from.velocity = -from.velocity;
   }
   return switch_to(from, next, reach, leave >= scaling_.duration(),
-                   [&](const SegmentTable& table, const SwitchSettings& settings) { return scaling_.switch_at(leave, table, settings); });
+                   [&](const SegmentTable& table, const SwitchSettings& settings) {
+                     return scaling_.switch_at(leave, table, settings);
+                   });
 }
 
-std::string PathRunner::start_from(const MotionState3& state, const Trajectory& next, double reach) {
+std::string PathRunner::start_from(const MotionState3& state, const Trajectory& next,
+                                   double reach) {
   if (next.size() != axes()) return reason(SwitchOutcome::wrong_size);
-  if (std::string why =
-          switch_to(state, next, reach, false,
-                    [&](const SegmentTable& table, const SwitchSettings& settings) { return scaling_.start_from(state, table, settings); });
+  if (std::string why = switch_to(state, next, reach, false,
+                                  [&](const SegmentTable& table, const SwitchSettings& settings) {
+                                    return scaling_.start_from(state, table, settings);
+                                  });
       !why.empty())
     return why;
   state_ = state;

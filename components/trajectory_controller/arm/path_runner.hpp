@@ -41,7 +41,9 @@ class PathRunner {
   bool step(double wanted) noexcept;
 
   /// Position, velocity and acceleration of the path at `time` [s] at full speed.
-  void observe(double time, MotionState3& out) noexcept { scaling_.path().evaluate(time, cursor_, out); }
+  void observe(double time, MotionState3& out) noexcept {
+    scaling_.path().evaluate(time, cursor_, out);
+  }
   /// Set-point after the last step: position, velocity and acceleration of the axes of the path.
   const MotionState3& state() const noexcept { return state_; }
   /// Whole path, connecting motions included. May allocate.
@@ -65,7 +67,8 @@ class PathRunner {
 
  private:
   template <class Switch>
-  std::string switch_to(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go);
+  std::string switch_to(const MotionState3& from, const Trajectory& next, double reach,
+                        bool from_rest, Switch&& go);
   std::string why_out_of_bounds() const;
 
   double dt_;

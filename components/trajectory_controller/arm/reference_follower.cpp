@@ -11,7 +11,8 @@ constexpr double kDeadBand = 0.002;  // [rad] from the target
 
 }  // namespace
 
-ReferenceFollower::ReferenceFollower(const ReferenceFollowerSettings& settings, const AxisGroups& groups)
+ReferenceFollower::ReferenceFollower(const ReferenceFollowerSettings& settings,
+                                     const AxisGroups& groups)
     : settings_(settings),
       groups_(groups),
       reference_(groups.arm(), groups.size()),
@@ -32,22 +33,25 @@ bool ReferenceFollower::rests(const RobotState& robot, int axis) const noexcept 
 
 /// Takes the measured configuration of an arm at rest once, and again when the arm has moved.
 void ReferenceFollower::adopt(const RobotState& robot) noexcept {
-  const auto far = [&](int axis) { return std::abs(robot.position[axis] - adopted_[axis]) > RobotReference::kBent; };
+  const auto far = [&](int axis) {
+    return std::abs(robot.position[axis] - adopted_[axis]) > RobotReference::kBent;
+  };
   const std::vector<int>& arm = groups_.arm();
   if (has_adopted_ && !std::any_of(arm.begin(), arm.end(), far)) return;
   adopted_ = robot.position;
   has_adopted_ = true;
 }
 
-// A robot side whose drives are enabled moves its reference to set-points that rest. Set-points that
-// rest at the reference move nothing; they stay while the reference moves. Where the reference is
-// not known, or follows under a fault, set-points are taken once to the configuration the robot came
-// to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
+// A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
+// that rest at the reference move nothing; they stay while the reference moves. Where the reference
+// is not known, or follows under a fault, set-points are taken once to the configuration the robot
+// came to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
 ReferenceFollower::Target ReferenceFollower::find_target(const RobotState& robot) noexcept {
   const bool joins = robot.mode == DriveMode::enabled && !settings_.dry_run;
   const bool at_reference = moves_nothing();
   const bool reference_moves = reference_.state() == RobotReference::State::moving;
-  const bool arm_rests = std::all_of(groups_.arm().begin(), groups_.arm().end(), [&](int axis) { return rests(robot, axis); });
+  const bool arm_rests = std::all_of(groups_.arm().begin(), groups_.arm().end(),
+                                     [&](int axis) { return rests(robot, axis); });
   measured_before_ = robot.position;
   if (joins && !at_reference && arm_rests && !reference_moves) adopt(robot);
   if (!settings_.dry_run && reference_moves) return Target::none;
@@ -56,10 +60,13 @@ ReferenceFollower::Target ReferenceFollower::find_target(const RobotState& robot
   return has_adopted_ ? Target::adopted : Target::none;
 }
 
-void ReferenceFollower::follow(Target target, const RobotState& robot, AxisMovers& movers) const noexcept {
+void ReferenceFollower::follow(Target target, const RobotState& robot,
+                               AxisMovers& movers) const noexcept {
   constexpr double kExact = 1e-12;  // [rad]
   if (target == Target::none) return;
-  const Vector& position = target == Target::reference ? robot.reference.position : target == Target::measured ? robot.position : adopted_;
+  const Vector& position = target == Target::reference  ? robot.reference.position
+                           : target == Target::measured ? robot.position
+                                                        : adopted_;
   const double dead_band = target == Target::measured ? kDeadBand : kExact;
   for (int axis : movers.axes()) {
     const double wanted = groups_.inside(axis, position[axis]);
@@ -67,7 +74,8 @@ void ReferenceFollower::follow(Target target, const RobotState& robot, AxisMover
   }
 }
 
-void ReferenceFollower::step(const ReferenceInputs& in, ArmMotion& arm, AxisMovers& head, Hands& hands) noexcept {
+void ReferenceFollower::step(const ReferenceInputs& in, ArmMotion& arm, AxisMovers& head,
+                             Hands& hands) noexcept {
   const RobotState& robot = in.robot.state();
   const bool stale = in.age > settings_.timeout;
   if (stale) reference_.set_stale();

@@ -1,12 +1,12 @@
-// Brings resting set-points to where the robot is, while it does not follow them: to the robot side's
-// own reference, or to the measured configuration. Pure, no heap after construction.
+// Brings resting set-points to where the robot is, while it does not follow them: to the robot
+// side's own reference, or to the measured configuration. Pure, no heap after construction.
 #pragma once
 
 #include "components/trajectory_controller/arm/arm_motion.hpp"
 #include "components/trajectory_controller/axis_groups.hpp"
 #include "components/trajectory_controller/hand/hands.hpp"
-#include "components/trajectory_controller/input/robot_reference.hpp"
 #include "components/trajectory_controller/input/robot_input.hpp"
+#include "components/trajectory_controller/input/robot_reference.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -19,7 +19,7 @@ struct ReferenceFollowerSettings {
 
 /// Inputs of one step.
 struct ReferenceInputs {
-  const RobotInput& robot;       ///< newest state
+  const RobotInput& robot;      ///< newest state
   const SetPoints& set_points;  ///< sent last
   double age{};                 ///< of the robot state [s]
   bool fault{};                 ///< mode Fault

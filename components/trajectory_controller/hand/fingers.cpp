@@ -5,15 +5,20 @@
 
 namespace handsel::trajectory_controller {
 
-Fingers::Fingers(HandAxes hand, const KinematicLimits& comfort, const KinematicLimits& stop, double lever)
+Fingers::Fingers(HandAxes hand, const KinematicLimits& comfort, const KinematicLimits& stop,
+                 double lever)
     : hand_(std::move(hand)), comfort_(comfort), stop_(stop), fingers_(hand_.axes.size()) {
   for (std::size_t i = 0; i < hand_.sliding.size(); ++i)
     if (hand_.sliding[i] != 0) fingers_[i].lever = lever;
 }
 
-double Fingers::inside(std::size_t i, double position) const noexcept { return std::clamp(position, hand_.lower[i], hand_.upper[i]); }
+double Fingers::inside(std::size_t i, double position) const noexcept {
+  return std::clamp(position, hand_.lower[i], hand_.upper[i]);
+}
 
-AxisLimits Fingers::comfort(std::size_t i) const noexcept { return limits_of(comfort_, hand_.axes[i]); }
+AxisLimits Fingers::comfort(std::size_t i) const noexcept {
+  return limits_of(comfort_, hand_.axes[i]);
+}
 
 AxisLimits Fingers::stop(std::size_t i) const noexcept { return limits_of(stop_, hand_.axes[i]); }
 
@@ -37,7 +42,8 @@ void Fingers::stop_from(const MotionState3& from) noexcept {
 }
 
 void Fingers::stop_all(bool fast) noexcept {
-  for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].mover.stop(fast ? stop(i) : comfort(i));
+  for (std::size_t i = 0; i < fingers_.size(); ++i)
+    fingers_[i].mover.stop(fast ? stop(i) : comfort(i));
 }
 
 void Fingers::advance(double dt, MotionState3& out) noexcept {
@@ -51,7 +57,8 @@ void Fingers::advance(double dt, MotionState3& out) noexcept {
 }
 
 bool Fingers::at_rest() const noexcept {
-  return std::all_of(fingers_.begin(), fingers_.end(), [](const Finger& f) { return f.mover.at_rest(); });
+  return std::all_of(fingers_.begin(), fingers_.end(),
+                     [](const Finger& f) { return f.mover.at_rest(); });
 }
 
 double Fingers::pressed(const RobotState& robot, std::size_t i) const noexcept {

@@ -6,38 +6,44 @@
 namespace handsel::trajectory_controller {
 
 namespace {
-constexpr double kMinor = 0.2;      // of the largest effort: axes with less only hold
-constexpr double kSameSpeed = 0.1;  // a limit that changes by less than this fraction does not change a motion under way
+constexpr double kMinor = 0.2;  // of the largest effort: axes with less only hold
+constexpr double kSameSpeed =
+    0.1;  // a limit that changes by less than this fraction does not change a motion under way
 
 /// Returns why a command cannot be executed, one sentence; empty: it can.
 std::string why_not(const HandCommand& command, const Fingers& fingers) {
   constexpr double kBeyond = 0.02, kMaxEffort = 20;
   const auto count = static_cast<Eigen::Index>(fingers.size());
   if (command.position.size() != count)
-    return "hand command has " + std::to_string(command.position.size()) + " positions, the hand has " + std::to_string(count) + " axes";
+    return "hand command has " + std::to_string(command.position.size()) +
+           " positions, the hand has " + std::to_string(count) + " axes";
   for (std::size_t i = 0; i < fingers.size(); ++i) {
     const double p = command.position[static_cast<Eigen::Index>(i)];
     const double beyond = kBeyond * fingers[i].lever;
     const double lower = fingers.lower(i), upper = fingers.upper(i);
     if (!(p >= lower - beyond && p <= upper + beyond))
-      return "hand axis " + std::to_string(i) + " wanted at " + std::to_string(p) + ", outside [" + std::to_string(lower) + ", " +
-             std::to_string(upper) + (fingers[i].lever == 1.0 ? "] rad" : "] m");
+      return "hand axis " + std::to_string(i) + " wanted at " + std::to_string(p) + ", outside [" +
+             std::to_string(lower) + ", " + std::to_string(upper) +
+             (fingers[i].lever == 1.0 ? "] rad" : "] m");
   }
   if (command.effort.size() != 0 && command.effort.size() != command.position.size())
     return "hand command must give as many efforts as positions or none";
   for (Eigen::Index i = 0; i < command.effort.size(); ++i) {
     const double max_effort = kMaxEffort / fingers[static_cast<std::size_t>(i)].lever;
     if (!(std::abs(command.effort[i]) <= max_effort))
-      return "hand command must give efforts of at most " + std::to_string(max_effort) + (max_effort == kMaxEffort ? " Nm" : " N");
+      return "hand command must give efforts of at most " + std::to_string(max_effort) +
+             (max_effort == kMaxEffort ? " Nm" : " N");
   }
   const bool pulls = command.action == HandAction::release_on_pull;
-  if (pulls && (!(command.pull_force > 0) || command.pull_force > 100)) return "pull_force must be above 0 and at most 100 N";
+  if (pulls && (!(command.pull_force > 0) || command.pull_force > 100))
+    return "pull_force must be above 0 and at most 100 N";
   return {};
 }
 
 }  // namespace
 
-HandExecutor::HandExecutor(const HandSettings& settings, HandAxes hand, const KinematicLimits& comfort, const KinematicLimits& stop)
+HandExecutor::HandExecutor(const HandSettings& settings, HandAxes hand,
+                           const KinematicLimits& comfort, const KinematicLimits& stop)
     : settings_(settings),
       fingers_(std::move(hand), comfort, stop, settings.lever),
       release_to_(Vector::Zero(static_cast<Eigen::Index>(fingers_.size()))),
@@ -89,16 +95,20 @@ std::string HandExecutor::accept(const HandCommand& command) {
   }
   release_.disarm();
   release_.forget_load();
-  for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].final = fingers_.inside(i, command.position[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < fingers_.size(); ++i)
+    fingers_[i].final = fingers_.inside(i, command.position[static_cast<Eigen::Index>(i)]);
   const bool holds = state_ == HandState::grasped;
-  start(command.action == HandAction::grasp ? Phase::closing : command.action == HandAction::release ? Phase::releasing : Phase::moving);
+  start(command.action == HandAction::grasp     ? Phase::closing
+        : command.action == HandAction::release ? Phase::releasing
+                                                : Phase::moving);
   if (command.action != HandAction::grasp || (holds && command.effort.size() == 0)) return {};
   if (!holds) level_ = 0.0;
   max_effort_ = 0.0;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
-    f.effort = command.effort.size() > 0 ? command.effort[static_cast<Eigen::Index>(i)]
-                                         : f.direction * f.speed_ratio * settings_.grip_effort / f.lever;
+    f.effort = command.effort.size() > 0
+                   ? command.effort[static_cast<Eigen::Index>(i)]
+                   : f.direction * f.speed_ratio * settings_.grip_effort / f.lever;
     max_effort_ = std::max(max_effort_, std::abs(f.effort));
   }
   return {};
@@ -136,7 +146,8 @@ void HandExecutor::start(Phase phase) {
   settled_for_ = lost_for_ = 0.0;
   payload_felt_ = false;
   double farthest = 0.0;
-  for (const Finger& f : fingers_) farthest = std::max(farthest, std::abs(f.final - f.mover.state().position));
+  for (const Finger& f : fingers_)
+    farthest = std::max(farthest, std::abs(f.final - f.mover.state().position));
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     const double travel = f.final - f.mover.state().position;
@@ -167,7 +178,8 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
   for (Finger& f : fingers_) f.target = f.mover.state().position;
 }
 
-/// Axes that press on nothing yet continue in the direction in which they will push; then all press.
+/// Axes that press on nothing yet continue in the direction in which they will push; then all
+/// press.
 void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   bool done = true;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
@@ -251,8 +263,10 @@ void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
 void HandExecutor::change_level(double dt) noexcept {
   const double change = dt / settings_.grip_rise_time;
   if (phase_ == Phase::regripping) level_ = std::min(1.0, level_ + change);
-  if (phase_ == Phase::loosened) level_ = std::max(std::min(level_, settings_.loosen_fraction), level_ - change);
-  if (phase_ == Phase::releasing || phase_ == Phase::moving) level_ = std::max(0.0, level_ - change);
+  if (phase_ == Phase::loosened)
+    level_ = std::max(std::min(level_, settings_.loosen_fraction), level_ - change);
+  if (phase_ == Phase::releasing || phase_ == Phase::moving)
+    level_ = std::max(0.0, level_ - change);
 }
 
 /// What was released may still be hooked on a finger while it is drawn away.
@@ -266,7 +280,8 @@ void HandExecutor::comply(const RobotState& robot, double dt) noexcept {
   }
 }
 
-void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
+void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
+                        MotionState3& out) noexcept {
   const RobotState& robot = *in.robot;
   if (in.new_state) person_near_ = in.person_distance <= settings_.person_range;
   // In Hold and above nothing is sure about where people are.

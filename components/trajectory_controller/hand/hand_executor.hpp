@@ -16,26 +16,26 @@ namespace handsel::trajectory_controller {
 /// of a finger.
 struct HandSettings {
   double grasp_speed{0.5};     ///< fraction of the comfort velocity while closing
-  double min_closing{0.05};  ///< smallest travel of an axis that closes [rad]
+  double min_closing{0.05};    ///< smallest travel of an axis that closes [rad]
   double touch_effort{0.08};   ///< effort on the world from which an axis is in contact [Nm]
   double touch_time{0.02};     ///< for this long, while it closes [s]
   double seek_speed{0.2};      ///< of the search for contact beyond the command [rad/s]
   double seek_travel{0.25};    ///< largest travel of that search [rad]
-  double grip_effort{0.5};  ///< grip force of a command without one, longest axis [Nm]
-  double grip_rise_time{0.4};    ///< rise of the grip force, and decay when the hand opens [s]
+  double grip_effort{0.5};     ///< grip force of a command without one, longest axis [Nm]
+  double grip_rise_time{0.4};  ///< rise of the grip force, and decay when the hand opens [s]
   double settle_time{0.15};    ///< at rest for this long before the outcome is reported [s]
   /// An object that a person holds too is grasped when every axis with more than grip_effort
   /// pushes with at least this fraction of its effort.
   double min_push{0.7};
-  int min_contacts{2};      ///< axes in contact that make a grasp; all if there are fewer
-  double lost_payload{0.02};  ///< payload once felt, now below this: lost [kg]
-  double lost_time{0.3};      ///< for this long [s]
-  double person_range{0.6};   ///< a pull counts only with a person's hand this near [m]
-  double loosen_fraction{0.8};   ///< fraction of the grip force left while loosened
-  double yield_effort{0.15};  ///< after a release, an axis complies with more than this [Nm]
-  double yield_speed{1.0};    ///< speed of complying [rad/s]; 0: never
-  double lever{0.05};         ///< finger length that stands for a sliding axis [m]
-  PullSettings pull;          ///< detection of the pull at a handover
+  int min_contacts{2};          ///< axes in contact that make a grasp; all if there are fewer
+  double lost_payload{0.02};    ///< payload once felt, now below this: lost [kg]
+  double lost_time{0.3};        ///< for this long [s]
+  double person_range{0.6};     ///< a pull counts only with a person's hand this near [m]
+  double loosen_fraction{0.8};  ///< fraction of the grip force left while loosened
+  double yield_effort{0.15};    ///< after a release, an axis complies with more than this [Nm]
+  double yield_speed{1.0};      ///< speed of complying [rad/s]; 0: never
+  double lever{0.05};           ///< finger length that stands for a sliding axis [m]
+  PullSettings pull;            ///< detection of the pull at a handover
 };
 
 /// Inputs of one step.
@@ -54,7 +54,8 @@ struct HandInputs {
 class HandExecutor {
  public:
   /// `comfort`, `stop`: limits of all axes of the robot.
-  HandExecutor(const HandSettings& settings, HandAxes hand, const KinematicLimits& comfort, const KinematicLimits& stop);
+  HandExecutor(const HandSettings& settings, HandAxes hand, const KinematicLimits& comfort,
+               const KinematicLimits& stop);
 
   /// Number of axes of the hand.
   int size() const { return static_cast<int>(fingers_.size()); }

@@ -60,10 +60,12 @@ void find_people(const ObservedPeople& people, const Vector3& p, HandInputs& in)
 
 }  // namespace
 
-Hands::Hands(const HandSettings& settings, const RobotModel& robot, double period) : period_(period), effort_(Vector::Zero(robot.dof())) {
+Hands::Hands(const HandSettings& settings, const RobotModel& robot, double period)
+    : period_(period), effort_(Vector::Zero(robot.dof())) {
   for (const Manipulator& hand : hands_of(robot)) {
     const std::string group = hand.fingers != nullptr ? hand.fingers->name : "hand";
-    HandExecutor executor(settings, axes_of(robot, hand.fingers), robot.comfort_limits(), robot.stop_limits());
+    HandExecutor executor(settings, axes_of(robot, hand.fingers), robot.comfort_limits(),
+                          robot.stop_limits());
     hands_.push_back({group, hand.palm, std::move(executor)});
     const std::vector<int>& axes = hands_.back().executor.axes();
     axes_.insert(axes_.end(), axes.begin(), axes.end());
@@ -82,7 +84,9 @@ Hands::Hand* Hands::find(const std::string& group) {
 std::string Hands::accept(const HandCommand& command, std::string refusal) {
   last_command_ = command.id;
   Hand* hand = find(command.group);
-  if (refusal.empty()) refusal = hand == nullptr ? "there is no hand \"" + command.group + "\"" : hand->executor.accept(command);
+  if (refusal.empty())
+    refusal = hand == nullptr ? "there is no hand \"" + command.group + "\""
+                              : hand->executor.accept(command);
   if (hand != nullptr) hand->refused = !refusal.empty();
   if (!refusal.empty()) return refusal;
   accepted_ = command.id;
@@ -95,7 +99,8 @@ void Hands::reset(const Vector& position, const ServoReference* reference) noexc
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
     hand.executor.reset(position, reference != nullptr ? reference->effort : Vector());
-    const double held = reference != nullptr ? trajectory_controller::held_payload(*reference, i) : 0.0;
+    const double held =
+        reference != nullptr ? trajectory_controller::held_payload(*reference, i) : 0.0;
     hand.payload = hand.grasped_payload = held;
   }
 }
@@ -115,7 +120,8 @@ bool Hands::step(const HandsInputs& in, TimePoint now, MotionState3& next) noexc
   return changed;
 }
 
-void Hands::step(std::size_t index, const HandsInputs& all, TimePoint now, MotionState3& next) noexcept {
+void Hands::step(std::size_t index, const HandsInputs& all, TimePoint now,
+                 MotionState3& next) noexcept {
   Hand& hand = hands_[index];
   HandInputs in;
   in.robot = &all.robot;
@@ -161,7 +167,8 @@ double Hands::held_payload() const noexcept {
 }
 
 bool Hands::any_moving() const noexcept {
-  return std::any_of(hands_.begin(), hands_.end(), [](const Hand& hand) { return hand.executor.state() == HandState::moving; });
+  return std::any_of(hands_.begin(), hands_.end(),
+                     [](const Hand& hand) { return hand.executor.state() == HandState::moving; });
 }
 
 bool Hands::has_released(const std::string& group) const noexcept {
@@ -183,7 +190,8 @@ void Hands::report(ExecutionStatus& status) const {
   if (hands_.empty()) return;
   status.hand = hands_.front().reported();
   status.pull = hands_.front().executor.pull();
-  for (std::size_t i = 1; i < hands_.size(); ++i) status.other_hands.push_back({hands_[i].group, hands_[i].reported()});
+  for (std::size_t i = 1; i < hands_.size(); ++i)
+    status.other_hands.push_back({hands_[i].group, hands_[i].reported()});
 }
 
 }  // namespace handsel::trajectory_controller

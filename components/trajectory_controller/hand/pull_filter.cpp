@@ -21,7 +21,9 @@ void PullFilter::reset() noexcept {
   baseline_ = filtered_ = quick_ = Vector3::Zero();
 }
 
-void PullFilter::average(const Vector3& force) noexcept { baseline_ += (force - baseline_) / ++samples_; }
+void PullFilter::average(const Vector3& force) noexcept {
+  baseline_ += (force - baseline_) / ++samples_;
+}
 
 void PullFilter::check_baseline(bool person_near, double threshold) noexcept {
   if (baseline_checked_) return;

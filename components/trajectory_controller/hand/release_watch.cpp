@@ -18,10 +18,12 @@ void ReleaseWatch::arm(double threshold) noexcept {
   filter_.reset();
 }
 
-/// A pull beyond the threshold, in one direction, not away from the person; above_since_ says since when.
+/// A pull beyond the threshold, in one direction, not away from the person; above_since_ says since
+/// when.
 bool ReleaseWatch::strong(const Vector3& toward, TimePoint now) noexcept {
   const double pull = filter_.pull();
-  const Vector3 direction = pull > 1e-9 ? Vector3(filter_.filtered() / pull) : Vector3(Vector3::Zero());
+  const Vector3 direction =
+      pull > 1e-9 ? Vector3(filter_.filtered() / pull) : Vector3(Vector3::Zero());
   // The quick filter must agree: after a bump the slow one is still high for a while.
   const bool lasts = filter_.quick().dot(direction) >= kStillThere * threshold_;
   const bool toward_person = direction.dot(toward) >= settings_.away_cosine;
@@ -64,7 +66,8 @@ Grip ReleaseWatch::update(const Felt& felt, TimePoint now) noexcept {
   const double lasted = pulled ? to_seconds(now - above_since_) : 0.0;
   if (pulled) impulse_ += dt * filter_.pull();
   if (grip_ == Grip::hold) {
-    if (pulled && felt.person_near && lasted >= settings_.hold_time && impulse_ >= settings_.impulse) {
+    if (pulled && felt.person_near && lasted >= settings_.hold_time &&
+        impulse_ >= settings_.impulse) {
       grip_ = Grip::loosen;
       loose_for_ = lost_for_ = slack_for_ = 0.0;
     }

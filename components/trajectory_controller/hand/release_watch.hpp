@@ -42,7 +42,8 @@ struct Felt {
 class ReleaseWatch {
  public:
   explicit ReleaseWatch(const PullSettings& settings)
-      : settings_(settings), filter_({settings.baseline_time, settings.filter_time, settings.quick_time}) {}
+      : settings_(settings),
+        filter_({settings.baseline_time, settings.filter_time, settings.quick_time}) {}
 
   /// Starts over: the load's own force is measured from the samples that follow. threshold: least
   /// pull that counts [N].

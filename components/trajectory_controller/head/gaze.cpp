@@ -23,7 +23,8 @@ std::vector<bool> moved_links(const RobotModel& robot, const Moves& moves) {
   for (bool found = true; found;) {
     found = false;
     for (const Joint& joint : robot.joints()) {
-      const auto parent = static_cast<std::size_t>(joint.parent), child = static_cast<std::size_t>(joint.child);
+      const auto parent = static_cast<std::size_t>(joint.parent),
+                 child = static_cast<std::size_t>(joint.child);
       if (moved[child] || !(moved[parent] || (joint.dof >= 0 && moves(joint.dof)))) continue;
       moved[child] = found = true;
     }
@@ -33,10 +34,12 @@ std::vector<bool> moved_links(const RobotModel& robot, const Moves& moves) {
 
 }  // namespace
 
-std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q, const Vector3& p_root) {
+std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q,
+                        const Vector3& p_root) {
   Vector x = q;
   const auto n = static_cast<Eigen::Index>(head.axes.size());
-  if (robot.gaze_link() >= 0 && n > 0 && (p_root - robot.link_pose(q, robot.gaze_link()).translation()).norm() > 0.05) {
+  if (robot.gaze_link() >= 0 && n > 0 &&
+      (p_root - robot.link_pose(q, robot.gaze_link()).translation()).norm() > 0.05) {
     constexpr int kIterations = 12;
     constexpr double kStep = 1e-4, kDamping = 1e-4, kLargest = 0.5;
     Eigen::MatrixXd J(3, n);
@@ -48,11 +51,14 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
         moved[head.axes[static_cast<std::size_t>(i)]] += kStep;
         J.col(i) = (miss(robot, moved, p_root) - e) / kStep;
       }
-      const Vector dx = -(J.transpose() * J + kDamping * Eigen::MatrixXd::Identity(n, n)).ldlt().solve(J.transpose() * e);
+      const Vector dx = -(J.transpose() * J + kDamping * Eigen::MatrixXd::Identity(n, n))
+                             .ldlt()
+                             .solve(J.transpose() * e);
       for (Eigen::Index i = 0; i < n; ++i) {
         const int axis = head.axes[static_cast<std::size_t>(i)];
         const Axis& bounds = robot.axes()[static_cast<std::size_t>(axis)];
-        x[axis] = std::clamp(x[axis] + std::clamp(dx[i], -kLargest, kLargest), bounds.lower, bounds.upper);
+        x[axis] = std::clamp(x[axis] + std::clamp(dx[i], -kLargest, kLargest), bounds.lower,
+                             bounds.upper);
       }
     }
   }
@@ -61,15 +67,22 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
   return out;
 }
 
-HeadRoom::HeadRoom(const RobotModel& robot) : robot_(robot), head_(robot.group("head")), capsules_(robot_capsules(robot)) {
+HeadRoom::HeadRoom(const RobotModel& robot)
+    : robot_(robot), head_(robot.group("head")), capsules_(robot_capsules(robot)) {
   if (head_ == nullptr) return;
-  const auto turns_head = [&](int axis) { return std::find(head_->axes.begin(), head_->axes.end(), axis) != head_->axes.end(); };
-  const std::vector<bool> of_head = moved_links(robot, turns_head), others = moved_links(robot, [&](int a) { return !turns_head(a); });
+  const auto turns_head = [&](int axis) {
+    return std::find(head_->axes.begin(), head_->axes.end(), axis) != head_->axes.end();
+  };
+  const std::vector<bool> of_head = moved_links(robot, turns_head),
+                          others = moved_links(robot, [&](int a) { return !turns_head(a); });
   for (std::size_t a = 0; a < capsules_.size(); ++a)
     for (std::size_t b = 0; b < capsules_.size(); ++b) {
       const int head_link = capsules_[a].link, other = capsules_[b].link;
-      const bool both = of_head[static_cast<std::size_t>(head_link)] && others[static_cast<std::size_t>(other)];
-      if (both && !of_head[static_cast<std::size_t>(other)] && !robot.pair_disabled(head_link, other)) pairs_.emplace_back(a, b);
+      const bool both =
+          of_head[static_cast<std::size_t>(head_link)] && others[static_cast<std::size_t>(other)];
+      if (both && !of_head[static_cast<std::size_t>(other)] &&
+          !robot.pair_disabled(head_link, other))
+        pairs_.emplace_back(a, b);
     }
 }
 
@@ -79,9 +92,11 @@ double HeadRoom::clearance(const Vector& q) {
   robot_.forward(q, T_root_link_);
   for (const auto& [a, b] : pairs_) {
     const LinkCapsule &head = capsules_[a], &other = capsules_[b];
-    const Pose &T = T_root_link_[static_cast<std::size_t>(head.link)], &U = T_root_link_[static_cast<std::size_t>(other.link)];
+    const Pose &T = T_root_link_[static_cast<std::size_t>(head.link)],
+               &U = T_root_link_[static_cast<std::size_t>(other.link)];
     Vector3 on_head, on_other;
-    const double apart2 = nearest_points(T * head.a, T * head.b, U * other.a, U * other.b, on_head, on_other);
+    const double apart2 =
+        nearest_points(T * head.a, T * head.b, U * other.a, U * other.b, on_head, on_other);
     least = std::min(least, std::sqrt(apart2) - head.radius - other.radius);
   }
   return least;
@@ -94,7 +109,8 @@ bool HeadRoom::lets_turn(const Vector& q, const std::vector<double>& target) {
   const double least = std::min(kMargin, clearance(q) - kSame);
   Vector x = q;
   for (int k = 1; k <= kLooks; ++k) {
-    for (std::size_t i = 0; i < head_->axes.size(); ++i) x[head_->axes[i]] += (target[i] - q[head_->axes[i]]) / kLooks;
+    for (std::size_t i = 0; i < head_->axes.size(); ++i)
+      x[head_->axes[i]] += (target[i] - q[head_->axes[i]]) / kLooks;
     if (clearance(x) < least) return false;
   }
   return true;

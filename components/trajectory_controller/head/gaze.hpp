@@ -12,7 +12,8 @@ namespace handsel::trajectory_controller {
 /// Positions of the axes of `head` (inside their bounds) that bring the x axis of the robot's gaze
 /// link nearest to pointing at `p_root` (root frame [m]), the other axes as in `q`. Returns the
 /// present ones when the robot has no gaze link.
-std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q, const Vector3& p_root);
+std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q,
+                        const Vector3& p_root);
 
 /// Keeps a head that turns off the arms and hands, which are planned around a head that stands. By
 /// capsules, and only pairs of links that are tested against each other at all. Own method.

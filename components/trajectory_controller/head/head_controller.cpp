@@ -4,17 +4,20 @@
 
 namespace handsel::trajectory_controller {
 
-HeadController::HeadController(const RobotModel& robot, const std::vector<int>& axes, double dead_band, double period)
+HeadController::HeadController(const RobotModel& robot, const std::vector<int>& axes,
+                               double dead_band, double period)
     : robot_(robot), room_(robot), movers_(robot, axes), dead_band_(dead_band), period_(period) {
   target_.reserve(axes.size());
 }
 
 bool HeadController::has_new_target(const AttentionAdvice& advice) const noexcept {
   constexpr double kMoved = 0.02;  // [m]
-  return !movers_.axes().empty() && advice.has_gaze_target && !((advice.gaze_target - aimed_at_).norm() < kMoved);
+  return !movers_.axes().empty() && advice.has_gaze_target &&
+         !((advice.gaze_target - aimed_at_).norm() < kMoved);
 }
 
-void HeadController::aim_at(const AttentionAdvice& advice, const Pose& T_world_base, const Vector& here, const Vector& path_end) {
+void HeadController::aim_at(const AttentionAdvice& advice, const Pose& T_world_base,
+                            const Vector& here, const Vector& path_end) {
   if (!has_new_target(advice)) return;
   const Vector3 p_root = T_world_base.inverse() * advice.gaze_target;
   std::vector<double> target = aim(robot_, *robot_.group("head"), here, p_root);
@@ -33,7 +36,8 @@ void HeadController::step(bool may_move, MotionState3& next) noexcept {
     const int axis = movers_.axes()[i];
     if (!may_move && !paused_) {
       movers_.stop(axis);
-    } else if (may_move && !target_.empty() && std::abs(target_[i] - movers_[axis].target()) > dead_band_) {
+    } else if (may_move && !target_.empty() &&
+               std::abs(target_[i] - movers_[axis].target()) > dead_band_) {
       movers_.go_to(axis, target_[i]);
     }
     movers_.step(axis, period_, next);

@@ -14,11 +14,13 @@ class HeadController {
  public:
   /// Keeps a reference to the robot. `dead_band`: the head turns only for more than this [rad];
   /// `period`: of control [s].
-  HeadController(const RobotModel& robot, const std::vector<int>& axes, double dead_band, double period);
+  HeadController(const RobotModel& robot, const std::vector<int>& axes, double dead_band,
+                 double period);
 
   /// Turns to the gaze target of the advice where that is new and free of collisions, here and at
   /// `path_end`, where the arm comes to rest (both: all axes).
-  void aim_at(const AttentionAdvice& advice, const Pose& T_world_base, const Vector& here, const Vector& path_end);
+  void aim_at(const AttentionAdvice& advice, const Pose& T_world_base, const Vector& here,
+              const Vector& path_end);
   /// Begins at rest at `position`, all axes, with no gaze target.
   void reset(const Vector& position) noexcept;
   /// Writes the axes of the head of the next set-point.

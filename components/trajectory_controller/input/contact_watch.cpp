@@ -6,7 +6,11 @@
 namespace handsel::trajectory_controller {
 
 ContactWatch::ContactWatch(const ContactSettings& settings, std::vector<int> axes)
-    : settings_(settings), axes_(std::move(axes)), usual_(axes_.size(), 0.0), before_(usual_), pushes_(usual_) {}
+    : settings_(settings),
+      axes_(std::move(axes)),
+      usual_(axes_.size(), 0.0),
+      before_(usual_),
+      pushes_(usual_) {}
 
 void ContactWatch::forget() noexcept {
   std::fill(pushes_.begin(), pushes_.end(), 0.0);
@@ -15,7 +19,8 @@ void ContactWatch::forget() noexcept {
   contact_ = Contact::none;
 }
 
-Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool in_handover) noexcept {
+Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, bool resting,
+                             bool in_handover) noexcept {
   const double share = dt / (settings_.usual_time + dt);
   double most = 0.0;
   bool pushed = false;
@@ -37,12 +42,16 @@ Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, 
       axis_ = axes_[i];
     }
     if (beyond <= settings_.follow_torque)
-      usual_[i] = std::clamp(usual_[i] + (now - usual_[i]) * share, -settings_.max_usual, settings_.max_usual);
+      usual_[i] = std::clamp(usual_[i] + (now - usual_[i]) * share, -settings_.max_usual,
+                             settings_.max_usual);
   }
   seen_ = true;
   torque_ = most;
-  pressed_for_ = most > (in_handover ? settings_.handover_torque : settings_.torque) ? pressed_for_ + dt : 0.0;
-  contact_ = pressed_for_ > settings_.clamp_time ? Contact::clamped : pressed_for_ > settings_.time ? Contact::contact : Contact::none;
+  pressed_for_ =
+      most > (in_handover ? settings_.handover_torque : settings_.torque) ? pressed_for_ + dt : 0.0;
+  contact_ = pressed_for_ > settings_.clamp_time ? Contact::clamped
+             : pressed_for_ > settings_.time     ? Contact::contact
+                                                 : Contact::none;
   pushed_for_ = pushed ? pushed_for_ + dt : 0.0;
   const bool load = pushed_for_ > settings_.yield_time && most <= settings_.torque;
   for (std::size_t i = 0; i < axes_.size(); ++i) {

@@ -32,7 +32,8 @@ class ContactWatch {
   /// Takes one sample of the external torques of all axes [Nm], `dt` [s] after the one before, and
   /// returns whether there is contact. A robot that does not measure them (empty vector) has none.
   /// `resting`: the arm does not move by itself; `in_handover`: during a handover.
-  Contact update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool in_handover) noexcept;
+  Contact update(const Eigen::VectorXd& external_torque, double dt, bool resting,
+                 bool in_handover) noexcept;
   /// Returns the push on the i-th watched axis, for complying: beyond the usual before it began, 0
   /// within yield_torque [Nm].
   double push(std::size_t i) const noexcept { return pushes_[i]; }

@@ -11,7 +11,7 @@
 namespace handsel::trajectory_controller {
 
 struct Inputs {
-  RobotInput robot;                      ///< robot state
+  RobotInput robot;                     ///< robot state
   ObservedPeople people;                ///< people, views, partner of a handover
   MotionPermission permission;          ///< Go and safety state
   Sample<TrajectoryForecast> forecast;  ///< counts only for the trajectory that runs

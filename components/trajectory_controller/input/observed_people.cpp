@@ -10,7 +10,8 @@ void ObservedPeople::set(const HumanState& people, TimePoint sampled) {
   points_.clear();
   for (const Person& p : people.people) {
     if (p.joints.size() != kBodyJoints.size()) continue;
-    points_.push_back({p.id, p.joints[body::torso].position, p.joints[body::l_hand].position, p.joints[body::r_hand].position});
+    points_.push_back({p.id, p.joints[body::torso].position, p.joints[body::l_hand].position,
+                       p.joints[body::r_hand].position});
   }
   refresh();
 }

@@ -7,7 +7,8 @@ namespace handsel::trajectory_controller {
 namespace {
 
 bool holds(const Box& outer, const Box& inner) noexcept {
-  return (inner.low.array() >= outer.low.array()).all() && (inner.high.array() <= outer.high.array()).all();
+  return (inner.low.array() >= outer.low.array()).all() &&
+         (inner.high.array() <= outer.high.array()).all();
 }
 
 bool apart(const Box& a, const Box& b) noexcept {
@@ -19,7 +20,8 @@ bool apart(const Box& a, const Box& b) noexcept {
 void ObservedSpace::set(const std::vector<SourceView>& views) noexcept {
   count_ = 0;
   for (const SourceView& view : views)
-    if (view.live && count_ < kMaxViews) views_[count_++] = {{view.low, view.high}, std::max(0.0, view.age)};
+    if (view.live && count_ < kMaxViews)
+      views_[count_++] = {{view.low, view.high}, std::max(0.0, view.age)};
 }
 
 bool ObservedSpace::any(double since) const noexcept {
@@ -37,7 +39,8 @@ bool ObservedSpace::contains(const Box& box, double since) const noexcept {
   return one_contains(box, since) || contains(box, 0, since, pieces);
 }
 
-/// By the views from this one on: what lies outside of the first that meets the box is cut off, and must lie inside those after it.
+/// By the views from this one on: what lies outside of the first that meets the box is cut off, and
+/// must lie inside those after it.
 bool ObservedSpace::contains(Box box, std::size_t from, double since, int& pieces) const noexcept {
   if (--pieces < 0) return false;
   for (std::size_t i = from; i < count_; ++i) {

@@ -39,7 +39,9 @@ class ObservedSpace {
     double age{};  // [s]
   };
 
-  bool counts(const View& view, double since) const noexcept { return view.age + since <= max_age_; }
+  bool counts(const View& view, double since) const noexcept {
+    return view.age + since <= max_age_;
+  }
   bool contains(Box box, std::size_t from, double since, int& pieces) const noexcept;
 
   double max_age_;

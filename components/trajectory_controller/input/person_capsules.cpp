@@ -6,7 +6,8 @@
 
 namespace handsel::trajectory_controller {
 
-void prepare(const HumanState& people, const SeparationExemption& exception, double unknown_after, PersonCapsules& out) {
+void prepare(const HumanState& people, const SeparationExemption& exception, double unknown_after,
+             PersonCapsules& out) {
   out.capsules.clear();
   out.covered = people.covered;
   ++out.revision;
@@ -25,7 +26,8 @@ void prepare(const HumanState& people, const SeparationExemption& exception, dou
       c.reach = 0.5 * (body.b - body.a).norm() + body.radius;
       c.region = region_of(body.part);
       const bool first = before == nullptr || before->part != body.part;
-      if (c.region == BodyRegion::lower_leg && first) c.region = BodyRegion::thigh;  // of a leg, the thigh comes first
+      if (c.region == BodyRegion::lower_leg && first)
+        c.region = BodyRegion::thigh;  // of a leg, the thigh comes first
       before = &body;
       c.measured = known;
       if (known)
@@ -38,8 +40,9 @@ void prepare(const HumanState& people, const SeparationExemption& exception, dou
         }
       const bool left = body.part == BodyPart::forearm_left || body.part == BodyPart::hand_left;
       const bool right = body.part == BodyPart::forearm_right || body.part == BodyPart::hand_right;
-      c.excepted = in_handover && ((left && (exception.both_sides || exception.side == Side::left)) ||
-                                   (right && (exception.both_sides || exception.side == Side::right)));
+      c.excepted =
+          in_handover && ((left && (exception.both_sides || exception.side == Side::left)) ||
+                          (right && (exception.both_sides || exception.side == Side::right)));
       out.capsules.push_back(c);
     }
   }

@@ -36,6 +36,7 @@ struct PersonCapsules {
 
 /// `exception` as in common/model; a person not seen for longer than `unknown_after` [s] has no
 /// known velocity. May allocate.
-void prepare(const HumanState& people, const SeparationExemption& exception, double unknown_after, PersonCapsules& out);
+void prepare(const HumanState& people, const SeparationExemption& exception, double unknown_after,
+             PersonCapsules& out);
 
 }  // namespace handsel::trajectory_controller

@@ -1,5 +1,5 @@
-// The robot as its side reports it: newest state, whether it follows set-points, and when set-points
-// have to begin anew at its configuration. Pure.
+// The robot as its side reports it: newest state, whether it follows set-points, and when
+// set-points have to begin anew at its configuration. Pure.
 #pragma once
 
 #include "common/messages/robot.hpp"
@@ -34,10 +34,14 @@ class RobotInput {
   /// Returns the age of the newest state; -1 before any [s].
   double age(TimePoint now) const noexcept { return time_.age(now); }
   /// Returns how long after the newest state `sampled` is, in [0, 0.1]; 0 before any [s].
-  double since(TimePoint sampled) const noexcept { return std::clamp(time_.since(sampled), 0.0, 0.1); }
+  double since(TimePoint sampled) const noexcept {
+    return std::clamp(time_.since(sampled), 0.0, 0.1);
+  }
   /// Returns whether the robot side follows set-points: it may stand although its drives are
   /// enabled.
-  bool follows() const noexcept { return state_.mode == DriveMode::enabled && state_.refusal.empty(); }
+  bool follows() const noexcept {
+    return state_.mode == DriveMode::enabled && state_.refusal.empty();
+  }
 
  private:
   RobotState state_;

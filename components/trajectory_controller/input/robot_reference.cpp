@@ -5,7 +5,8 @@
 
 namespace handsel::trajectory_controller {
 
-RobotReference::RobotReference(std::vector<int> axes, int dof) : axes_(std::move(axes)), seen_(Vector::Zero(dof)) {}
+RobotReference::RobotReference(std::vector<int> axes, int dof)
+    : axes_(std::move(axes)), seen_(Vector::Zero(dof)) {}
 
 double RobotReference::farthest(const Vector& a, const Vector& b) const noexcept {
   double out = 0.0;
@@ -18,7 +19,8 @@ bool RobotReference::reported(const RobotState& state) const noexcept {
          farthest(state.reference.position, state.position) < kBent;
 }
 
-void RobotReference::update(const RobotState& state, const Vector& set_point, bool follows) noexcept {
+void RobotReference::update(const RobotState& state, const Vector& set_point,
+                            bool follows) noexcept {
   constexpr double kApart = 0.01;  // [rad] no lag of a robot side that follows is as large at rest
   stale_ = false;
   if (!reported(state)) {

@@ -18,7 +18,9 @@ class SampleTime {
   /// Returns whether any sample was received.
   bool received() const noexcept { return received_; }
   /// Returns how long before `now` the newest sample was taken, at least 0; -1 before any [s].
-  double age(TimePoint now) const noexcept { return received_ ? std::max(0.0, to_seconds(now - at_)) : -1.0; }
+  double age(TimePoint now) const noexcept {
+    return received_ ? std::max(0.0, to_seconds(now - at_)) : -1.0;
+  }
   /// Returns how long after the newest sample `at` is; negative when before, 0 before any [s].
   double since(TimePoint at) const noexcept { return received_ ? to_seconds(at - at_) : 0.0; }
 

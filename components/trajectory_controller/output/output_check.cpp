@@ -28,11 +28,12 @@ void stop(Stops stops, MovingParts parts, double period, SetPoints& set_points) 
 
 }  // namespace
 
-OutputCheck::OutputCheck(const OutputCheckSettings& settings, const RobotModel& robot, const AxisGroups& groups, StopProof& proof,
-                         StopSpace& stop_space)
+OutputCheck::OutputCheck(const OutputCheckSettings& settings, const RobotModel& robot,
+                         const AxisGroups& groups, StopProof& proof, StopSpace& stop_space)
     : settings_(settings), robot_(robot), groups_(groups), proof_(proof), stop_space_(stop_space) {}
 
-void OutputCheck::step(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept {
+void OutputCheck::step(const OutputCheckInputs& in, MovingParts parts,
+                       SetPoints& set_points) noexcept {
   check_limits(parts, set_points);
   // A stop that is sent instead was observed with the set-point before.
   if (check_stop(in, parts, set_points)) check_observed(in, parts, set_points);
@@ -52,11 +53,13 @@ void OutputCheck::check_limits(MovingParts parts, SetPoints& set_points) noexcep
   stop(stops, parts, settings_.period, set_points);
 }
 
-/// No set-point that moves the robot leaves without a checked stop behind it: otherwise the next one
-/// of the stop checked before is sent. Returns whether none is.
-bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept {
+/// No set-point that moves the robot leaves without a checked stop behind it: otherwise the next
+/// one of the stop checked before is sent. Returns whether none is.
+bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts,
+                             SetPoints& set_points) noexcept {
   if (shown_cycles_ > 0) --shown_cycles_;
-  const bool proven = proof_.check(set_points.next(), in.people, in.T_world_base, in.age, in.payload);
+  const bool proven =
+      proof_.check(set_points.next(), in.people, in.T_world_base, in.age, in.payload);
   if (proven || in.moves_nothing) return true;
   ++unproven_;
   const bool running = parts.arm.running();
@@ -66,21 +69,24 @@ bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts, Set
     parts.arm.interrupt_path(false);  // the planner finds another
   else if (running)
     parts.arm.interrupt_path(true);
-  const Stops stops{set_points.any_moves(groups_.arm()), set_points.any_moves(parts.hands.axes()), set_points.any_moves(groups_.head())};
+  const Stops stops{set_points.any_moves(groups_.arm()), set_points.any_moves(parts.hands.axes()),
+                    set_points.any_moves(groups_.head())};
   stop(stops, parts, settings_.period, set_points);
   return false;
 }
 
 /// No set-point leaves from which a stop would lead where no live source observes. Complying with a
 /// push is allowed: whoever pushes is there. The fingers alone are no reason: Hold stops them.
-void OutputCheck::check_observed(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept {
+void OutputCheck::check_observed(const OutputCheckInputs& in, MovingParts parts,
+                                 SetPoints& set_points) noexcept {
   constexpr int kEvery = 10;  // [cycles] at rest
   if (!proof_.moving() && in.cycle % kEvery != 0) return;
   const Vector& position = set_points.next().position;
   blind_ = !stop_space_.observes_stops(position, in.T_world_base, in.age);
   if (!blind_ || !in.follows || in.moves_nothing || settings_.dry_run) return;
   if (in.complying) return;
-  const Stops stops{set_points.any_moves(groups_.arm()), false, set_points.any_moves(groups_.head())};
+  const Stops stops{set_points.any_moves(groups_.arm()), false,
+                    set_points.any_moves(groups_.head())};
   if (stops.arm && parts.arm.running()) parts.arm.interrupt_path(true);
   stop(stops, parts, settings_.period, set_points);
 }

@@ -1,6 +1,6 @@
 // The last check of every set-point: inside the limits, with a checked stop behind it, where a live
-// source observes. What fails is replaced by the next set-point of the stop checked before. Pure, no
-// heap, noexcept.
+// source observes. What fails is replaced by the next set-point of the stop checked before. Pure,
+// no heap, noexcept.
 #pragma once
 
 #include <utility>
@@ -43,8 +43,8 @@ struct MovingParts {
 class OutputCheck {
  public:
   /// Keeps references to all but the settings.
-  OutputCheck(const OutputCheckSettings& settings, const RobotModel& robot, const AxisGroups& groups, StopProof& proof,
-              StopSpace& stop_space);
+  OutputCheck(const OutputCheckSettings& settings, const RobotModel& robot,
+              const AxisGroups& groups, StopProof& proof, StopSpace& stop_space);
 
   /// Checks the next set-point, and replaces what fails.
   void step(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept;
@@ -62,7 +62,8 @@ class OutputCheck {
  private:
   void check_limits(MovingParts parts, SetPoints& set_points) noexcept;
   bool check_stop(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept;
-  void check_observed(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept;
+  void check_observed(const OutputCheckInputs& in, MovingParts parts,
+                      SetPoints& set_points) noexcept;
 
   OutputCheckSettings settings_;
   const RobotModel& robot_;

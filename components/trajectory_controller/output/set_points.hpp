@@ -36,9 +36,13 @@ class SetPoints {
   const LimitRatios& ratios() const noexcept { return ratios_; }
 
   /// Returns whether no axis moved in the set-point sent last.
-  bool at_rest() const noexcept { return sent_.velocity.isZero(0.0) && sent_.acceleration.isZero(0.0); }
+  bool at_rest() const noexcept {
+    return sent_.velocity.isZero(0.0) && sent_.acceleration.isZero(0.0);
+  }
   /// Returns whether an axis moves in the next set-point.
-  bool moves(int axis) const noexcept { return next_.velocity[axis] != 0.0 || next_.acceleration[axis] != 0.0; }
+  bool moves(int axis) const noexcept {
+    return next_.velocity[axis] != 0.0 || next_.acceleration[axis] != 0.0;
+  }
   /// Returns whether any of the axes moves in the next set-point.
   bool any_moves(const std::vector<int>& axes) const noexcept {
     return std::any_of(axes.begin(), axes.end(), [&](int axis) { return moves(axis); });

@@ -15,9 +15,11 @@ struct LimitRatios {
 };
 
 /// Whether axis `i` may go from `previous` to `next` within `dt` [s].
-bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::Index i, const KinematicLimits& guard, double dt) noexcept;
+bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::Index i,
+                const KinematicLimits& guard, double dt) noexcept;
 
 /// Raises the ratios by those of the step from `previous` to `next`, which takes `dt` [s].
-void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt, LimitRatios& ratios) noexcept;
+void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard,
+             double dt, LimitRatios& ratios) noexcept;
 
 }  // namespace handsel::trajectory_controller

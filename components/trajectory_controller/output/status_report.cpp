@@ -6,7 +6,9 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-MotionState reported_motion(const StatusSources& from) { return from.commands.refused() ? MotionState::refused : from.arm.motion(); }
+MotionState reported_motion(const StatusSources& from) {
+  return from.commands.refused() ? MotionState::refused : from.arm.motion();
+}
 
 /// Time along the trajectory that is reported, divided by its duration.
 double progress(const StatusSources& from) {
@@ -19,7 +21,9 @@ double progress(const StatusSources& from) {
   return std::clamp((path.time() - last.begin) / (path.duration() - last.begin), 0.0, 1.0);
 }
 
-const std::string& axis_name(const StatusSources& from, int axis) { return from.robot.axes()[static_cast<std::size_t>(axis)].name; }
+const std::string& axis_name(const StatusSources& from, int axis) {
+  return from.robot.axes()[static_cast<std::size_t>(axis)].name;
+}
 
 std::string why_blind(const StatusSources& from) {
   const int link = from.stop_space.link();
@@ -37,8 +41,10 @@ std::string held_reason(const StatusSources& from) {
   std::string reason = std::string(name(supervisor.mode())) + ": " + name(latched);
   if (latched == Cause::cycle_late && !robot.refusal.empty()) reason += ": " + robot.refusal;
   if (latched == Cause::tracking_error && tracking.axis() >= 0)
-    reason += ": " + axis_name(from, tracking.axis()) + " was " + std::to_string(tracking.distance()) + " from its set-point";
-  if (latched == Cause::contact || latched == Cause::clamped) reason += ": felt by " + axis_name(from, from.contact.axis());
+    reason += ": " + axis_name(from, tracking.axis()) + " was " +
+              std::to_string(tracking.distance()) + " from its set-point";
+  if (latched == Cause::contact || latched == Cause::clamped)
+    reason += ": felt by " + axis_name(from, from.contact.axis());
   if (latched == Cause::forecast_collision && forecast.collides) reason += ": " + forecast.reason;
   if (latched == Cause::blind && supervisor.has(Cause::blind)) reason += ": " + why_blind(from);
   const std::string no_go = from.inputs.permission.reason();

@@ -20,12 +20,14 @@ FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot)
       for (const Lever& lever : finger) {
         const double speed = comfort.velocity[lever.axis];
         comfort_speeds_[static_cast<std::size_t>(lever.axis)] = speed;
-        stop_time_ = std::max(stop_time_, measure_stop(speed, 0.0, stop.acceleration[lever.axis], stop.jerk[lever.axis]).duration);
+        stop_time_ = std::max(stop_time_, measure_stop(speed, 0.0, stop.acceleration[lever.axis],
+                                                       stop.jerk[lever.axis])
+                                              .duration);
       }
 }
 
-double FingerLimit::factor(const Vector& position, const Pose& T_world_base, double age, double payload,
-                           const PersonCapsules& people) noexcept {
+double FingerLimit::factor(const Vector& position, const Pose& T_world_base, double age,
+                           double payload, const PersonCapsules& people) noexcept {
   const StopProofSettings& s = proof_.settings();
   double limit = 1.0;
   if (!s.enabled || people.capsules.empty() || stop_time_ == 0.0) return limit;
@@ -35,16 +37,21 @@ double FingerLimit::factor(const Vector& position, const Pose& T_world_base, dou
     if (hand.fingers.empty()) continue;
     const double speed = hand.inner_bound(comfort_speeds_);
     const FrameMotion& frame = motions_[static_cast<std::size_t>(hand.frame)];
-    const Vector3 a = T_world_base * (frame.p + frame.R * hand.a), b = T_world_base * (frame.p + frame.R * hand.b);
+    const Vector3 a = T_world_base * (frame.p + frame.R * hand.a),
+                  b = T_world_base * (frame.p + frame.R * hand.b);
     for (const PersonCapsule& part : people.capsules) {
-      const double fits = s.finger_ratio * proof_.contact_speeds().max_speed_at(part.region, payload) /
+      const double fits = s.finger_ratio *
+                          proof_.contact_speeds().max_speed_at(part.region, payload) /
                           (proof_.contact_speeds().finger_ratio_at(part.region, payload) * speed);
       if (fits >= limit) continue;
       const RegionMotion& bounds = s.people[static_cast<std::size_t>(part.region)];
-      const double reached = reach_after(reaction + part.age + stop_time_, start_speed(part, s.speed_error, bounds), bounds) +
-                             speed * (reaction + 0.5 * stop_time_) + s.tracker_error + s.robot_error + s.limit_margin;
+      const double reached = reach_after(reaction + part.age + stop_time_,
+                                         start_speed(part, s.speed_error, bounds), bounds) +
+                             speed * (reaction + 0.5 * stop_time_) + s.tracker_error +
+                             s.robot_error + s.limit_margin;
       Vector3 on_robot, on_person;
-      const double distance = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person)) - hand.radius - part.radius;
+      const double distance = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person)) -
+                              hand.radius - part.radius;
       if (distance <= reached) limit = fits;
     }
   }

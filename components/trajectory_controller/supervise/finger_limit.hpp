@@ -19,7 +19,8 @@ class FingerLimit {
   /// of a finger uses at most StopProofSettings::finger_ratio of the contact speed of each part of
   /// a person that can reach the hand before the fingers have stopped. `position`: all axes; `age`:
   /// of the human data [s]; `payload`: mass held [kg].
-  double factor(const Vector& position, const Pose& T_world_base, double age, double payload, const PersonCapsules& people) noexcept;
+  double factor(const Vector& position, const Pose& T_world_base, double age, double payload,
+                const PersonCapsules& people) noexcept;
 
  private:
   const StopProof& proof_;

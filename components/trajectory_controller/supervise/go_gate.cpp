@@ -6,7 +6,8 @@ namespace handsel::trajectory_controller {
 namespace {
 
 bool is_stop(DriveMode mode) {
-  return mode == DriveMode::protective_stop || mode == DriveMode::user_stop || mode == DriveMode::emergency_stop;
+  return mode == DriveMode::protective_stop || mode == DriveMode::user_stop ||
+         mode == DriveMode::emergency_stop;
 }
 
 }  // namespace
@@ -18,7 +19,8 @@ const char* text_of(GoRefusal refusal) {
     case GoRefusal::no_state:
       return "the last Go was issued from no safety state";
     case GoRefusal::older_state:
-      return "the last Go was issued from an older safety state than is known here; a person has to resume";
+      return "the last Go was issued from an older safety state than is known here; a person has "
+             "to resume";
     case GoRefusal::older_epoch:
       return "the last Go is older than the one in force";
   }
@@ -30,7 +32,8 @@ GoRefusal GoGate::receive(const Go& go) noexcept {
                   : go.state_revision < revision_  ? GoRefusal::older_state
                   : received_ && go.epoch < epoch_ ? GoRefusal::older_epoch
                                                    : GoRefusal::none;
-  if (last_refusal_ == GoRefusal::no_state || last_refusal_ == GoRefusal::older_state) allowed_ = false;
+  if (last_refusal_ == GoRefusal::no_state || last_refusal_ == GoRefusal::older_state)
+    allowed_ = false;
   if (last_refusal_ != GoRefusal::none) return last_refusal_;
   if (!received_) {
     first_epoch_ = go.epoch;
@@ -44,9 +47,13 @@ GoRefusal GoGate::receive(const Go& go) noexcept {
   return last_refusal_;
 }
 
-void GoGate::receive(const SafetyState& state) noexcept { awaits_person_ = state.paused || state.fault || state.awaits_person; }
+void GoGate::receive(const SafetyState& state) noexcept {
+  awaits_person_ = state.paused || state.fault || state.awaits_person;
+}
 
-bool GoGate::awaits_person() const noexcept { return !allowed() && (waits_ || awaits_person_ || last_refusal_ == GoRefusal::older_state); }
+bool GoGate::awaits_person() const noexcept {
+  return !allowed() && (waits_ || awaits_person_ || last_refusal_ == GoRefusal::older_state);
+}
 
 void GoGate::receive(DriveMode mode) noexcept {
   const DriveMode before = std::exchange(drive_, mode);

@@ -15,18 +15,23 @@ constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not c
 
 /// No direction gives more.
 double fastest(const PersonCapsule& c, const GuardSettings& s) noexcept {
-  return c.joints == 0 ? s.speed_unknown : std::clamp(c.fastest + s.speed_uncertainty, s.speed_floor, s.speed_max);
+  return c.joints == 0 ? s.speed_unknown
+                       : std::clamp(c.fastest + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
-double directed_speed(const PersonCapsule& c, const Vector3& toward_robot, const GuardSettings& s) noexcept {
+double directed_speed(const PersonCapsule& c, const Vector3& toward_robot,
+                      const GuardSettings& s) noexcept {
   if (c.joints == 0) return s.speed_unknown;
   double v = -s.speed_max;
-  for (int j = 0; j < c.joints; ++j) v = std::max(v, c.velocities[static_cast<std::size_t>(j)].dot(toward_robot));
+  for (int j = 0; j < c.joints; ++j)
+    v = std::max(v, c.velocities[static_cast<std::size_t>(j)].dot(toward_robot));
   return std::clamp(v + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
 /// Smallest step of a StopTable whose factor is at least `factor`.
-int step_above(double factor) noexcept { return static_cast<int>(std::ceil(factor * kStopGrid - 1e-9)); }
+int step_above(double factor) noexcept {
+  return static_cast<int>(std::ceil(factor * kStopGrid - 1e-9));
+}
 
 /// One evaluation of guard(): the limits so far, while links are compared with people and walls.
 class Evaluation {
@@ -82,7 +87,8 @@ class Evaluation {
   }
 
   /// Largest factor whose need fits into the distance; exact on the grid, linear between.
-  double allowed(double distance, double v_h, double closing, double extra, double best) const noexcept {
+  double allowed(double distance, double v_h, double closing, double extra,
+                 double best) const noexcept {
     const auto need = [&](int g) { return needed(v_h, closing, g, reaction_, extra); };
     int low = 0, high = step_above(best);
     if (need(high) <= distance) return best;
@@ -121,7 +127,8 @@ class Evaluation {
     if (apart2 > rough * rough) return;
     const MovingCapsule& r = link.capsule;
     Vector3 on_robot, on_person;
-    const double axes_apart = std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
+    const double axes_apart =
+        std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
     Approach at;
     at.distance = axes_apart - r.radius - part.radius;
     const bool nearest = !part.excepted && at.distance < verdict_.distance;
@@ -163,7 +170,8 @@ class Evaluation {
     verdict_.handover_clear = false;
     double& best = at.closing > 0 ? forward_ : backward_;
     const double closing = std::abs(at.closing);
-    if (closing > settings_.handover_speed) best = std::min(best, settings_.handover_speed / closing);
+    if (closing > settings_.handover_speed)
+      best = std::min(best, settings_.handover_speed / closing);
   }
 
   /// Limits the speed so that a stop fits into the distance.
@@ -175,8 +183,10 @@ class Evaluation {
     // between them may turn.
     const double sideways = std::max(kStill, kSideways * link.quickest);
     const double away = kAway * link.quickest;
-    if (closing > -away) forward_ = allowed(left, v_h, std::max(closing, sideways), margin_, forward_);
-    if (closing < away) backward_ = allowed(left, v_h, std::max(-closing, sideways), margin_, backward_);
+    if (closing > -away)
+      forward_ = allowed(left, v_h, std::max(closing, sideways), margin_, forward_);
+    if (closing < away)
+      backward_ = allowed(left, v_h, std::max(-closing, sideways), margin_, backward_);
     high_ = std::max(present_, step_above(std::max(forward_, backward_)));
     if (!(closing * query_.factor > 0.05)) return;
     const double need = needed(v_h, std::abs(closing), present_, 0.0, settings_.uncertainty_human);
@@ -210,12 +220,15 @@ class Evaluation {
 
 }  // namespace
 
-double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept {
+double reference_speed(double separation, double v_h, double reaction, double deceleration,
+                       double margin) noexcept {
   const double at = deceleration * reaction;
   const double root = v_h * v_h + at * at + 2.0 * deceleration * (separation - margin);
   return root <= 0.0 ? 0.0 : std::max(0.0, std::sqrt(root) - at - v_h);
 }
 
-GuardVerdict guard(const GuardSettings& settings, const GuardQuery& query) noexcept { return Evaluation(settings, query).run(); }
+GuardVerdict guard(const GuardSettings& settings, const GuardQuery& query) noexcept {
+  return Evaluation(settings, query).run();
+}
 
 }  // namespace handsel::trajectory_controller

@@ -70,6 +70,7 @@ GuardVerdict guard(const GuardSettings& settings, const GuardQuery& query) noexc
 
 /// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not
 /// the rule used [m/s].
-double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept;
+double reference_speed(double separation, double v_h, double reaction, double deceleration,
+                       double margin) noexcept;
 
 }  // namespace handsel::trajectory_controller

@@ -2,7 +2,8 @@
 
 namespace handsel::trajectory_controller {
 
-void link_twists(const RobotModel& robot, const Vector& velocity, const std::vector<Pose>& T_root_link, std::vector<LinkTwist>& out) {
+void link_twists(const RobotModel& robot, const Vector& velocity,
+                 const std::vector<Pose>& T_root_link, std::vector<LinkTwist>& out) {
   out.resize(robot.links().size());
   out[0] = {};
   for (const Joint& joint : robot.joints()) {
@@ -11,7 +12,9 @@ void link_twists(const RobotModel& robot, const Vector& velocity, const std::vec
     const Pose& T = T_root_link[static_cast<std::size_t>(joint.child)];
     child.angular = parent.angular;
     child.linear =
-        parent.linear + parent.angular.cross(T.translation() - T_root_link[static_cast<std::size_t>(joint.parent)].translation());
+        parent.linear +
+        parent.angular.cross(T.translation() -
+                             T_root_link[static_cast<std::size_t>(joint.parent)].translation());
     if (joint.kind == JointKind::fixed || joint.dof < 0) continue;
     const Vector3 motion = joint.mimic_factor * velocity[joint.dof] * (T.linear() * joint.axis);
     (joint.kind == JointKind::prismatic ? child.linear : child.angular) += motion;

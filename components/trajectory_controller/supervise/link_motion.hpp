@@ -15,6 +15,7 @@ struct LinkTwist {
 
 /// Of all links for the velocities of all axes, at poses from RobotModel::forward. `out` is resized
 /// once, then reused.
-void link_twists(const RobotModel& robot, const Vector& velocity, const std::vector<Pose>& T_root_link, std::vector<LinkTwist>& out);
+void link_twists(const RobotModel& robot, const Vector& velocity,
+                 const std::vector<Pose>& T_root_link, std::vector<LinkTwist>& out);
 
 }  // namespace handsel::trajectory_controller

@@ -16,7 +16,8 @@ constexpr int kEveryRetreat = 10;   // [cycles] in a retreat
 
 }  // namespace
 
-Lookahead::Lookahead(const LookaheadSettings& settings, const RobotModel& robot, const StopProof& proof, StopSpace& stop_space,
+Lookahead::Lookahead(const LookaheadSettings& settings, const RobotModel& robot,
+                     const StopProof& proof, StopSpace& stop_space,
                      const std::vector<int>& finger_axes)
     : settings_(settings),
       robot_(robot),
@@ -79,7 +80,9 @@ void Lookahead::forbid_all() noexcept {
 
 void Lookahead::set_finger_speeds(const MotionState3& set_point) noexcept {
   const double delay = proof_.settings().robot_side_delay;
-  for (int axis : finger_axes_) finger_speeds_[axis] = std::abs(set_point.velocity[axis]) + delay * std::abs(set_point.acceleration[axis]);
+  for (int axis : finger_axes_)
+    finger_speeds_[axis] =
+        std::abs(set_point.velocity[axis]) + delay * std::abs(set_point.acceleration[axis]);
 }
 
 void Lookahead::merge() noexcept {
@@ -118,21 +121,32 @@ void Lookahead::evaluate(double ahead, const LookaheadInputs& in, GuardVerdict& 
   const PathMotion motion{&motion_.velocity, &motion_.acceleration, &links_, &twists_};
   const StopTable stop = stop_table(motion, robot_.stop_limits());
   const double factor = in.arm.speed_factor();
-  verdict = guard(settings_.guard, {capsules_, motion, stop, in.T_world_base, in.people, settings_.walls, in.age, factor});
-  const ReachQuery query{motion_.position, motion_.velocity, in.set_point.acceleration, finger_speeds_, stop, in.T_world_base, in.ease,
-                         in.age,           in.payload};
+  verdict = guard(settings_.guard, {capsules_, motion, stop, in.T_world_base, in.people,
+                                    settings_.walls, in.age, factor});
+  const ReachQuery query{motion_.position,
+                         motion_.velocity,
+                         in.set_point.acceleration,
+                         finger_speeds_,
+                         stop,
+                         in.T_world_base,
+                         in.ease,
+                         in.age,
+                         in.payload};
   const double forward = reach_limit_.factor(query, in.people, false);
   verdict.separation = verdict.separation || forward < verdict.forward;
   verdict.forward = std::min(verdict.forward, forward);
   // Where the path is now is in the stop of the set-point itself.
   verdict.view = 1.0;
-  if (in.arm.running() && ahead > 0.0) verdict.view = stop_space_.factor(motion_.position, motion_.velocity, in.T_world_base, in.age);
-  if (in.may_run_back) verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, in.people, true));
+  if (in.arm.running() && ahead > 0.0)
+    verdict.view = stop_space_.factor(motion_.position, motion_.velocity, in.T_world_base, in.age);
+  if (in.may_run_back)
+    verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, in.people, true));
 }
 
 bool Lookahead::is_too_fast(double factor) const noexcept {
   constexpr double kLag = 1.1, kMin = 0.02;
-  const double allowed = factor < 0.0 ? -std::max(now_.backward, near_.backward) : std::min(now_.forward, near_.forward);
+  const double allowed = factor < 0.0 ? -std::max(now_.backward, near_.backward)
+                                      : std::min(now_.forward, near_.forward);
   return std::abs(factor) > kLag * allowed + kMin;
 }
 

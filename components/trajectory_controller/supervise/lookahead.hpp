@@ -1,6 +1,6 @@
 // What the guard, the reach of people and the observed space allow: where the arm is on its path, a
-// little later and about the time of a stop later. One of the three is evaluated in each cycle. Pure,
-// no heap after construction, noexcept.
+// little later and about the time of a stop later. One of the three is evaluated in each cycle.
+// Pure, no heap after construction, noexcept.
 #pragma once
 
 #include <vector>
@@ -40,8 +40,8 @@ class Lookahead {
  public:
   /// Keeps references to all but the settings. `finger_delay`: from a set-point to the stop of the
   /// fingers [s].
-  Lookahead(const LookaheadSettings& settings, const RobotModel& robot, const StopProof& proof, StopSpace& stop_space,
-            const std::vector<int>& finger_axes);
+  Lookahead(const LookaheadSettings& settings, const RobotModel& robot, const StopProof& proof,
+            StopSpace& stop_space, const std::vector<int>& finger_axes);
 
   /// Notes that people have just been seen: the next evaluation is of where the arm is.
   void set_new_people() noexcept { new_people_ = true; }

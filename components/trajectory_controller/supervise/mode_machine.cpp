@@ -20,12 +20,14 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(stop, Cause::contact, in.contact_stop);
   set(stop, Cause::clamped, in.clamped);
 
-  const double forecast_age = in.forecast_age < 0 ? in.running_for : std::min(in.forecast_age, in.running_for);
+  const double forecast_age =
+      in.forecast_age < 0 ? in.running_for : std::min(in.forecast_age, in.running_for);
   set(hold, Cause::forecast_silent, in.running && forecast_age > timeouts_.forecast);
   set(hold, Cause::forecast_collision, in.forecast_collision_hold);
   set(hold, Cause::cycle_late, in.cycle_late);
   set(hold, Cause::blind, in.blind);
-  set(hold, in.awaits_person ? Cause::awaits_person : Cause::no_go, in.go_age >= 0 && !in.go_allowed);
+  set(hold, in.awaits_person ? Cause::awaits_person : Cause::no_go,
+      in.go_age >= 0 && !in.go_allowed);
   const bool supervisor_silent = in.go_age > timeouts_.supervisor;
   set(supervisor_silent && !in.running ? hold : slow, Cause::supervisor_silent, supervisor_silent);
 
@@ -34,7 +36,8 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(waiting, Cause::human_state_silent, in.human_age < 0);
   set(waiting, Cause::no_go, in.go_age < 0);
 
-  set(slow, Cause::attention_silent, in.attention_age < 0 || in.attention_age > timeouts_.attention);
+  set(slow, Cause::attention_silent,
+      in.attention_age < 0 || in.attention_age > timeouts_.attention);
   set(slow, Cause::forecast_collision, in.forecast_collision_slow);
   set(slow, Cause::separation, in.separation_slow);
   set(slow, Cause::wall, in.wall_slow);
@@ -49,20 +52,24 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
     latched_ = std::max(latched_, fault ? Mode::fault : stop ? Mode::stop : Mode::hold);
     if (fault || latched_ != Mode::fault) epoch_ = in.go_epoch;
   }
-  if (latched_ == Mode::fault && !fault && in.go_acknowledge && in.go_epoch > epoch_) latched_ = Mode::stop;
+  if (latched_ == Mode::fault && !fault && in.go_acknowledge && in.go_epoch > epoch_)
+    latched_ = Mode::stop;
   if (latched_ == Mode::stop && !stop && in.at_rest)
     latched_ = Mode::hold;
-  else if (latched_ == Mode::hold && !hold && !waiting && in.go_allowed && in.go_epoch > std::max(epoch_, in.first_go_epoch))
+  else if (latched_ == Mode::hold && !hold && !waiting && in.go_allowed &&
+           in.go_epoch > std::max(epoch_, in.first_go_epoch))
     latched_ = Mode::normal;
 
   ModeVerdict verdict;
-  // While it holds only what forbids motion is told; when nothing is left but a newer Go, that is no_go.
+  // While it holds only what forbids motion is told; when nothing is left but a newer Go, that is
+  // no_go.
   verdict.causes = fault | stop | hold | waiting;
   if (latched_ == Mode::normal)
     verdict.causes |= slow;
   else if (latched_ == Mode::hold && verdict.causes == 0)
     verdict.causes = bit(Cause::no_go);
-  // What only makes slow: everything of `slow` except a silent supervisor, which lets the running trajectory finish at full speed.
+  // What only makes slow: everything of `slow` except a silent supervisor, which lets the running
+  // trajectory finish at full speed.
   const bool slower = (slow & ~bit(Cause::supervisor_silent)) != 0;
   verdict.mode = latched_ != Mode::normal ? latched_ : slower ? Mode::slow : Mode::normal;
   return verdict;

@@ -33,7 +33,8 @@ struct ModeInputs {
   bool forecast_collision_hold{}, forecast_collision_slow{};
   /// Limits of the guard (Slow), too near for too long (Stop), people not covered by observation
   /// (Slow), a wall (Slow), contact while moving (Stop), and a contact that lasts (Stop).
-  bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{}, clamped{};
+  bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{},
+      clamped{};
   /// Causes of Slow: attention, human-aware cost ahead, speed override, a set-point without a
   /// checked stop.
   bool attention_slow{}, cost_slow{}, override_slow{}, stop_unproven{};

@@ -7,7 +7,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-void add_stop(const PathMotion& motion, const KinematicLimits& limits, int g, StopTable& table) noexcept {
+void add_stop(const PathMotion& motion, const KinematicLimits& limits, int g,
+              StopTable& table) noexcept {
   const double factor = static_cast<double>(g) / kStopGrid;
   const auto k = static_cast<std::size_t>(g);
   for (Eigen::Index i = 0; i < motion.velocity->size(); ++i) {
@@ -27,8 +28,9 @@ void add_stop(const PathMotion& motion, const KinematicLimits& limits, int g, St
 
 double stop_time(double v, double acceleration_limit, double jerk_limit) noexcept {
   const double x = std::abs(v);
-  return x * jerk_limit < acceleration_limit * acceleration_limit ? 2.0 * std::sqrt(x / jerk_limit)
-                                                                  : x / acceleration_limit + acceleration_limit / jerk_limit;
+  return x * jerk_limit < acceleration_limit * acceleration_limit
+             ? 2.0 * std::sqrt(x / jerk_limit)
+             : x / acceleration_limit + acceleration_limit / jerk_limit;
 }
 
 StopTable stop_table(const PathMotion& motion, const KinematicLimits& stop_limits) noexcept {
@@ -37,15 +39,16 @@ StopTable stop_table(const PathMotion& motion, const KinematicLimits& stop_limit
   return table;
 }
 
-MovingCapsule placed(const LinkCapsule& link, const PathMotion& motion, const Pose& T_world_base) noexcept {
+MovingCapsule placed(const LinkCapsule& link, const PathMotion& motion,
+                     const Pose& T_world_base) noexcept {
   const auto k = static_cast<std::size_t>(link.link);
   const Pose& T = (*motion.links)[k];
   const LinkTwist& twist = (*motion.twists)[k];
   const Eigen::Matrix3d& R = T_world_base.linear();
   const Vector3 ra = T.linear() * link.a, rb = T.linear() * link.b;
   const Vector3 origin = T_world_base * T.translation();
-  return {origin + R * ra, origin + R * rb, R * (twist.linear + twist.angular.cross(ra)), R * (twist.linear + twist.angular.cross(rb)),
-          link.radius};
+  return {origin + R * ra, origin + R * rb, R * (twist.linear + twist.angular.cross(ra)),
+          R * (twist.linear + twist.angular.cross(rb)), link.radius};
 }
 
 }  // namespace handsel::trajectory_controller

@@ -28,8 +28,9 @@ inline constexpr int kStopGrid = 16;
 
 /// Stop of the axes that move along the path, for the speed factors k / kStopGrid.
 struct StopTable {
-  std::array<double, kStopGrid + 1> time{};      ///< until all axes rest [s]
-  std::array<double, kStopGrid + 1> distance{};  ///< travel divided by speed, largest of all axes [s]
+  std::array<double, kStopGrid + 1> time{};  ///< until all axes rest [s]
+  std::array<double, kStopGrid + 1>
+      distance{};  ///< travel divided by speed, largest of all axes [s]
 };
 /// Returns times and travels of the stops from the motion at each factor, every axis jerk-limited
 /// by itself; 0 at factor 0.
@@ -42,6 +43,7 @@ struct MovingCapsule {
   double radius;   ///< [m]
 };
 /// Returns the capsule of a link at the pose and speed of `motion`.
-MovingCapsule placed(const LinkCapsule& link, const PathMotion& motion, const Pose& T_world_base) noexcept;
+MovingCapsule placed(const LinkCapsule& link, const PathMotion& motion,
+                     const Pose& T_world_base) noexcept;
 
 }  // namespace handsel::trajectory_controller

@@ -20,8 +20,10 @@ double time_at(const StopTable& stop, double factor) noexcept {
 constexpr double kMinContactRatio = 0.2;
 
 double gained(const FrameMotion& change, const ChainCapsule& link) noexcept {
-  const Vector3 a = change.linear + change.angular.cross(change.R * link.a), b = change.linear + change.angular.cross(change.R * link.b);
-  return std::sqrt(std::max(a.squaredNorm(), b.squaredNorm())) + change.angular.norm() * link.radius;
+  const Vector3 a = change.linear + change.angular.cross(change.R * link.a),
+                b = change.linear + change.angular.cross(change.R * link.b);
+  return std::sqrt(std::max(a.squaredNorm(), b.squaredNorm())) +
+         change.angular.norm() * link.radius;
 }
 
 }  // namespace
@@ -34,18 +36,23 @@ ReachLimit::ReachLimit(const StopProof& proof)
       gain_(Vector::Zero(static_cast<Eigen::Index>(proof.chain().sliding().size()))),
       finger_speeds_(proof.chain().sliding().size()) {}
 
-double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people, bool backward) noexcept {
+double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
+                          bool backward) noexcept {
   const StopProofSettings& s = proof_.settings();
   if (!s.enabled || people.capsules.empty()) return 1.0;
   const StopTable& stop = query.stop;
   std::array<double, kBodyRegions> contact{};
   for (std::size_t r = 0; r < kBodyRegions; ++r)
-    contact[r] = s.limit_ratio * proof_.contact_speeds().max_speed_at(static_cast<BodyRegion>(r), query.payload);
+    contact[r] = s.limit_ratio *
+                 proof_.contact_speeds().max_speed_at(static_cast<BodyRegion>(r), query.payload);
   const double min_contact = *std::min_element(contact.begin(), contact.end());
-  const double reaction = s.latency + s.robot_side_delay + query.ease, margin = s.tracker_error + s.robot_error + s.limit_margin;
+  const double reaction = s.latency + s.robot_side_delay + query.ease,
+               margin = s.tracker_error + s.robot_error + s.limit_margin;
   PartReaches reach;  // by the time the whole motion has stopped
-  reach_of_parts(people, reaction + query.age + stop.time[kStopGrid], s.speed_error, s.people, reach);
-  for (std::size_t i = 0; i < finger_speeds_.size(); ++i) finger_speeds_[i] = query.finger_speeds[static_cast<Eigen::Index>(i)];
+  reach_of_parts(people, reaction + query.age + stop.time[kStopGrid], s.speed_error, s.people,
+                 reach);
+  for (std::size_t i = 0; i < finger_speeds_.size(); ++i)
+    finger_speeds_[i] = query.finger_speeds[static_cast<Eigen::Index>(i)];
   proof_.chain().move(query.position, query.velocity, all_frames_, motions_);
   const bool faster = query.ease > 0.0;
   if (faster) {
@@ -59,39 +66,52 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
     const Vector3 va = query.T_world_base.linear() * (frame.linear + frame.angular.cross(ra));
     const Vector3 vb = query.T_world_base.linear() * (frame.linear + frame.angular.cross(rb));
     const double extra = frame.angular.norm() * link.radius;
-    const double inner = link.fingers.empty() ? 0.0 : link.inner_bound(finger_speeds_);  // does not depend on the factor
+    const double inner = link.fingers.empty()
+                             ? 0.0
+                             : link.inner_bound(finger_speeds_);  // does not depend on the factor
     const double speed = std::sqrt(std::max(va.squaredNorm(), vb.squaredNorm())) + extra;
     const double gain = faster ? gained(changes_[static_cast<std::size_t>(link.frame)], link) : 0.0;
     if (inner == 0.0 && speed * limit + gain <= min_contact) continue;
     const Vector3 a = query.T_world_base * (frame.p + ra), b = query.T_world_base * (frame.p + rb);
     const Vector3 centre = 0.5 * (a + b);
     const double size = 0.5 * (b - a).norm() + link.radius;
-    const double travel = (limit * speed + inner) * (reaction + 0.5 * stop.time[kStopGrid]) + margin + size;
+    const double travel =
+        (limit * speed + inner) * (reaction + 0.5 * stop.time[kStopGrid]) + margin + size;
     for (std::size_t p = 0; p < reach.count; ++p) {
       const PersonCapsule& part = people.capsules[p];
       const double rough = travel + part.reach + reach.distance[p];
       if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       const auto region = static_cast<std::size_t>(part.region);
       // What the fingers leave of a contact's energy is the arm's.
-      const double of_fingers = inner == 0.0 ? 0.0 : inner * proof_.contact_speeds().finger_ratio_at(part.region, query.payload);
-      const double of_arm = std::sqrt(std::max(0.0, contact[region] * contact[region] - of_fingers * of_fingers));
+      const double of_fingers = inner == 0.0 ? 0.0
+                                             : inner * proof_.contact_speeds().finger_ratio_at(
+                                                           part.region, query.payload);
+      const double of_arm =
+          std::sqrt(std::max(0.0, contact[region] * contact[region] - of_fingers * of_fingers));
       if (speed * limit + gain <= of_arm) continue;
       const RegionMotion& bounds = s.people[region];
-      // What the arm's present acceleration adds before a stop begins counts, but never forbids all motion.
+      // What the arm's present acceleration adds before a stop begins counts, but never forbids all
+      // motion.
       const double contact_now = std::max(of_arm - gain, kMinContactRatio * contact[region]);
-      const double from = start_speed(part, s.speed_error, bounds), late = reaction + query.age + part.age;
+      const double from = start_speed(part, s.speed_error, bounds),
+                   late = reaction + query.age + part.age;
       const auto needed = [&](double factor, double closing) {
         const double slowing = time_at(stop, factor - contact_now / speed);
-        return reach_after(late + slowing, from, bounds) + (factor * closing + inner) * (reaction + 0.5 * slowing) + margin;
+        return reach_after(late + slowing, from, bounds) +
+               (factor * closing + inner) * (reaction + 0.5 * slowing) + margin;
       };
       Vector3 on_robot, on_person;
-      const double axes_apart = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));
+      const double axes_apart =
+          std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));
       const double distance = axes_apart - link.radius - part.radius;
-      const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart) : Vector3(Vector3::UnitZ());
-      const double ahead = std::max(va.dot(toward), vb.dot(toward)), behind = std::max(-va.dot(toward), -vb.dot(toward));
+      const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart)
+                                               : Vector3(Vector3::UnitZ());
+      const double ahead = std::max(va.dot(toward), vb.dot(toward)),
+                   behind = std::max(-va.dot(toward), -vb.dot(toward));
       const double closing = std::max(0.0, backward ? behind : ahead) + extra;
       if (needed(limit, closing) <= distance) continue;
-      // The need grows with the factor: bisection between contact speed, which is always allowed, and the limit so far.
+      // The need grows with the factor: bisection between contact speed, which is always allowed,
+      // and the limit so far.
       double low = std::min(limit, contact_now / speed), high = limit;
       for (int k = 0; k < 8; ++k) {
         const double middle = 0.5 * (low + high);

@@ -4,7 +4,8 @@
 
 namespace handsel::trajectory_controller {
 
-double cost_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory) noexcept {
+double cost_factor(const SpeedSettings& settings, const Inputs& inputs,
+                   std::uint64_t trajectory) noexcept {
   const TrajectoryForecast* forecast = inputs.forecast_of(trajectory);
   if (forecast == nullptr || !inputs.people.partner().empty()) return 1.0;
   const double beyond = (forecast->cost - settings.cost_from) / (1.0 - settings.cost_from);
@@ -12,8 +13,8 @@ double cost_factor(const SpeedSettings& settings, const Inputs& inputs, std::uin
   return 1.0 - x * x * (3.0 - 2.0 * x) * (1.0 - settings.cost_factor);
 }
 
-double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory, const GuardVerdict& guard,
-                     TimePoint now) noexcept {
+double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory,
+                     const GuardVerdict& guard, TimePoint now) noexcept {
   const bool silent = inputs.attention_silent(now, settings.attention_timeout);
   const double advised = silent ? settings.attention_lost_factor : inputs.advice.value.speed_factor;
   double wanted = std::min({inputs.permission.go().override_factor, guard.forward, advised});

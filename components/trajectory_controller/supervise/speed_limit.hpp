@@ -1,5 +1,5 @@
-// How fast the path is wanted to run: the strictest of what the guard, attention, the supervisor, the
-// forecast and the human-aware cost ahead ask for. Pure, no heap.
+// How fast the path is wanted to run: the strictest of what the guard, attention, the supervisor,
+// the forecast and the human-aware cost ahead ask for. Pure, no heap.
 #pragma once
 
 #include "components/trajectory_controller/input/inputs.hpp"
@@ -14,16 +14,17 @@ struct SpeedSettings {
   double recoil_limit{0.2};           ///< largest speed factor back along the path, [0, 1]
   double forecast_hold{0.6};          ///< collision forecast within this time: 0 [s]
   double forecast_slow{2.0};          ///< within this time: slower in proportion [s]
-  double cost_from{0.5};              ///< human-aware cost ahead from which the arm is slower, [0, 1)
-  double cost_factor{0.4};            ///< speed factor at a cost of 1, (0, 1]
+  double cost_from{0.5};    ///< human-aware cost ahead from which the arm is slower, [0, 1)
+  double cost_factor{0.4};  ///< speed factor at a cost of 1, (0, 1]
 };
 
 /// Returns the speed factor for the human-aware cost ahead on the trajectory that runs (chapter
 /// section 2), smoothly lower from cost_from on; 1 in a handover, where it is meant to be high.
-double cost_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory) noexcept;
+double cost_factor(const SpeedSettings& settings, const Inputs& inputs,
+                   std::uint64_t trajectory) noexcept;
 
 /// Returns the wanted speed factor of the trajectory that runs, [-1, 1].
-double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory, const GuardVerdict& guard,
-                     TimePoint now) noexcept;
+double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory,
+                     const GuardVerdict& guard, TimePoint now) noexcept;
 
 }  // namespace handsel::trajectory_controller

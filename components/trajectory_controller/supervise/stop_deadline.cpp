@@ -11,7 +11,8 @@ void StopDeadline::set_free(const MotionState3& set_point, TimePoint now) noexce
   rest_due_ = now + from_seconds(fastest_stop(set_point));
 }
 
-bool StopDeadline::is_due(const MotionState3& set_point, double slack, TimePoint now) const noexcept {
+bool StopDeadline::is_due(const MotionState3& set_point, double slack,
+                          TimePoint now) const noexcept {
   const double needed = fastest_stop_after_a_cycle(set_point) + 3 * period_;
   return now + from_seconds(needed) >= rest_due_ + from_seconds(slack);
 }

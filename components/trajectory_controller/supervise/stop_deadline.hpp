@@ -1,5 +1,5 @@
-// When the arm has to be at rest after it was asked to stop: by the time that its fastest stop, every
-// axis by itself, would take. Pure, no heap.
+// When the arm has to be at rest after it was asked to stop: by the time that its fastest stop,
+// every axis by itself, would take. Pure, no heap.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace handsel::trajectory_controller {
 class StopDeadline {
  public:
   /// Keeps references. `axes`: of the arm; `period`: of control [s].
-  StopDeadline(const RobotModel& robot, const std::vector<int>& axes, double period) : robot_(robot), axes_(axes), period_(period) {}
+  StopDeadline(const RobotModel& robot, const std::vector<int>& axes, double period)
+      : robot_(robot), axes_(axes), period_(period) {}
 
   /// Notes that nothing asks the arm to stop at this set-point.
   void set_free(const MotionState3& set_point, TimePoint now) noexcept;

@@ -9,7 +9,9 @@ constexpr double kFull = 0.999;  // speed factors below this count as slow
 }  // namespace
 
 Supervisor::Supervisor(const SupervisorSettings& settings)
-    : settings_(settings), modes_(settings.timeouts), tracking_(settings.tracking_tolerance, settings.tracking_time) {}
+    : settings_(settings),
+      modes_(settings.timeouts),
+      tracking_(settings.tracking_tolerance, settings.tracking_time) {}
 
 void Supervisor::update(const SupervisorInputs& in, TimePoint now) noexcept {
   verdict_ = modes_.update(mode_inputs(in, now));
@@ -39,7 +41,8 @@ ModeInputs Supervisor::mode_inputs(const SupervisorInputs& in, TimePoint now) no
   out.set_points_late = out.drive_enabled && !in.inputs.robot.follows();
   const bool follows = in.inputs.robot.follows() && !settings_.dry_run;
   const Vector& set_point = in.set_points.sent().position;
-  out.tracking_error = tracking_.update(in.arm_axes, robot.position, set_point, follows, settings_.period);
+  out.tracking_error =
+      tracking_.update(in.arm_axes, robot.position, set_point, follows, settings_.period);
   out.limit_violation = in.limit_violation;
   late_in_a_row_ = in.late ? late_in_a_row_ + 1 : 0;
   if (in.late) ++late_cycles_;
@@ -56,7 +59,8 @@ ModeInputs Supervisor::mode_inputs(const SupervisorInputs& in, TimePoint now) no
   out.clamped = in.contact == Contact::clamped;
   out.human_unknown = in.inputs.people.uncovered();
   const AttentionAdvice& advice = in.inputs.advice.value;
-  out.attention_slow = in.running && in.inputs.advice.time.received() && advice.speed_factor < kFull;
+  out.attention_slow =
+      in.running && in.inputs.advice.time.received() && advice.speed_factor < kFull;
   out.cost_slow = in.running && in.cost_factor < kFull;
   out.stop_unproven = in.stop_unproven;
   out.blind = in.blind && in.inputs.people.received();
@@ -76,7 +80,8 @@ void Supervisor::add_forecast(const SupervisorInputs& in, ModeInputs& out) const
   const TrajectoryForecast& forecast = in.inputs.forecast.value;
   if (!in.running || !forecast.collides || forecast.trajectory != in.trajectory) return;
   out.forecast_collision_hold = forecast.time_to_collision < settings_.forecast_hold;
-  out.forecast_collision_slow = !out.forecast_collision_hold && forecast.time_to_collision < settings_.forecast_slow;
+  out.forecast_collision_slow =
+      !out.forecast_collision_hold && forecast.time_to_collision < settings_.forecast_slow;
 }
 
 }  // namespace handsel::trajectory_controller

@@ -5,8 +5,8 @@
 
 namespace handsel::trajectory_controller {
 
-bool TrackingMonitor::update(const std::vector<int>& axes, const Eigen::VectorXd& measured, const Eigen::VectorXd& set_point, bool follows,
-                             double dt) noexcept {
+bool TrackingMonitor::update(const std::vector<int>& axes, const Eigen::VectorXd& measured,
+                             const Eigen::VectorXd& set_point, bool follows, double dt) noexcept {
   double distance = 0.0;
   int farthest = -1;
   for (int axis : axes) {

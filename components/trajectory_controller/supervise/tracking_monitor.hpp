@@ -16,8 +16,8 @@ class TrackingMonitor {
 
   /// Compares the axes of the arm, `dt` [s] after the last time. `follows`: the robot side follows
   /// set-points. Returns whether there is an error.
-  bool update(const std::vector<int>& axes, const Eigen::VectorXd& measured, const Eigen::VectorXd& set_point, bool follows,
-              double dt) noexcept;
+  bool update(const std::vector<int>& axes, const Eigen::VectorXd& measured,
+              const Eigen::VectorXd& set_point, bool follows, double dt) noexcept;
   /// Axis farthest from its set-point in the last error; -1: there was none.
   int axis() const noexcept { return axis_; }
   /// How far that axis was from its set-point [rad, m].

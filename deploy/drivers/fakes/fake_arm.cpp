@@ -10,7 +10,7 @@ namespace {
 constexpr int kUnanswered = 3, kSettle = 20, kMirror = 10, kUntold = 20;  // cycles
 constexpr double kPush = 20.0;                                            // [Nm]
 constexpr double kSlack = 1.1;                                            // of the guard limits
-constexpr double kStep = 60.0;                                            // change of velocity a second [rad/s^2]
+constexpr double kStep = 60.0;  // change of velocity a second [rad/s^2]
 
 }  // namespace
 
@@ -21,7 +21,8 @@ std::string FakeArm::why_not(const Vector& wanted, const Limit& limit) const {
     const auto k = static_cast<Eigen::Index>(i);
     const std::string& name = model_.axes()[static_cast<std::size_t>(axes_[i])].name;
     if (std::abs(velocity[k]) > limit(i, velocity[k])) return "velocity of " + name;
-    if (std::abs(velocity[k] - velocity_[k]) > kStep * period()) return "jump of the velocity of " + name;
+    if (std::abs(velocity[k] - velocity_[k]) > kStep * period())
+      return "jump of the velocity of " + name;
   }
   return {};
 }
@@ -45,12 +46,14 @@ void FakeCyclicArm::cycle() {
   const bool told = answered_;
   unanswered_ = told || session_ < Session::commanding_wait ? 0 : unanswered_ + 1;
   answered_ = false;
-  const bool may = !events.emergency_stop && !events.user_stop && !events.brake && !events.power_off;
+  const bool may =
+      !events.emergency_stop && !events.user_stop && !events.brake && !events.power_off;
   if (!may || unanswered_ >= kUnanswered) session_ = Session::monitoring;
   settled_ = may && session_ == Session::monitoring ? settled_ + 1 : 0;
   if (settled_ > kSettle) session_ = Session::monitoring_ready;
   if (session_ == Session::commanding_wait) {
-    if (told && (wanted_ - position_).cwiseAbs().maxCoeff() > 1e-9) return end("no mirror of the interpolated position");
+    if (told && (wanted_ - position_).cwiseAbs().maxCoeff() > 1e-9)
+      return end("no mirror of the interpolated position");
     mirrored_ += told ? 1 : 0;
     if (mirrored_ > kMirror) {
       session_ = Session::commanding_active;
@@ -59,7 +62,9 @@ void FakeCyclicArm::cycle() {
   }
   if (session_ != Session::commanding_active) return stand();
   if (!told) return coast();
-  const std::string why = why_not(wanted_, [&](std::size_t i, double) { return kSlack * model_.guard_limits().velocity[axes_[i]]; });
+  const std::string why = why_not(wanted_, [&](std::size_t i, double) {
+    return kSlack * model_.guard_limits().velocity[axes_[i]];
+  });
   if (!why.empty()) return end(why);
   follow(wanted_);
 }
@@ -102,7 +107,9 @@ bool FakeCyclicArm::receive(CyclicState& out) {
   out = now();
   if (events.foreign > 0) {
     --events.foreign;
-    for (Vector* v : {&out.position, &out.velocity, &out.torque, &out.external_torque, &out.interpolated}) make_foreign(*v);
+    for (Vector* v :
+         {&out.position, &out.velocity, &out.torque, &out.external_torque, &out.interpolated})
+      make_foreign(*v);
   }
   return true;
 }
@@ -111,7 +118,9 @@ CyclicState FakeCyclicArm::now() const {
   CyclicState s;
   s.cycle = cycle_count_;
   s.session = session_;
-  s.safety = events.emergency_stop ? Safety::emergency_stop : events.user_stop ? Safety::user_stop : Safety::clear;
+  s.safety = events.emergency_stop ? Safety::emergency_stop
+             : events.user_stop    ? Safety::user_stop
+                                   : Safety::clear;
   s.drives_on = !events.power_off;
   s.brakes_open = !events.brake;
   s.position = s.interpolated = position_;
@@ -137,7 +146,8 @@ void FakeReflexArm::cycle() {
     return;
   }
   if (in_reflex_) return;
-  if (std::abs(events.push) > kPush) return reflex("push on " + model_.axes()[static_cast<std::size_t>(axes_[0])].name);
+  if (std::abs(events.push) > kPush)
+    return reflex("push on " + model_.axes()[static_cast<std::size_t>(axes_[0])].name);
   if (!was_commanded_) {
     untold_ = speed() > 0.0 ? untold_ + 1 : 0;
     if (untold_ >= kUntold) return reflex("no command for " + std::to_string(kUntold) + " cycles");
@@ -161,8 +171,12 @@ void FakeReflexArm::cycle() {
 
 void FakeReflexArm::move_gripper() {
   const double step = gripper_speed_ * period(), least = std::max(gripper_target_, events.object);
-  width_ = width_ > least ? std::max(least, width_ - step) : std::min(std::max(gripper_target_, width_), width_ + step);
-  gripping_ = events.object > 0.0 && width_ <= events.object + 1e-9 && gripper_target_ < events.object ? force_ : 0.0;
+  width_ = width_ > least ? std::max(least, width_ - step)
+                          : std::min(std::max(gripper_target_, width_), width_ + step);
+  gripping_ =
+      events.object > 0.0 && width_ <= events.object + 1e-9 && gripper_target_ < events.object
+          ? force_
+          : 0.0;
 }
 
 void FakeReflexArm::move_to(const Vector& position) {
@@ -210,7 +224,8 @@ bool FakeReflexArm::read(ReflexState& out) {
   out = now();
   if (events.foreign > 0) {
     --events.foreign;
-    for (Vector* v : {&out.position, &out.velocity, &out.torque, &out.external_torque}) make_foreign(*v);
+    for (Vector* v : {&out.position, &out.velocity, &out.torque, &out.external_torque})
+      make_foreign(*v);
   }
   return true;
 }

@@ -13,20 +13,20 @@ namespace handsel::drivers {
 /// What happens to a fake from outside.
 struct FakeEvents {
   bool emergency_stop{}, user_stop{}, brake{}, power_off{};  ///< true: in force; the arm stands
-  int foreign{};                                             ///< so many of the next states are those of another arm, with an axis less
-  int drop{};                                                ///< so many of the next states do not reach the driver
-  double push{};                                             ///< external torque on the first axis [Nm]
-  double object{};                                           ///< width of what is between the fingers [m]
+  int foreign{};    ///< so many of the next states are those of another arm, with an axis less
+  int drop{};       ///< so many of the next states do not reach the driver
+  double push{};    ///< external torque on the first axis [Nm]
+  double object{};  ///< width of what is between the fingers [m]
 };
 
 struct FakeAccount {
-  int commanded{};             ///< cycles in which a reference moved the arm
-  int violations{};            ///< references a real arm would not have taken
-  int sessions{};              ///< commanding sessions that began; recoveries for an arm with reflexes
-  int grasps{}, moves{};       ///< of the gripper
-  double load{};               ///< commanded payload [kg]
-  double grasp_force{};        ///< of the last grasp [N]
-  double fastest{};            ///< of any axis [rad/s]
+  int commanded{};        ///< cycles in which a reference moved the arm
+  int violations{};       ///< references a real arm would not have taken
+  int sessions{};         ///< commanding sessions that began; recoveries for an arm with reflexes
+  int grasps{}, moves{};  ///< of the gripper
+  double load{};          ///< commanded payload [kg]
+  double grasp_force{};   ///< of the last grasp [N]
+  double fastest{};       ///< of any axis [rad/s]
   std::string last_violation;  ///< quantity and axis, or a phrase; empty: none
 };
 
@@ -44,7 +44,9 @@ class FakeArm {
   double speed() const { return velocity_.cwiseAbs().maxCoeff(); }  ///< of the fastest axis [rad/s]
 
   /// Returns false for a position that does not answer the state of this cycle.
-  bool in_time(const Order& order) const { return order.kind != OrderKind::position || order.cycle == cycle_count_; }
+  bool in_time(const Order& order) const {
+    return order.kind != OrderKind::position || order.cycle == cycle_count_;
+  }
 
   FakeEvents events;    ///< set from outside, read in each cycle
   FakeAccount account;  ///< of everything since construction
@@ -80,7 +82,8 @@ class FakeArm {
 /// without one.
 class FakeCyclicArm : public FakeArm, public CyclicLink {
  public:
-  FakeCyclicArm(const RobotModel& model, const std::vector<int>& axes, double cycle) : FakeArm(model, axes), cycle_(cycle) {}
+  FakeCyclicArm(const RobotModel& model, const std::vector<int>& axes, double cycle)
+      : FakeArm(model, axes), cycle_(cycle) {}
 
   double period() const override { return cycle_; }
   void cycle() override;

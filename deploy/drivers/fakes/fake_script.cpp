@@ -11,13 +11,15 @@ namespace handsel::drivers {
 
 namespace {
 
-const std::map<std::string, bool FakeEvents::*> kSwitches{{"emergency_stop", &FakeEvents::emergency_stop},
-                                                          {"user_stop", &FakeEvents::user_stop},
-                                                          {"brake", &FakeEvents::brake},
-                                                          {"power", &FakeEvents::power_off}};
+const std::map<std::string, bool FakeEvents::*> kSwitches{
+    {"emergency_stop", &FakeEvents::emergency_stop},
+    {"user_stop", &FakeEvents::user_stop},
+    {"brake", &FakeEvents::brake},
+    {"power", &FakeEvents::power_off}};
 
-const std::map<std::string, FakeTrigger> kMoments{
-    {"after", FakeTrigger::after}, {"moving", FakeTrigger::moving}, {"standing", FakeTrigger::standing}};
+const std::map<std::string, FakeTrigger> kMoments{{"after", FakeTrigger::after},
+                                                  {"moving", FakeTrigger::moving},
+                                                  {"standing", FakeTrigger::standing}};
 
 bool number(const std::string& text, double& out) {
   char* end = nullptr;
@@ -31,7 +33,8 @@ std::string read(const std::string& text, FakeLine& line) {
   std::string when, amount;
   in >> when >> amount >> line.verb;
   const auto moment = kMoments.find(when);
-  if (moment == kMoments.end()) return "\"" + when + "\" is no moment; a line begins with after, moving or standing";
+  if (moment == kMoments.end())
+    return "\"" + when + "\" is no moment; a line begins with after, moving or standing";
   line.trigger = moment->second;
   if (!number(amount, line.amount) || line.amount < 0.0)
     return "\"" + when + "\" wants a number that is not below 0, not \"" + amount + "\"";
@@ -39,11 +42,16 @@ std::string read(const std::string& text, FakeLine& line) {
   line.value.resize(line.value.find_last_not_of(" \t\r") + 1);
   double value = 0.0;
   if (kSwitches.contains(line.verb)) {
-    if (line.value != "on" && line.value != "off") return line.verb + " is on or off, not \"" + line.value + "\"";
-  } else if (line.verb == "drop" || line.verb == "delay" || line.verb == "push" || line.verb == "object") {
-    if (!number(line.value, value)) return line.verb + " wants a number, not \"" + line.value + "\"";
+    if (line.value != "on" && line.value != "off")
+      return line.verb + " is on or off, not \"" + line.value + "\"";
+  } else if (line.verb == "drop" || line.verb == "delay" || line.verb == "push" ||
+             line.verb == "object") {
+    if (!number(line.value, value))
+      return line.verb + " wants a number, not \"" + line.value + "\"";
   } else if (line.verb != "say") {
-    return "\"" + line.verb + "\" does not happen; known are emergency_stop, user_stop, brake, power, drop, delay, push, object and say";
+    return "\"" + line.verb +
+           "\" does not happen; known are emergency_stop, user_stop, brake, power, drop, delay, "
+           "push, object and say";
   }
   return {};
 }
@@ -60,7 +68,8 @@ std::vector<FakeLine> load_fake_script(const std::filesystem::path& file) {
     text.resize(std::min(text.size(), text.find('#')));
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     FakeLine line;
-    if (const std::string why = read(text, line); !why.empty()) throw ConfigError(file.string() + ":" + std::to_string(row) + ": " + why);
+    if (const std::string why = read(text, line); !why.empty())
+      throw ConfigError(file.string() + ":" + std::to_string(row) + ": " + why);
     lines.push_back(line);
   }
   return lines;

@@ -1,5 +1,5 @@
-// A maker's controller that is not there: speaks to a driver over UDP at the arm's own cycle, plays a script, and says at its end what it
-// was told and what it would not have taken.
+// A maker's controller that is not there: speaks to a driver over UDP at the arm's own cycle, plays
+// a script, and says at its end what it was told and what it would not have taken.
 #include <unistd.h>
 
 #include <atomic>
@@ -36,10 +36,12 @@ void play(FakeArm& arm, FakeScript& script, int driver_port) {
       --arm.events.drop;
     else
       late.emplace_back(now + from_seconds(script.delay()), arm.state());
-    for (; !late.empty() && late.front().first <= now; late.pop_front()) port.send_to(driver_port, late.front().second);
+    for (; !late.empty() && late.front().first <= now; late.pop_front())
+      port.send_to(driver_port, late.front().second);
     next += from_seconds(arm.period());
     if (next < now) next = now;  // this machine was held up: no burst afterwards
-    for (Duration left = next - monotonic_now(); left > Duration::zero() && port.wait(left); left = next - monotonic_now())
+    for (Duration left = next - monotonic_now(); left > Duration::zero() && port.wait(left);
+         left = next - monotonic_now())
       while (port.receive(datagram))
         if (decode(datagram, order)) arm.on(order);
   }
@@ -47,7 +49,8 @@ void play(FakeArm& arm, FakeScript& script, int driver_port) {
 
 void report(const FakeAccount& a) {
   std::printf(
-      "moved %d cycles, violations %d, sessions %d, grasps %d, gripper moves %d, load %.3f kg, grasp force %.1f N, fastest %.4f "
+      "moved %d cycles, violations %d, sessions %d, grasps %d, gripper moves %d, load %.3f kg, "
+      "grasp force %.1f N, fastest %.4f "
       "rad/s%s%s\n",
       a.commanded, a.violations, a.sessions, a.grasps, a.moves, a.load, a.grasp_force, a.fastest,
       a.last_violation.empty() ? "" : ", last violation: ", a.last_violation.c_str());
@@ -59,13 +62,23 @@ int run(int argc, char** argv) {
   double cycle = 0.005, deceleration = 3.0;
   bool realtime = false;
   CLI::App app{"a maker's controller that is not there"};
-  app.add_option("kind", kind, "position_arm or reflex_arm")->required()->check(CLI::IsMember({"position_arm", "reflex_arm"}));
-  app.add_option("--robot", robot, "robot description: name or file; its group \"arm\" stands in the rest configuration")
+  app.add_option("kind", kind, "position_arm or reflex_arm")
+      ->required()
+      ->check(CLI::IsMember({"position_arm", "reflex_arm"}));
+  app.add_option(
+         "--robot", robot,
+         "robot description: name or file; its group \"arm\" stands in the rest configuration")
       ->capture_default_str();
-  app.add_option("--port", port, "where the driver listens")->required()->check(CLI::Range(1, 65535));
+  app.add_option("--port", port, "where the driver listens")
+      ->required()
+      ->check(CLI::Range(1, 65535));
   app.add_option("--script", script, "what happens to the arm");
-  app.add_option("--cycle", cycle, "of a position_arm [s]")->check(CLI::Range(0.001, 0.01))->capture_default_str();
-  app.add_option("--deceleration", deceleration, "of a reflex_arm's velocity limit toward the ends [rad/s^2]")->capture_default_str();
+  app.add_option("--cycle", cycle, "of a position_arm [s]")
+      ->check(CLI::Range(0.001, 0.01))
+      ->capture_default_str();
+  app.add_option("--deceleration", deceleration,
+                 "of a reflex_arm's velocity limit toward the ends [rad/s^2]")
+      ->capture_default_str();
   app.add_flag("--realtime", realtime, "SCHED_FIFO where permitted");
   try {
     app.parse(argc, argv);
@@ -83,7 +96,8 @@ int run(int argc, char** argv) {
   if (realtime) {
     sched_param urgent{};
     urgent.sched_priority = 60;
-    if (sched_setscheduler(0, SCHED_FIFO, &urgent) != 0) std::fprintf(stderr, "handsel_fake_arm: SCHED_FIFO is not permitted\n");
+    if (sched_setscheduler(0, SCHED_FIFO, &urgent) != 0)
+      std::fprintf(stderr, "handsel_fake_arm: SCHED_FIFO is not permitted\n");
   }
   std::printf("ready\n");
   std::fflush(stdout);
@@ -96,7 +110,8 @@ int run(int argc, char** argv) {
 }  // namespace handsel::drivers
 
 int main(int argc, char** argv) {
-  for (int signal : {SIGTERM, SIGINT}) std::signal(signal, [](int) { handsel::drivers::asked_to_end = true; });
+  for (int signal : {SIGTERM, SIGINT})
+    std::signal(signal, [](int) { handsel::drivers::asked_to_end = true; });
   try {
     return handsel::drivers::run(argc, argv);
   } catch (const handsel::ConfigError& error) {

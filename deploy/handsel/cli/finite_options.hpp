@@ -12,8 +12,10 @@ namespace handsel {
 inline const CLI::Validator kNotNegative(
     [](const std::string& text) {
       double value = 0;
-      const bool good = CLI::detail::lexical_cast(text, value) && value >= 0 && std::isfinite(value);
-      return good ? std::string() : "must be a number of at least 0, not '" + text.substr(0, 60) + "'";
+      const bool good =
+          CLI::detail::lexical_cast(text, value) && value >= 0 && std::isfinite(value);
+      return good ? std::string()
+                  : "must be a number of at least 0, not '" + text.substr(0, 60) + "'";
     },
     "NONNEGATIVE");
 

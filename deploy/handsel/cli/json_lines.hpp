@@ -22,7 +22,8 @@ struct LineError : std::runtime_error {
 /// JSON, or for which `answer` throws LineError or ConfigError, yields {"line": n, "error": "..."}
 /// (n from 1). Returns 2 if there was such a line or no line at all, else 0. `show` writes an
 /// answer for people instead; refusals stay JSON.
-int for_each_line(std::istream& in, std::ostream& out, const std::function<nlohmann::json(const nlohmann::json&)>& answer,
+int for_each_line(std::istream& in, std::ostream& out,
+                  const std::function<nlohmann::json(const nlohmann::json&)>& answer,
                   const std::function<std::string(const nlohmann::json&)>& show = {});
 
 /// Returns a field by name; throws LineError naming the field when `object` lacks it.

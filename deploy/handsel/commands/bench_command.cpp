@@ -16,7 +16,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Measured once, beside the benchmarks, on 2 vCPU (Zen 4, AVX-512): for where the peer is not built. docs/trajectory.md says how.
+/// Measured once, beside the benchmarks, on 2 vCPU (Zen 4, AVX-512): for where the peer is not
+/// built. docs/trajectory.md says how.
 struct Recorded {
   const char *benchmark, *peer;
   double ns;
@@ -39,11 +40,13 @@ std::vector<fs::path> programs() {
   const fs::path folder = fs::canonical("/proc/self/exe").parent_path();
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().starts_with("bench_") && entry.is_regular_file()) found.push_back(entry.path());
+    if (entry.path().filename().string().starts_with("bench_") && entry.is_regular_file())
+      found.push_back(entry.path());
   }
   if (found.empty()) {
-    throw MissingError("no benchmark is beside " + folder.string() +
-                       "/handsel; build the targets bench_* (ninja -C build/release bench_trajectory)");
+    throw MissingError(
+        "no benchmark is beside " + folder.string() +
+        "/handsel; build the targets bench_* (ninja -C build/release bench_trajectory)");
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -59,7 +62,8 @@ std::string output_of(const std::string& command) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   std::string out;
   std::array<char, 4096> bytes;
-  for (std::size_t n; pipe && (n = std::fread(bytes.data(), 1, bytes.size(), pipe.get())) > 0;) out.append(bytes.data(), n);
+  for (std::size_t n; pipe && (n = std::fread(bytes.data(), 1, bytes.size(), pipe.get())) > 0;)
+    out.append(bytes.data(), n);
   return out;
 }
 
@@ -72,7 +76,8 @@ json rows_of(const fs::path& program, const std::string& filter) {
   for (const json& b : answer["benchmarks"]) {
     const std::string name = b.at("name");
     json row{{"benchmark", name}, {"ns", b.value("ours_ns", b.value("cpu_time", 0.0))}};
-    const auto known = std::find_if(kRecorded.begin(), kRecorded.end(), [&](const Recorded& r) { return name == r.benchmark; });
+    const auto known = std::find_if(kRecorded.begin(), kRecorded.end(),
+                                    [&](const Recorded& r) { return name == r.benchmark; });
     if (known != kRecorded.end()) {
       const bool measured = b.contains("peer_ns");
       row["peer"] = known->peer;
@@ -90,10 +95,13 @@ json rows_of(const fs::path& program, const std::string& filter) {
 }
 
 void print(const json& row) {
-  std::printf("%-36s %10.1f ns", row["benchmark"].get<std::string>().c_str(), row["ns"].get<double>());
+  std::printf("%-36s %10.1f ns", row["benchmark"].get<std::string>().c_str(),
+              row["ns"].get<double>());
   if (row.contains("ratio")) {
-    std::printf("   %-22s %10.0f ns %s %6.1f x", row["peer"].get<std::string>().c_str(), row["peer_ns"].get<double>(),
-                row["peer_measured"].get<bool>() ? "now     " : "recorded", row["ratio"].get<double>());
+    std::printf("   %-22s %10.0f ns %s %6.1f x", row["peer"].get<std::string>().c_str(),
+                row["peer_ns"].get<double>(),
+                row["peer_measured"].get<bool>() ? "now     " : "recorded",
+                row["ratio"].get<double>());
   }
   std::printf("\n");
 }
@@ -103,15 +111,17 @@ void run_benchmarks(const std::string& filter, bool as_json, int& exit_code) {
   for (const fs::path& program : programs()) {
     const std::string name = program.filename().string();
     if (has_table(program)) {
-      for (const json& row : rows_of(program, name.find(filter) == std::string::npos ? filter : "")) {
+      for (const json& row :
+           rows_of(program, name.find(filter) == std::string::npos ? filter : "")) {
         any = true;
         as_json ? void(std::printf("%s\n", row.dump().c_str())) : print(row);
       }
     } else if (name.find(filter) != std::string::npos) {
       any = true;
       const std::string text = output_of(quoted(program.string()));
-      as_json ? void(std::printf("%s\n",
-                                 json{{"benchmark", name}, {"text", text}}.dump(-1, ' ', false, json::error_handler_t::replace).c_str()))
+      as_json ? void(std::printf("%s\n", json{{"benchmark", name}, {"text", text}}
+                                             .dump(-1, ' ', false, json::error_handler_t::replace)
+                                             .c_str()))
               : void(std::printf("%s:\n%s", name.c_str(), text.c_str()));
     }
     std::fflush(stdout);
@@ -125,12 +135,14 @@ void run_benchmarks(const std::string& filter, bool as_json, int& exit_code) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("bench", "The benchmarks, with the peer's figure and the ratio beside each");
+  CLI::App* command = app.add_subcommand(
+      "bench", "The benchmarks, with the peer's figure and the ratio beside each");
   auto filter = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false);
   command->add_option("FILTER", *filter, "part of a benchmark's or a program's name (tests/bench)");
   command->add_flag("--json", *as_json, "JSON Lines, also on a terminal");
-  command->callback([filter, as_json, &exit_code] { run_benchmarks(*filter, json_wanted(*as_json), exit_code); });
+  command->callback(
+      [filter, as_json, &exit_code] { run_benchmarks(*filter, json_wanted(*as_json), exit_code); });
 }
 
 }  // namespace handsel

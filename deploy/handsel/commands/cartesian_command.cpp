@@ -19,7 +19,8 @@ using namespace command;
 using namespace trajectory_planner;
 using nlohmann::json;
 
-constexpr Colour kObstacle = {205, 190, 160}, kRobot = {170, 178, 190}, kPath = {40, 160, 60}, kSmooth = {0, 0, 0}, kStop = {220, 40, 40};
+constexpr Colour kObstacle = {205, 190, 160}, kRobot = {170, 178, 190}, kPath = {40, 160, 60},
+                 kSmooth = {0, 0, 0}, kStop = {220, 40, 40};
 
 struct Options {
   std::string robot, group{"arm"}, tip, png;
@@ -30,7 +31,8 @@ struct Options {
 
 RobotModel load_robot(const Options& options) {
   if (options.robot.ends_with(".urdf")) {
-    if (options.platform) throw ConfigError("--platform needs a robot description; a .urdf tells of no platform");
+    if (options.platform)
+      throw ConfigError("--platform needs a robot description; a .urdf tells of no platform");
     return RobotModel::load_urdf(options.robot);
   }
   const std::filesystem::path description = robot_description(options.robot);
@@ -53,9 +55,11 @@ CartesianRequest request_of(const json& line, const RobotModel& robot) {
     if (request.nodes.empty())
       for (const auto& [name, value] : also.items()) request.also.push_back(axis_of(robot, name));
     node.also.resize(static_cast<Eigen::Index>(request.also.size()));
-    if (also.size() != request.also.size()) throw LineError("every node must name the same axes in \"also\"");
+    if (also.size() != request.also.size())
+      throw LineError("every node must name the same axes in \"also\"");
     for (std::size_t i = 0; i < request.also.size(); ++i)
-      node.also[static_cast<Eigen::Index>(i)] = number(also, robot.axes()[static_cast<std::size_t>(request.also[i])].name.c_str());
+      node.also[static_cast<Eigen::Index>(i)] =
+          number(also, robot.axes()[static_cast<std::size_t>(request.also[i])].name.c_str());
     request.nodes.push_back(node);
   }
   if (const auto level = line.find("level"); level != line.end()) {
@@ -66,10 +70,10 @@ CartesianRequest request_of(const json& line, const RobotModel& robot) {
   return request;
 }
 
-/// Robot at the start and the end, what is around it, the path and its nodes in green, TR in black; a corner that keeps its stop in red
-/// (the chapter's Fig. 20).
-void draw(const std::string& file, int size, const RobotModel& robot, const json& line, const CartesianRequest& request,
-          const CartesianMotion& motion) {
+/// Robot at the start and the end, what is around it, the path and its nodes in green, TR in black;
+/// a corner that keeps its stop in red (the chapter's Fig. 20).
+void draw(const std::string& file, int size, const RobotModel& robot, const json& line,
+          const CartesianRequest& request, const CartesianMotion& motion) {
   std::vector<Vector3> smooth;
   Eigen::AlignedBox3d box;
   constexpr double kStep = 0.01;
@@ -77,35 +81,46 @@ void draw(const std::string& file, int size, const RobotModel& robot, const json
     smooth.push_back(motion.path.pose(std::min(t, motion.path.duration())).translation());
     box.extend(smooth.back());
   }
-  for (const CartesianTrajectory::Node& node : motion.path.nodes()) box.extend(node.T_root_tool.translation());
+  for (const CartesianTrajectory::Node& node : motion.path.nodes())
+    box.extend(node.T_root_tool.translation());
   box.min().array() -= 0.25;
   box.max().array() += 0.25;
   const std::vector<Obstacle> obstacles = obstacles_in(line);
   Vector end = request.start;
   if (!motion.samples.empty()) end(motion.axes) = motion.samples.back();
-  const Picture picture = from_sides(box, {Vector3(1.2, -0.9, 0.5), Vector3(0.3, 0.6, 1.6)}, size, [&](Canvas& canvas, std::size_t) {
-    for (const Obstacle& o : obstacles) canvas.shape(o.placed.shape, o.placed.T_parent_shape, kObstacle);
-    std::vector<Pose> T;
-    for (const bool begin : {true, false}) {
-      robot.forward(begin ? request.start : end, T);
-      for (std::size_t i = 0; i < robot.links().size(); ++i)
-        for (const PlacedShape& placed : robot.links()[i].collision)
-          canvas.shape(placed.shape, T[i] * placed.T_parent_shape, kRobot, begin ? 0.25 : 0.4);
-    }
-    const std::vector<CartesianTrajectory::Node>& nodes = motion.path.nodes();
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      canvas.ball(nodes[k].T_root_tool.translation(), 0.008, kPath);
-      if (k > 0) canvas.stick(nodes[k - 1].T_root_tool.translation(), nodes[k].T_root_tool.translation(), 0.002, kPath);
-    }
-    for (std::size_t i = 1; i < smooth.size(); ++i) canvas.stick(smooth[i - 1], smooth[i], 0.003, kSmooth);
-    for (const BlendReport& corner : motion.corners)
-      if (corner.method == BlendMethod::stop)
-        canvas.ball(nodes[static_cast<std::size_t>(corner.node)].T_root_tool.translation(), 0.011, kStop);
-  });
+  const Picture picture = from_sides(
+      box, {Vector3(1.2, -0.9, 0.5), Vector3(0.3, 0.6, 1.6)}, size,
+      [&](Canvas& canvas, std::size_t) {
+        for (const Obstacle& o : obstacles)
+          canvas.shape(o.placed.shape, o.placed.T_parent_shape, kObstacle);
+        std::vector<Pose> T;
+        for (const bool begin : {true, false}) {
+          robot.forward(begin ? request.start : end, T);
+          for (std::size_t i = 0; i < robot.links().size(); ++i)
+            for (const PlacedShape& placed : robot.links()[i].collision)
+              canvas.shape(placed.shape, T[i] * placed.T_parent_shape, kRobot, begin ? 0.25 : 0.4);
+        }
+        const std::vector<CartesianTrajectory::Node>& nodes = motion.path.nodes();
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+          canvas.ball(nodes[k].T_root_tool.translation(), 0.008, kPath);
+          if (k > 0)
+            canvas.stick(nodes[k - 1].T_root_tool.translation(), nodes[k].T_root_tool.translation(),
+                         0.002, kPath);
+        }
+        for (std::size_t i = 1; i < smooth.size(); ++i)
+          canvas.stick(smooth[i - 1], smooth[i], 0.003, kSmooth);
+        for (const BlendReport& corner : motion.corners)
+          if (corner.method == BlendMethod::stop)
+            canvas.ball(nodes[static_cast<std::size_t>(corner.node)].T_root_tool.translation(),
+                        0.011, kStop);
+      });
   std::ofstream out(file, std::ios::binary);
   out << picture.png();
   if (!out.flush()) throw ConfigError(file + ": cannot be written");
-  std::fprintf(stderr, "wrote %s: the path and its nodes green, the smoothed trajectory black, a stop that is kept red\n", file.c_str());
+  std::fprintf(stderr,
+               "wrote %s: the path and its nodes green, the smoothed trajectory black, a stop that "
+               "is kept red\n",
+               file.c_str());
 }
 
 int run(const Options& options) {
@@ -113,7 +128,8 @@ int run(const Options& options) {
   Group arm = robot.require_group(options.group);
   if (!options.tip.empty() && (arm.tip = robot.link_index(options.tip)) < 0)
     throw ConfigError("--tip: the robot has no link \"" + options.tip + "\"");
-  if (arm.tip < 0) throw ConfigError("the group \"" + options.group + "\" has no tip: name its link with --tip");
+  if (arm.tip < 0)
+    throw ConfigError("the group \"" + options.group + "\" has no tip: name its link with --tip");
   CollisionWorld world(robot, nullptr);
   CartesianSettings settings;
   settings.period = options.period;
@@ -122,7 +138,8 @@ int run(const Options& options) {
     const CartesianRequest request = request_of(line, robot);
     world.set_obstacles(obstacles_in(line));
     const CartesianMotion motion = plan_cartesian(robot, arm, world, request, settings);
-    if (first && !options.png.empty()) draw(options.png, options.size, robot, line, request, motion);
+    if (first && !options.png.empty())
+      draw(options.png, options.size, robot, line, request, motion);
     first = false;
     all = all && motion.solved;
     json corners = json::array();
@@ -136,7 +153,8 @@ int run(const Options& options) {
       saved += corner.saved;
     }
     std::vector<std::string> names;
-    for (const int axis : motion.axes) names.push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
+    for (const int axis : motion.axes)
+      names.push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
     return {{"solved", motion.solved},
             {"reason", motion.reason},
             {"reached", motion.reached},
@@ -158,21 +176,29 @@ int run(const Options& options) {
 
 void add_cartesian_command(CLI::App& trajectory, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = trajectory.add_subcommand("cartesian", "From poses of the tool to soft motion of an arm of seven axes");
+  CLI::App* command = trajectory.add_subcommand(
+      "cartesian", "From poses of the tool to soft motion of an arm of seven axes");
   command->footer(
       R"(A line: {"start"?: {joint: rad}, "nodes": [{"p": [x, y, z], "q": [x, y, z, w] of the tool in the root frame, "elbow"?: rad,
  "also"?: {joint: rad} of hand and head}], "obstacles"?: [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
  "level"?: {"axis": [x, y, z] of the tool, upright, "most": rad}}.
 An answer: "active" the smoothed trajectory of position, rotation vector, elbow and further axes; "axes" that of the joints.
 Where a node cannot be reached the motion ends at the one before, "reached" counts them, and the exit code is 1.)");
-  command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
+  command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
+      ->required();
   command->add_option("--group", options->group, "of the arm")->capture_default_str();
-  command->add_option("--tip", options->tip, "link that carries the tool, where the group names none");
-  command->add_option("--period", options->period, "the joints are computed this often [s]")->check(kAboveZero)->capture_default_str();
-  command->add_flag("--platform", options->platform,
-                    "\"also\" may name platform_x, platform_y and platform_heading; poses are in the world");
+  command->add_option("--tip", options->tip,
+                      "link that carries the tool, where the group names none");
+  command->add_option("--period", options->period, "the joints are computed this often [s]")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  command->add_flag(
+      "--platform", options->platform,
+      "\"also\" may name platform_x, platform_y and platform_heading; poses are in the world");
   command->add_option("--png", options->png, "file to draw the first motion to");
-  command->add_option("--size", options->size, "of the picture's sides")->check(CLI::Range(100, 4000))->capture_default_str();
+  command->add_option("--size", options->size, "of the picture's sides")
+      ->check(CLI::Range(100, 4000))
+      ->capture_default_str();
   command->add_flag("--json")->description("JSON Lines (always so)");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -33,39 +33,53 @@ Person person_of(const CostOptions& options) {
 }
 
 int run(const CostOptions& options) {
-  const CostSettings settings = load_cost_settings(options.settings.empty() ? resource("config") : std::filesystem::path(options.settings));
+  const CostSettings settings = load_cost_settings(
+      options.settings.empty() ? resource("config") : std::filesystem::path(options.settings));
   const Person person = person_of(options);
   if (!options.svg.empty()) {
     char title[160];
-    std::snprintf(title, sizeof title, "Costs around a %s person of %.2f m, weights %g safety, %g visibility, %g comfort",
-                  options.posture.c_str(), options.stature, settings.w_safety, settings.w_visibility, settings.w_comfort);
+    std::snprintf(
+        title, sizeof title,
+        "Costs around a %s person of %.2f m, weights %g safety, %g visibility, %g comfort",
+        options.posture.c_str(), options.stature, settings.w_safety, settings.w_visibility,
+        settings.w_comfort);
     std::ofstream file(options.svg);
     file << cost_picture(person, settings, options.cell, title);
     if (!file.flush()) throw ConfigError(options.svg + ": cannot be written");
     std::fprintf(stderr, "wrote %s\n", options.svg.c_str());
     return 0;
   }
-  return command::for_each_line(std::cin, std::cout, [&](const nlohmann::json& line) -> nlohmann::json {
-    const CostParts parts = point_cost(person, command::vector3(line, "p"), settings);
-    return {{"safety", parts.safety},
-            {"visibility", parts.visibility},
-            {"comfort", parts.comfort},
-            {"distance", parts.distance},
-            {"cost", weighted_cost(parts, settings)}};
-  });
+  return command::for_each_line(
+      std::cin, std::cout, [&](const nlohmann::json& line) -> nlohmann::json {
+        const CostParts parts = point_cost(person, command::vector3(line, "p"), settings);
+        return {{"safety", parts.safety},
+                {"visibility", parts.visibility},
+                {"comfort", parts.comfort},
+                {"distance", parts.distance},
+                {"cost", weighted_cost(parts, settings)}};
+      });
 }
 
 }  // namespace
 
 void add_cost_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CostOptions>();
-  CLI::App* command = app.add_subcommand("cost", "The human-aware costs of points around a person, or a picture of them");
-  command->footer(R"(Without --svg: a line on stdin {"p": [x, y, z]} in m; the person stands or sits at the origin and faces +x.)");
-  command->add_option("--posture", options->posture, "of the person")->check(CLI::IsMember({"standing", "sitting"}))->capture_default_str();
-  command->add_option("--stature", options->stature, "[m]")->check(CLI::Range(1.0, 2.2))->capture_default_str();
-  command->add_option("--settings", options->settings, "folder with cost.txtpb (default: the shipped one)");
+  CLI::App* command = app.add_subcommand(
+      "cost", "The human-aware costs of points around a person, or a picture of them");
+  command->footer(
+      R"(Without --svg: a line on stdin {"p": [x, y, z]} in m; the person stands or sits at the origin and faces +x.)");
+  command->add_option("--posture", options->posture, "of the person")
+      ->check(CLI::IsMember({"standing", "sitting"}))
+      ->capture_default_str();
+  command->add_option("--stature", options->stature, "[m]")
+      ->check(CLI::Range(1.0, 2.2))
+      ->capture_default_str();
+  command->add_option("--settings", options->settings,
+                      "folder with cost.txtpb (default: the shipped one)");
   command->add_option("--svg", options->svg, "file to draw the three costs and their sum to");
-  command->add_option("--cell", options->cell, "[m] of the picture")->check(CLI::Range(0.005, 0.2))->capture_default_str();
+  command->add_option("--cell", options->cell, "[m] of the picture")
+      ->check(CLI::Range(0.005, 0.2))
+      ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

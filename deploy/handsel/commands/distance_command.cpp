@@ -25,21 +25,25 @@ Shape shape_of(const json& description) {
     if (!(size.minCoeff() > 0)) throw LineError("\"xyz\" of a box must be greater than 0");
     return Box{size};
   }
-  throw LineError("unknown shape type " + type.dump() + "; known are sphere, box, cylinder, capsule");
+  throw LineError("unknown shape type " + type.dump() +
+                  "; known are sphere, box, cylinder, capsule");
 }
 
-Pose pose_of(const json& pose) { return make_pose(vector3(pose, "xyz"), quaternion(pose, "quat_xyzw")); }
+Pose pose_of(const json& pose) {
+  return make_pose(vector3(pose, "xyz"), quaternion(pose, "quat_xyzw"));
+}
 
 json judge(const json& pair) {
-  const ShapeDistance d =
-      shape_distance(shape_of(field(pair, "a")), pose_of(field(pair, "Ta")), shape_of(field(pair, "b")), pose_of(field(pair, "Tb")));
+  const ShapeDistance d = shape_distance(shape_of(field(pair, "a")), pose_of(field(pair, "Ta")),
+                                         shape_of(field(pair, "b")), pose_of(field(pair, "Tb")));
   return {{"collide", d.collide}, {"distance", d.distance}};
 }
 
 }  // namespace
 
 void add_distance_command(CLI::App& app, int& exit_code) {
-  CLI::App* distance = app.add_subcommand("distance", "Contact and distance [m] of pairs of shapes, one JSON line a pair on stdin");
+  CLI::App* distance = app.add_subcommand(
+      "distance", "Contact and distance [m] of pairs of shapes, one JSON line a pair on stdin");
   distance->footer(
       R"(A line: {"a": {"type": "sphere|box|cylinder|capsule", "r", "l", "xyz"}, "Ta": {"xyz", "quat_xyzw"}, "b": ..., "Tb": ...})");
   distance->add_flag("--json")->description("JSON Lines (always so)");

@@ -29,12 +29,16 @@ const char* mark(Verdict verdict) {
 
 void print(const Finding& finding, bool json) {
   if (json) {
-    nlohmann::json line{{"subject", finding.subject}, {"result", mark(finding.verdict)}, {"text", finding.text}};
+    nlohmann::json line{
+        {"subject", finding.subject}, {"result", mark(finding.verdict)}, {"text", finding.text}};
     if (!finding.remedy.empty()) line["remedy"] = finding.remedy;
-    std::printf("%s\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::printf("%s\n",
+                line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    std::printf("%-7s  %-12s  %s\n", mark(finding.verdict), finding.subject.c_str(), finding.text.c_str());
-    if (!finding.remedy.empty()) std::printf("%-7s  %-12s  -> %s\n", "", "", finding.remedy.c_str());
+    std::printf("%-7s  %-12s  %s\n", mark(finding.verdict), finding.subject.c_str(),
+                finding.text.c_str());
+    if (!finding.remedy.empty())
+      std::printf("%-7s  %-12s  -> %s\n", "", "", finding.remedy.c_str());
   }
   std::fflush(stdout);
 }
@@ -45,7 +49,8 @@ int examine(const DoctorOptions& options, bool json) {
   using Check = std::vector<Finding> (*)(const DoctorOptions&);
   std::vector<Check> checks;
   if (!options.inputs_only)
-    checks = {[](const DoctorOptions&) { return check_machine(); }, &check_descriptions, &check_occupation, &check_domain};
+    checks = {[](const DoctorOptions&) { return check_machine(); }, &check_descriptions,
+              &check_occupation, &check_domain};
   if (options.perception) checks.push_back(&check_perception);
   for (const Check check : checks) {
     for (const Finding& finding : check(options)) {
@@ -65,19 +70,28 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
     bool json{false};
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("doctor", "what would stop it from working here; exit 1: something would, 3: something is missing");
+  CLI::App* command = app.add_subcommand(
+      "doctor",
+      "what would stop it from working here; exit 1: something would, 3: something is missing");
   add_domain_option(*command, options->doctor.domain);
-  command->add_option("--robot", options->doctor.robot, "robot description (default: the scenario's)");
-  command->add_option("--scenario", options->doctor.scenario, "scenario whose descriptions are read")->capture_default_str();
-  command->add_option("--port", options->doctor.web_port, "of the page (default: as in the bridge's settings)")
+  command->add_option("--robot", options->doctor.robot,
+                      "robot description (default: the scenario's)");
+  command
+      ->add_option("--scenario", options->doctor.scenario, "scenario whose descriptions are read")
+      ->capture_default_str();
+  command
+      ->add_option("--port", options->doctor.web_port,
+                   "of the page (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
-  command->add_flag("--perception", options->doctor.perception, "people and objects must be measured on the domain, and rightly");
-  command->add_flag("--inputs-only", options->doctor.inputs_only, "with --perception: look at nothing else (3 s)");
+  command->add_flag("--perception", options->doctor.perception,
+                    "people and objects must be measured on the domain, and rightly");
+  command->add_flag("--inputs-only", options->doctor.inputs_only,
+                    "with --perception: look at nothing else (3 s)");
   command->add_flag("--driver", options->doctor.driver, "a robot must be connected on the domain");
   command->add_flag("--json", options->json, "print JSON Lines");
   command->callback([options, &exit_code] {
-    if (options->doctor.inputs_only && !options->doctor.perception) throw ConfigError("--inputs-only goes with --perception");
+    if (options->doctor.inputs_only && !options->doctor.perception)
+      throw ConfigError("--inputs-only goes with --perception");
     exit_code = examine(options->doctor, json_wanted(options->json));
   });
 }

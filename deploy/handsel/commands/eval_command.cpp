@@ -42,19 +42,21 @@ struct EvalOptions {
 /// Mean period of each behaviour's clock and of each piece of work [s].
 using Periods = std::map<std::string, double>;
 
-/// Share of the way from p_min to p_max, on a logarithmic scale, at which all clocks of the mode "fixed:SHARE" stand; nullopt: another
-/// mode.
+/// Share of the way from p_min to p_max, on a logarithmic scale, at which all clocks of the mode
+/// "fixed:SHARE" stand; nullopt: another mode.
 std::optional<double> fixed_share(const std::string& mode) {
   if (!mode.starts_with("fixed:")) return std::nullopt;
   char* end = nullptr;
   const double share = std::strtod(mode.c_str() + 6, &end);
   if (end == mode.c_str() + 6 || *end != 0 || !(share >= 0 && share <= 1))
-    throw ConfigError("--attention is \"" + mode + "\"; what follows fixed: must be a number from 0 to 1");
+    throw ConfigError("--attention is \"" + mode +
+                      "\"; what follows fixed: must be a number from 0 to 1");
   return share;
 }
 
-/// How the attention's clocks run: as set ("adaptive"), all at their shortest period ("max"), each always at the mean period of the
-/// adaptive ones ("mean"), at a share of the way to the longest ("fixed:0.4"), or no attention ("off").
+/// How the attention's clocks run: as set ("adaptive"), all at their shortest period ("max"), each
+/// always at the mean period of the adaptive ones ("mean"), at a share of the way to the longest
+/// ("fixed:0.4"), or no attention ("off").
 void set_mode(const std::string& mode, const Periods& mean, config::AttentionSettings& settings) {
   settings.set_off(mode == "off");
   const std::optional<double> share = fixed_share(mode);
@@ -62,7 +64,9 @@ void set_mode(const std::string& mode, const Periods& mean, config::AttentionSet
   const auto period = [&](const auto& clock, const std::string& name) {
     if (share) return clock.p_min() * std::pow(clock.p_max() / clock.p_min(), *share);
     const auto known = mean.find(name);
-    return mode == "max" || known == mean.end() ? clock.p_min() : std::clamp(known->second, clock.p_min(), clock.p_max());
+    return mode == "max" || known == mean.end()
+               ? clock.p_min()
+               : std::clamp(known->second, clock.p_min(), clock.p_max());
   };
   for (auto& behaviour : *settings.mutable_behaviours()) {
     behaviour.set_law(config::FIXED);
@@ -71,20 +75,24 @@ void set_mode(const std::string& mode, const Periods& mean, config::AttentionSet
   for (auto& work : *settings.mutable_works()) work.set_period(period(work, "work " + work.name()));
 }
 
-/// The settings with the attention's law and mode replaced: a copy of the folder, removed with this object.
+/// The settings with the attention's law and mode replaced: a copy of the folder, removed with this
+/// object.
 class DerivedSettings {
  public:
   DerivedSettings(const std::string& law, const std::string& mode, const Periods& mean) {
     if (law.empty() && mode == "adaptive") return;
     namespace fs = std::filesystem;
     static int count = 0;
-    folder_ = fs::temp_directory_path() / ("handsel-settings-" + std::to_string(getpid()) + "-" + std::to_string(++count));
+    folder_ = fs::temp_directory_path() /
+              ("handsel-settings-" + std::to_string(getpid()) + "-" + std::to_string(++count));
     fs::create_directories(folder_);
-    for (const auto& entry : fs::directory_iterator(resource("config"))) fs::copy(entry.path(), folder_ / entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(resource("config")))
+      fs::copy(entry.path(), folder_ / entry.path().filename());
     config::AttentionSettings settings;
     load_text_proto(folder_ / "attention.txtpb", settings);
     if (!law.empty())
-      for (auto& behaviour : *settings.mutable_behaviours()) behaviour.set_law(law == "weber" ? config::WEBER : config::LINEAR);
+      for (auto& behaviour : *settings.mutable_behaviours())
+        behaviour.set_law(law == "weber" ? config::WEBER : config::LINEAR);
     set_mode(mode, mean, settings);
     std::string text;
     google::protobuf::TextFormat::PrintToString(settings, &text);
@@ -96,7 +104,9 @@ class DerivedSettings {
   }
   DerivedSettings(const DerivedSettings&) = delete;
   DerivedSettings& operator=(const DerivedSettings&) = delete;
-  const std::filesystem::path& folder() const { return folder_; }  ///< empty: the settings as they are
+  const std::filesystem::path& folder() const {
+    return folder_;
+  }  ///< empty: the settings as they are
 
  private:
   std::filesystem::path folder_;
@@ -116,8 +126,8 @@ Shard parse_shard(const std::string& text) {
   Shard shard;
   char rest = 0;
   if (text.empty()) return shard;
-  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2 || shard.count < 1 || shard.index < 0 ||
-      shard.index >= shard.count) {
+  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2 ||
+      shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
     throw ConfigError("--shard is \"" + text + "\"; it must be i/n with 0 <= i < n");
   }
   return shard;
@@ -136,23 +146,28 @@ struct Tally {
 };
 
 void print_table(const std::map<std::string, Tally>& tallies) {
-  std::fprintf(stderr, "%-24s %7s %8s   %s\n", "scenario", "trials", "success", "95 % interval (Wilson)");
+  std::fprintf(stderr, "%-24s %7s %8s   %s\n", "scenario", "trials", "success",
+               "95 % interval (Wilson)");
   for (const auto& [scenario, tally] : tallies) {
     const auto [low, high] = wilson_interval(tally.successes, tally.trials);
-    std::fprintf(stderr, "%-24s %7d %6.1f %%   %.1f … %.1f %%\n", scenario.c_str(), tally.trials, 100.0 * tally.successes / tally.trials,
-                 100 * low, 100 * high);
-    for (const auto& [failure, count] : tally.failures) std::fprintf(stderr, "  %4d %s\n", count, failure.c_str());
+    std::fprintf(stderr, "%-24s %7d %6.1f %%   %.1f … %.1f %%\n", scenario.c_str(), tally.trials,
+                 100.0 * tally.successes / tally.trials, 100 * low, 100 * high);
+    for (const auto& [failure, count] : tally.failures)
+      std::fprintf(stderr, "  %4d %s\n", count, failure.c_str());
   }
 }
 
-/// All conditions of a seed side by side, in an order drawn by the seed: what disturbs a machine, or a person, disturbs all alike.
-std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Condition>& conditions, std::uint64_t first, int count) {
+/// All conditions of a seed side by side, in an order drawn by the seed: what disturbs a machine,
+/// or a person, disturbs all alike.
+std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Condition>& conditions,
+                               std::uint64_t first, int count) {
   std::vector<Trial> trials;
   const Shard shard = parse_shard(options.shard);
   for (const std::string& scenario : options.scenarios) {
     std::vector<NodeContext> contexts;
     for (const Condition& condition : conditions)
-      contexts.push_back(system_context(scenario, options.robot, first, condition.settings->folder()));
+      contexts.push_back(
+          system_context(scenario, options.robot, first, condition.settings->folder()));
     for (int i = 0; i < count; ++i) {
       if (i % shard.count != shard.index) continue;
       const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
@@ -162,7 +177,10 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
       for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
       for (const std::size_t k : order) {
         const Condition& condition = conditions[k];
-        Trial trial{.context = contexts[k], .options = {.scenario = scenario, .attention = condition.mode, .timeout = options.timeout}};
+        Trial trial{
+            .context = contexts[k],
+            .options = {
+                .scenario = scenario, .attention = condition.mode, .timeout = options.timeout}};
         trial.context.seed = seed;
         trial.options.condition = condition.name;
         trial.options.participant = options.participant;
@@ -171,7 +189,9 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
         if (options.replay) {
           trial.options.hash_outputs = true;
           trial.options.record = options.record;
-          trial.options.on_event = [](double at, const std::string& text) { std::fprintf(stderr, "%8.3f s  %s\n", at, text.c_str()); };
+          trial.options.on_event = [](double at, const std::string& text) {
+            std::fprintf(stderr, "%8.3f s  %s\n", at, text.c_str());
+          };
         }
         trials.push_back(std::move(trial));
       }
@@ -181,7 +201,8 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
 }
 
 int jobs_of(const EvalOptions& options) {
-  return options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return options.jobs > 0 ? options.jobs
+                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 /// What the adaptive clocks come to, in trials with seeds of their own: every shard finds the same.
@@ -191,15 +212,17 @@ Periods mean_periods(const EvalOptions& options, const std::string& law) {
   pilot.shard.clear();
   pilot.replay = 0;
   pilot.record.clear();
-  const std::vector<Condition> adaptive{{"adaptive", "adaptive", law, std::make_shared<DerivedSettings>(law, "adaptive", Periods{})}};
+  const std::vector<Condition> adaptive{
+      {"adaptive", "adaptive", law, std::make_shared<DerivedSettings>(law, "adaptive", Periods{})}};
   std::map<std::string, double> looks;
   double time = 0;
-  run_trials(plan_trials(pilot, adaptive, options.seed + kApart, std::min(options.trials, 8)), jobs_of(options),
-             [&](const nlohmann::json& line) {
+  run_trials(plan_trials(pilot, adaptive, options.seed + kApart, std::min(options.trials, 8)),
+             jobs_of(options), [&](const nlohmann::json& line) {
                if (!line.contains("activations_of")) return;
                const double duration = line["duration_s"];
                time += duration;
-               for (const auto& [behaviour, count] : line["activations_of"].items()) looks[behaviour] += count.get<double>();
+               for (const auto& [behaviour, count] : line["activations_of"].items())
+                 looks[behaviour] += count.get<double>();
                for (const auto& [work, period] : line["work_period_s"].items())
                  if (period.is_number()) looks["work " + work] += duration / period.get<double>();
              });
@@ -214,13 +237,15 @@ Periods mean_periods(const EvalOptions& options, const std::string& law) {
 /// Each mode with each law; where no clock adapts the law says nothing, and one is enough.
 std::vector<Condition> conditions_of(const EvalOptions& options) {
   std::vector<Condition> conditions;
-  const std::vector<std::string> laws = options.laws.empty() ? std::vector<std::string>{""} : options.laws;
+  const std::vector<std::string> laws =
+      options.laws.empty() ? std::vector<std::string>{""} : options.laws;
   for (const std::string& mode : options.modes) {
     for (const std::string& law : laws) {
       if (&law != &laws.front() && mode != "adaptive" && mode != "mean") continue;
       const Periods mean = mode == "mean" ? mean_periods(options, law) : Periods{};
-      conditions.push_back({laws.size() > 1 && (mode == "adaptive" || mode == "mean") ? mode + "/" + law : mode, mode, law,
-                            std::make_shared<DerivedSettings>(law, mode, mean)});
+      conditions.push_back(
+          {laws.size() > 1 && (mode == "adaptive" || mode == "mean") ? mode + "/" + law : mode,
+           mode, law, std::make_shared<DerivedSettings>(law, mode, mean)});
     }
   }
   return conditions;
@@ -229,7 +254,8 @@ std::vector<Condition> conditions_of(const EvalOptions& options) {
 void report(const EvalOptions& options, const Study& study) {
   if (study.empty()) return;
   const std::vector<std::string> all = study.conditions();
-  const auto adaptive = std::find_if(all.begin(), all.end(), [](const std::string& c) { return c.starts_with("adaptive"); });
+  const auto adaptive = std::find_if(
+      all.begin(), all.end(), [](const std::string& c) { return c.starts_with("adaptive"); });
   const std::string reference = adaptive == all.end() ? all.front() : *adaptive;
   if (all.size() > 1) std::fputs(study.table(reference).c_str(), stderr);
   if (!options.report.empty()) write_study(study, reference, options.report);
@@ -253,12 +279,15 @@ int report_files(const EvalOptions& options) {
         throw ConfigError(file + ":" + std::to_string(number) + ": " + error.what());
       }
       if (!line.contains("scenario") || !line.contains("seed") || !line.contains("success"))
-        throw ConfigError(file + ":" + std::to_string(number) + ": this is no line of handsel eval");
+        throw ConfigError(file + ":" + std::to_string(number) +
+                          ": this is no line of handsel eval");
       try {
         study.add(line);
         tallies[line["scenario"]].add(line);
       } catch (const nlohmann::json::exception&) {
-        throw ConfigError(file + ":" + std::to_string(number) + ": this is no line of handsel eval: a field is missing or of another type");
+        throw ConfigError(
+            file + ":" + std::to_string(number) +
+            ": this is no line of handsel eval: a field is missing or of another type");
       }
     }
   }
@@ -271,10 +300,12 @@ int evaluate(const EvalOptions& options) {
   if (!options.from.empty()) return report_files(options);
   if (options.replay && options.modes.size() * std::max<std::size_t>(1, options.laws.size()) > 1)
     throw ConfigError("--replay repeats one trial: name one mode and one law");
-  if (!options.record.empty() && !options.replay) throw ConfigError("--record is for the one trial of --replay");
+  if (!options.record.empty() && !options.replay)
+    throw ConfigError("--record is for the one trial of --replay");
   const std::vector<Condition> conditions = conditions_of(options);
   const std::vector<Trial> trials =
-      plan_trials(options, conditions, options.replay ? options.replay : options.seed, options.replay ? 1 : options.trials);
+      plan_trials(options, conditions, options.replay ? options.replay : options.seed,
+                  options.replay ? 1 : options.trials);
   std::ofstream out;
   if (!options.out.empty()) {
     out.open(options.out);
@@ -296,8 +327,10 @@ int evaluate(const EvalOptions& options) {
     }
     ++done;
     if (options.replay && line.contains("output_hash"))
-      std::fprintf(stderr, "hash of all outputs %s\n", line["output_hash"].get<std::string>().c_str());
-    if (progress_wanted()) std::fprintf(stderr, "\r%zu of %zu trials, %zu succeeded ", done, trials.size(), successes);
+      std::fprintf(stderr, "hash of all outputs %s\n",
+                   line["output_hash"].get<std::string>().c_str());
+    if (progress_wanted())
+      std::fprintf(stderr, "\r%zu of %zu trials, %zu succeeded ", done, trials.size(), successes);
   });
   if (progress_wanted()) std::fprintf(stderr, "\n");
   print_table(tallies);
@@ -310,38 +343,62 @@ int evaluate(const EvalOptions& options) {
 
 void add_eval_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvalOptions>();
-  CLI::App* command = app.add_subcommand("eval", "randomised trials in lock-step: one JSON line each, a table at the end");
-  command->add_option("--scenario", options->scenarios, "scenarios: names or files")->capture_default_str();
+  CLI::App* command = app.add_subcommand(
+      "eval", "randomised trials in lock-step: one JSON line each, a table at the end");
+  command->add_option("--scenario", options->scenarios, "scenarios: names or files")
+      ->capture_default_str();
   command->add_option("--robot", options->robot, "robot description (default: the scenario's)");
-  command->add_option("--trials", options->trials, "of each scenario")->check(kAboveZero)->capture_default_str();
-  command->add_option("--seed", options->seed, "of the first trial; each next has one more")->check(kAboveZero)->capture_default_str();
-  command->add_option("--replay", options->replay, "one trial with this seed, bit for bit, telling what happens")->check(kAboveZero);
-  command->add_option("--record", options->record, "with --replay: write everything that is said into this MCAP file");
+  command->add_option("--trials", options->trials, "of each scenario")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the first trial; each next has one more")
+      ->check(kAboveZero)
+      ->capture_default_str();
   command
-      ->add_option(
-          "--attention", options->modes,
-          "how its clocks run: adaptive; max: all at their shortest period; mean: each at the mean period of the adaptive ones, "
-          "found in a few trials before; fixed:SHARE: all at this fraction from their shortest to their longest period, 0 to 1; off: no "
-          "attention. Several are compared, with the same seeds")
+      ->add_option("--replay", options->replay,
+                   "one trial with this seed, bit for bit, telling what happens")
+      ->check(kAboveZero);
+  command->add_option("--record", options->record,
+                      "with --replay: write everything that is said into this MCAP file");
+  command
+      ->add_option("--attention", options->modes,
+                   "how its clocks run: adaptive; max: all at their shortest period; mean: each at "
+                   "the mean period of the adaptive ones, "
+                   "found in a few trials before; fixed:SHARE: all at this fraction from their "
+                   "shortest to their longest period, 0 to 1; off: no "
+                   "attention. Several are compared, with the same seeds")
       ->check([](const std::string& mode) {
         for (const char* known : {"adaptive", "max", "mean", "off"})
           if (mode == known) return std::string();
         try {
-          return fixed_share(mode) ? std::string() : "\"" + mode + "\" is none of adaptive, max, mean, off, fixed:SHARE";
+          return fixed_share(mode)
+                     ? std::string()
+                     : "\"" + mode + "\" is none of adaptive, max, mean, off, fixed:SHARE";
         } catch (const ConfigError& error) {
           return std::string(error.what());
         }
       })
       ->capture_default_str();
-  command->add_option("--law", options->laws, "of the attention's clocks (default: as in its settings); both are compared")
+  command
+      ->add_option("--law", options->laws,
+                   "of the attention's clocks (default: as in its settings); both are compared")
       ->check(CLI::IsMember({"linear", "weber"}));
-  command->add_option("--report", options->report, "folder for the comparison (JSON Lines, table), a CSV row a trial, and plots (SVG)");
-  command->add_option("--from", options->from, "report on these files of lines instead of trials, e.g. on those of all shards");
+  command->add_option(
+      "--report", options->report,
+      "folder for the comparison (JSON Lines, table), a CSV row a trial, and plots (SVG)");
+  command->add_option(
+      "--from", options->from,
+      "report on these files of lines instead of trials, e.g. on those of all shards");
   command->add_option("--participant", options->participant, "pseudonym that the lines carry");
   add_no_weld_option(*command);
-  command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")->check(kAboveZero);
-  command->add_option("--shard", options->shard, "i/n: only every n-th trial, from the i-th (0 <= i < n)");
-  command->add_option("--timeout", options->timeout, "[s] of virtual time for all tasks (default: the scenario's)")->check(kAboveZero);
+  command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")
+      ->check(kAboveZero);
+  command->add_option("--shard", options->shard,
+                      "i/n: only every n-th trial, from the i-th (0 <= i < n)");
+  command
+      ->add_option("--timeout", options->timeout,
+                   "[s] of virtual time for all tasks (default: the scenario's)")
+      ->check(kAboveZero);
   command->add_option("--out", options->out, "write the lines to this file");
   command->callback([options, &exit_code] { exit_code = evaluate(*options); });
 }

@@ -37,19 +37,22 @@ json line_of(const Choice& choice, std::size_t i) {
   if (g.has_platform) line["platform"] = {g.platform.x(), g.platform.y(), g.platform.z()};
   if (i < choice.goals.size()) {
     const PuttingDown& down = choice.goals[i];
-    line["goal"] = {{"above", numbers(down.above)}, {"at", numbers(down.at)}, {"off", numbers(down.off)}};
+    line["goal"] = {
+        {"above", numbers(down.above)}, {"at", numbers(down.at)}, {"off", numbers(down.off)}};
   }
   return line;
 }
 
 /// The robot at the grasp and, when there is a goal, where it puts the object.
-Picture picture_of(const Stage& stage, const Scene& scene, const GraspRequest& request, const Choice& choice, int size) {
+Picture picture_of(const Stage& stage, const Scene& scene, const GraspRequest& request,
+                   const Choice& choice, int size) {
   const Grasp& g = choice.grasps.front();
   const Manipulator& m = stage.arms.front().arm;
   Scene there = scene;
   if (g.has_platform) there.T_world_base = standing_at({g.platform, 0}, scene.T_world_base);
   const auto with = [&](const Vector& arm_q) {
-    return RobotModel::with(RobotModel::with(request.start, *m.arm, arm_q), *m.fingers, g.hand_joints);
+    return RobotModel::with(RobotModel::with(request.start, *m.arm, arm_q), *m.fingers,
+                            g.hand_joints);
   };
   RegraspPlan plan;
   plan.steps.resize(choice.goals.empty() ? 1 : 2);
@@ -66,11 +69,16 @@ int choose(const ChooseOptions& o) {
   const Stage stage(o);
   const Listed& robot = stage.lists.front();
   Scene scene = stage.scene;
-  scene.objects.push_back({"object", stage.object.name, stage.standing(o.at[0], o.at[1]), Holder::surface, "table", 0});
-  if (o.obstacles.size() % 6 != 0) throw ConfigError("--obstacle: six numbers each, the middle x,y,z and the size x,y,z [m]");
+  scene.objects.push_back(
+      {"object", stage.object.name, stage.standing(o.at[0], o.at[1]), Holder::surface, "table", 0});
+  if (o.obstacles.size() % 6 != 0)
+    throw ConfigError("--obstacle: six numbers each, the middle x,y,z and the size x,y,z [m]");
   for (std::size_t i = 0; i < o.obstacles.size(); i += 6) {
     const double* b = &o.obstacles[i];
-    scene.boxes.push_back({"obstacle " + std::to_string(i / 6 + 1), make_pose({b[0], b[1], b[2]}), {b[3], b[4], b[5]}, false});
+    scene.boxes.push_back({"obstacle " + std::to_string(i / 6 + 1),
+                           make_pose({b[0], b[1], b[2]}),
+                           {b[3], b[4], b[5]},
+                           false});
   }
   HumanState people;
   GraspRequest request;
@@ -85,20 +93,26 @@ int choose(const ChooseOptions& o) {
   }
   if (!o.goal.empty()) {
     request.has_goal = true;
-    request.T_world_goal = stage.standing(o.goal[0], o.goal[1], o.goal.size() > 2 ? o.goal[2] * kDegree : 0.0);
+    request.T_world_goal =
+        stage.standing(o.goal[0], o.goal[1], o.goal.size() > 2 ? o.goal[2] * kDegree : 0.0);
   }
   auto mobile = o.move_platform ? on_platform(*stage.robot, stage.file) : std::nullopt;
-  const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), {},
-                             mobile ? std::make_shared<const RobotModel>(std::move(*mobile)) : nullptr);
+  const GraspChooser chooser(
+      stage.robot, robot.hand_geometry, stage.library(), {},
+      mobile ? std::make_shared<const RobotModel>(std::move(*mobile)) : nullptr);
   const auto begin = std::chrono::steady_clock::now();
   const Choice choice = chooser.choose(request, robot.list, *robot.object, scene, people);
-  const double ms = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::fprintf(stderr, "%zu grasps chosen in %.1f ms, %llu inverse kinematics\n", choice.grasps.size(), ms, whole(choice.reaches));
+  const double ms =
+      1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::fprintf(stderr, "%zu grasps chosen in %.1f ms, %llu inverse kinematics\n",
+               choice.grasps.size(), ms, whole(choice.reaches));
   print_refusals(choice.refusals());
   if (choice.grasps.empty()) std::fprintf(stderr, "%s\n", choice.why_none(robot.list).c_str());
 
   const bool text = !json_wanted(o.as_json);
-  if (text && !choice.grasps.empty()) std::printf("%8s %8s %8s %8s  %s\n", "id", "quality", "margin", "visible", "platform x, y, heading");
+  if (text && !choice.grasps.empty())
+    std::printf("%8s %8s %8s %8s  %s\n", "id", "quality", "margin", "visible",
+                "platform x, y, heading");
   for (std::size_t i = 0; i < choice.grasps.size(); ++i) {
     const Grasp& g = choice.grasps[i];
     if (!text) {
@@ -107,37 +121,58 @@ int choose(const ChooseOptions& o) {
     }
     std::printf("%8llu %8.3f %8.2f %8.2f  ", whole(g.id), g.quality, g.margin, g.visible);
     if (g.has_platform) {
-      std::printf("%.2f %.2f m, %.0f deg\n", g.platform.x(), g.platform.y(), g.platform.z() / kDegree);
+      std::printf("%.2f %.2f m, %.0f deg\n", g.platform.x(), g.platform.y(),
+                  g.platform.z() / kDegree);
     } else {
       std::printf("stays\n");
     }
   }
-  if (!o.png.empty() && !choice.grasps.empty()) write(picture_of(stage, scene, request, choice, o.size), o.png);
+  if (!o.png.empty() && !choice.grasps.empty())
+    write(picture_of(stage, scene, request, choice, o.size), o.png);
   return choice.grasps.empty() ? 1 : 0;
 }
 
 }  // namespace
 
 void add_grasp_choose(CLI::App& grasp, int& exit_code) {
-  CLI::App* choosing =
-      grasp.add_subcommand("choose", "Grasps of the list that serve a robot before a table, best first, and why the others do not");
+  CLI::App* choosing = grasp.add_subcommand("choose",
+                                            "Grasps of the list that serve a robot before a table, "
+                                            "best first, and why the others do not");
   auto o = std::make_shared<ChooseOptions>();
   add_stage_options(*choosing, *o);
-  choosing->add_option("--at", o->at, "where the object stands on the table, x,y [m]")->delimiter(',')->expected(2)->capture_default_str();
+  choosing->add_option("--at", o->at, "where the object stands on the table, x,y [m]")
+      ->delimiter(',')
+      ->expected(2)
+      ->capture_default_str();
   choosing
-      ->add_option("--goal", o->goal, "where it will be put on the table, x,y [m], perhaps a heading [deg]: the grasp must serve there too")
+      ->add_option("--goal", o->goal,
+                   "where it will be put on the table, x,y [m], perhaps a heading [deg]: the grasp "
+                   "must serve there too")
       ->delimiter(',')
       ->expected(2, 3);
-  choosing->add_option("--person", o->person, "it is for a person who stands at x,y [m], facing the robot")->delimiter(',')->expected(2);
-  choosing->add_option("--stature", o->stature, "of the person [m]")->check(CLI::Range(0.8, 2.4))->capture_default_str();
   choosing
-      ->add_option("--least-visible", o->min_visible,
-                   "fraction of the object that the person, else the robot's head, must see past the hand")
+      ->add_option("--person", o->person,
+                   "it is for a person who stands at x,y [m], facing the robot")
+      ->delimiter(',')
+      ->expected(2);
+  choosing->add_option("--stature", o->stature, "of the person [m]")
+      ->check(CLI::Range(0.8, 2.4))
+      ->capture_default_str();
+  choosing
+      ->add_option(
+          "--least-visible", o->min_visible,
+          "fraction of the object that the person, else the robot's head, must see past the hand")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  choosing->add_flag("--move-platform", o->move_platform, "where no grasp is in reach, look for places the platform may drive to");
-  choosing->add_option("--obstacle", o->obstacles, "a box: middle x,y,z and size x,y,z [m]; may be repeated")->delimiter(',');
-  choosing->add_option("--number", o->number, "of grasps")->check(CLI::Range(1, 1000))->capture_default_str();
+  choosing->add_flag("--move-platform", o->move_platform,
+                     "where no grasp is in reach, look for places the platform may drive to");
+  choosing
+      ->add_option("--obstacle", o->obstacles,
+                   "a box: middle x,y,z and size x,y,z [m]; may be repeated")
+      ->delimiter(',');
+  choosing->add_option("--number", o->number, "of grasps")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   choosing->callback([o, &exit_code] { exit_code = choose(*o); });
 }
 

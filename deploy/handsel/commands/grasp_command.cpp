@@ -30,7 +30,8 @@ json numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 std::vector<Vector3> triples(const json& item, const char* name) {
   const json& list = field(item, name);
-  if (!list.is_array() || list.empty()) throw LineError(std::string("\"") + name + "\" must be a list of points, at least one");
+  if (!list.is_array() || list.empty())
+    throw LineError(std::string("\"") + name + "\" must be a list of points, at least one");
   std::vector<Vector3> out;
   for (const json& p : list) out.push_back(vector3(json{{name, p}}, name));
   return out;
@@ -39,24 +40,30 @@ std::vector<Vector3> triples(const json& item, const char* name) {
 WrenchMatrix wrenches_of(const json& item) {
   if (item.is_object() && item.contains("wrenches")) {
     const json& list = item["wrenches"];
-    if (!list.is_array() || list.empty()) throw LineError("\"wrenches\" must be a list of wrenches, at least one");
+    if (!list.is_array() || list.empty())
+      throw LineError("\"wrenches\" must be a list of wrenches, at least one");
     WrenchMatrix w;
     for (std::size_t i = 0; i < list.size(); ++i) {
       const Vector v = vector_of(json{{"wrenches", list[i]}}, "wrenches");
       if (i == 0) w.resize(v.size(), static_cast<Eigen::Index>(list.size()));
-      if (v.size() != w.rows()) throw LineError("wrench " + std::to_string(i) + " has another dimension than the first");
+      if (v.size() != w.rows())
+        throw LineError("wrench " + std::to_string(i) + " has another dimension than the first");
       w.col(static_cast<Eigen::Index>(i)) = v;
     }
     return w;
   }
-  const std::vector<Vector3> points = triples(item, "points"), normals = triples(item, "inward_normals");
-  if (points.size() != normals.size()) throw LineError("\"points\" and \"inward_normals\" must be equally long");
+  const std::vector<Vector3> points = triples(item, "points"),
+                             normals = triples(item, "inward_normals");
+  if (points.size() != normals.size())
+    throw LineError("\"points\" and \"inward_normals\" must be equally long");
   const double mu = number(item, "mu"), edges = number(item, "edges");
   if (mu < 0) throw LineError("\"mu\" must not be negative");
-  if (edges < 3 || edges > 1000 || edges != std::floor(edges)) throw LineError("\"edges\" must be a whole number from 3 to 1000");
+  if (edges < 3 || edges > 1000 || edges != std::floor(edges))
+    throw LineError("\"edges\" must be a whole number from 3 to 1000");
   std::vector<PointContact> contacts;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!(normals[i].norm() > 1e-9)) throw LineError("inward normal " + std::to_string(i) + " is zero");
+    if (!(normals[i].norm() > 1e-9))
+      throw LineError("inward normal " + std::to_string(i) + " is zero");
     contacts.push_back({points[i], normals[i].normalized(), mu});
   }
   const Vector3 com = item.contains("com") ? vector3(item, "com") : Vector3::Zero().eval();
@@ -66,7 +73,9 @@ WrenchMatrix wrenches_of(const json& item) {
 
 json score(const json& item) {
   const WrenchMatrix w = wrenches_of(item);
-  if (w.rows() > kMaxWrenchDimension) throw LineError("wrenches may have at most " + std::to_string(kMaxWrenchDimension) + " dimensions");
+  if (w.rows() > kMaxWrenchDimension)
+    throw LineError("wrenches may have at most " + std::to_string(kMaxWrenchDimension) +
+                    " dimensions");
   return {{"force_closure", force_closure(w)}, {"epsilon", epsilon(w)}};
 }
 
@@ -90,7 +99,8 @@ json line_of(const ListedGrasp& listed, const HandModel& hand) {
                         {"mu", c.friction}});
   }
   return {{"id", g.id},
-          {"T_object_hand", {{"p", numbers(g.T_object_hand.translation())}, {"q", {q.x(), q.y(), q.z(), q.w()}}}},
+          {"T_object_hand",
+           {{"p", numbers(g.T_object_hand.translation())}, {"q", {q.x(), q.y(), q.z(), q.w()}}}},
           {"joints", joints},
           {"pregrasp", open},
           {"contacts", contacts},
@@ -109,12 +119,14 @@ int list(const ListOptions& o) {
   const Listed listed = list_with(o.hand, o);
   const bool table = !json_wanted(o.as_json);
   if (table) {
-    std::printf("%8s %8s %8s %10s %7s %7s %9s %6s\n", "id", "quality", "epsilon", "stability", "centre", "force", "curvature", "room");
+    std::printf("%8s %8s %8s %10s %7s %7s %9s %6s\n", "id", "quality", "epsilon", "stability",
+                "centre", "force", "curvature", "room");
   }
   for (const ListedGrasp& g : listed.list.grasps) {
     if (table) {
-      std::printf("%8llu %8.3f %8.4f %10.3f %7.3f %7.3f %9.3f %6.2f\n", static_cast<unsigned long long>(g.grasp.id), g.grasp.quality,
-                  g.grasp.epsilon, g.scores.stability, g.scores.centre, g.scores.force, g.scores.curvature, g.room);
+      std::printf("%8llu %8.3f %8.4f %10.3f %7.3f %7.3f %9.3f %6.2f\n",
+                  static_cast<unsigned long long>(g.grasp.id), g.grasp.quality, g.grasp.epsilon,
+                  g.scores.stability, g.scores.centre, g.scores.force, g.scores.curvature, g.room);
     } else {
       std::cout << line_of(g, listed.hand_geometry->hand).dump() << '\n';
     }
@@ -128,23 +140,30 @@ int placements(const ListOptions& o) {
   const ObjectModel object = object_of(o);
   const MassProperties mass = mass_properties(object.mesh);
   const std::vector<Placement> found = stable_placements(object.mesh, object.com);
-  std::fprintf(stderr, "%s: mass centre %.4f %.4f %.4f m", object.name.c_str(), object.com.x(), object.com.y(), object.com.z());
+  std::fprintf(stderr, "%s: mass centre %.4f %.4f %.4f m", object.name.c_str(), object.com.x(),
+               object.com.y(), object.com.z());
   if (mass.volume > 0) {
-    const Vector3 principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass.inertia_per_mass).eigenvalues();
-    std::fprintf(stderr, ", volume %.4g l, principal inertia %.3g %.3g %.3g m^2 a kg when filled evenly", 1e3 * mass.volume, principal[0],
-                 principal[1], principal[2]);
+    const Vector3 principal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass.inertia_per_mass).eigenvalues();
+    std::fprintf(stderr,
+                 ", volume %.4g l, principal inertia %.3g %.3g %.3g m^2 a kg when filled evenly",
+                 1e3 * mass.volume, principal[0], principal[1], principal[2]);
   }
   std::fprintf(stderr, "; %zu ways to stand\n", found.size());
   const bool text = !json_wanted(o.as_json);
-  if (text) std::printf("%9s %9s %9s %9s  %s\n", "tips [deg]", "height", "margin", "area", "side that is down (object frame)");
+  if (text)
+    std::printf("%9s %9s %9s %9s  %s\n", "tips [deg]", "height", "margin", "area",
+                "side that is down (object frame)");
   for (const Placement& p : found) {
     const Vector3 down = p.T_support_object.linear().transpose() * -Vector3::UnitZ();
     if (text) {
-      std::printf("%10.1f %9.4f %9.4f %9.5f  %6.3f %6.3f %6.3f\n", p.tipping * 180 / M_PI, p.height, p.margin, p.area, down.x(), down.y(),
-                  down.z());
+      std::printf("%10.1f %9.4f %9.4f %9.5f  %6.3f %6.3f %6.3f\n", p.tipping * 180 / M_PI, p.height,
+                  p.margin, p.area, down.x(), down.y(), down.z());
     } else {
       const Eigen::Quaterniond q(p.T_support_object.linear());
-      std::cout << json{{"T_support_object", {{"p", numbers(p.T_support_object.translation())}, {"q", {q.x(), q.y(), q.z(), q.w()}}}},
+      std::cout << json{{"T_support_object",
+                         {{"p", numbers(p.T_support_object.translation())},
+                          {"q", {q.x(), q.y(), q.z(), q.w()}}}},
                         {"down", numbers(down)},
                         {"tipping", p.tipping},
                         {"height", p.height},
@@ -175,9 +194,12 @@ int table(const TableOptions& o) {
       if (text) {
         std::printf("%s\n", table_line(r).c_str());
       } else {
-        std::cout << json{{"object", r.object},       {"hand", r.hand},         {"scale", r.scale},   {"size", r.size},
-                          {"triangles", r.triangles}, {"frames", r.frames},     {"grasps", r.grasps}, {"best", r.best},
-                          {"seconds", r.seconds},     {"findings", r.findings}, {"reason", r.reason}}
+        std::cout << json{{"object", r.object},       {"hand", r.hand},
+                          {"scale", r.scale},         {"size", r.size},
+                          {"triangles", r.triangles}, {"frames", r.frames},
+                          {"grasps", r.grasps},       {"best", r.best},
+                          {"seconds", r.seconds},     {"findings", r.findings},
+                          {"reason", r.reason}}
                          .dump()
                   << '\n';
       }
@@ -192,30 +214,40 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   CLI::App* grasp = app.add_subcommand("grasp", "Grasps of a hand on an object");
   grasp->require_subcommand(1);
 
-  CLI::App* scoring = grasp->add_subcommand("score", "Force closure and epsilon of sets of contacts, one JSON line a set on stdin");
+  CLI::App* scoring = grasp->add_subcommand(
+      "score", "Force closure and epsilon of sets of contacts, one JSON line a set on stdin");
   scoring->footer(
       R"(A line: {"points": [[3]...], "inward_normals": [[3]...], "mu", "edges", "com", "torque_scale"} or {"wrenches": [[...]...]})");
   scoring->add_flag("--json")->description("JSON Lines (always so)");
   scoring->callback([&exit_code] { exit_code = for_each_line(std::cin, std::cout, score); });
 
-  CLI::App* listing = grasp->add_subcommand("list", "All grasps found, best first; what was rejected and why goes to stderr");
+  CLI::App* listing = grasp->add_subcommand(
+      "list", "All grasps found, best first; what was rejected and why goes to stderr");
   auto o = std::make_shared<ListOptions>();
   add_list_options(*listing, *o);
   listing->callback([o, &exit_code] { exit_code = list(*o); });
 
-  CLI::App* tabling =
-      grasp->add_subcommand("table", "Hands against objects: numbers of grasps, best quality, time and reasons, a line each");
+  CLI::App* tabling = grasp->add_subcommand(
+      "table",
+      "Hands against objects: numbers of grasps, best quality, time and reasons, a line each");
   auto t = std::make_shared<TableOptions>();
-  tabling->add_option("--hand", t->hands, "hand description: name or file; may be repeated")->capture_default_str();
-  tabling->add_option("--object", t->objects, "mesh file or object description; may be repeated")->required();
+  tabling->add_option("--hand", t->hands, "hand description: name or file; may be repeated")
+      ->capture_default_str();
+  tabling->add_option("--object", t->objects, "mesh file or object description; may be repeated")
+      ->required();
   tabling->add_flag("--fit", t->fit, "scale an object that is too large or too small for the hand");
-  tabling->add_option("--positions", t->positions, "grasp frames: positions in the object's box")->check(kAboveZero)->capture_default_str();
-  tabling->add_option("--orientations", t->orientations, "and orientations at each")->check(kAboveZero)->capture_default_str();
+  tabling->add_option("--positions", t->positions, "grasp frames: positions in the object's box")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  tabling->add_option("--orientations", t->orientations, "and orientations at each")
+      ->check(kAboveZero)
+      ->capture_default_str();
   tabling->add_flag("--json", t->as_json, "JSON Lines also on a terminal");
   tabling->callback([t, &exit_code] { exit_code = table(*t); });
 
-  CLI::App* standing =
-      grasp->add_subcommand("placements", "How an object stands by itself, hardest to tip over first, and how its mass is spread");
+  CLI::App* standing = grasp->add_subcommand(
+      "placements",
+      "How an object stands by itself, hardest to tip over first, and how its mass is spread");
   auto s = std::make_shared<ListOptions>();
   standing->add_option("--object", s->object, "mesh file or object description")->required();
   standing->add_option("--scale", s->scale, "of the mesh")->check(kAboveZero);

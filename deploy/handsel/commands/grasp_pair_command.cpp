@@ -21,7 +21,9 @@ using namespace grasp_planner;
 
 using Clock = std::chrono::steady_clock;
 
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // ---- double
 
@@ -43,29 +45,39 @@ int pairs(const PairOptions& o) {
   settings.p_object_middle = a.object->box().center();
   settings.passed = o.passed ? a.object.get() : nullptr;
   const auto start = Clock::now();
-  const DoubleList found = list_double_grasps({a.hand_geometry.get(), &a.list, {}}, {b.hand_geometry.get(), &b.list, {}}, settings);
+  const DoubleList found = list_double_grasps({a.hand_geometry.get(), &a.list, {}},
+                                              {b.hand_geometry.get(), &b.list, {}}, settings);
   const double seconds = since(start);
   const bool table = !json_wanted(o.as_json);
-  if (table) std::printf("%8s %8s %8s %12s %8s\n", "first", "second", "quality", "opposed[deg]", "score");
+  if (table)
+    std::printf("%8s %8s %8s %12s %8s\n", "first", "second", "quality", "opposed[deg]", "score");
   for (const DoubleGrasp& d : found.grasps) {
-    const std::uint64_t first = a.list.grasps[d.first].grasp.id, second = b.list.grasps[d.second].grasp.id;
+    const std::uint64_t first = a.list.grasps[d.first].grasp.id,
+                        second = b.list.grasps[d.second].grasp.id;
     if (table) {
-      std::printf("%8llu %8llu %8.3f %12.0f %8.3f\n", whole(first), whole(second), d.quality, d.opposition / kDegree, d.score);
+      std::printf("%8llu %8llu %8.3f %12.0f %8.3f\n", whole(first), whole(second), d.quality,
+                  d.opposition / kDegree, d.score);
     } else {
-      std::cout
-          << json{{"first", first}, {"second", second}, {"quality", d.quality}, {"opposition", d.opposition}, {"score", d.score}}.dump()
-          << '\n';
+      std::cout << json{{"first", first},
+                        {"second", second},
+                        {"quality", d.quality},
+                        {"opposition", d.opposition},
+                        {"score", d.score}}
+                       .dump()
+                << '\n';
     }
   }
-  std::fprintf(stderr, "%zu double grasps of %llu pairs in %.2f s\n", found.grasps.size(), whole(found.pairs), seconds);
+  std::fprintf(stderr, "%zu double grasps of %llu pairs in %.2f s\n", found.grasps.size(),
+               whole(found.pairs), seconds);
   print_refusals(found.refusals());
   if (!o.png.empty() && !found.grasps.empty()) {
     if (o.number > found.grasps.size()) {
-      throw ConfigError("--number " + std::to_string(o.number) + ": there are " + std::to_string(found.grasps.size()) + " double grasps");
+      throw ConfigError("--number " + std::to_string(o.number) + ": there are " +
+                        std::to_string(found.grasps.size()) + " double grasps");
     }
     const DoubleGrasp& d = found.grasps[o.number - 1];
-    write(double_grasp_picture(*a.object, *a.hand_geometry, a.list.grasps[d.first].grasp, *b.hand_geometry, b.list.grasps[d.second].grasp,
-                               o.size),
+    write(double_grasp_picture(*a.object, *a.hand_geometry, a.list.grasps[d.first].grasp,
+                               *b.hand_geometry, b.list.grasps[d.second].grasp, o.size),
           o.png);
   }
   return found.grasps.empty() ? 1 : 0;
@@ -88,13 +100,15 @@ int transfer(const TransferOptions& o) {
   TransferSettings settings;
   settings.max_tilt = o.tilt * kDegree;
   auto start = Clock::now();
-  const TransferTable table({robot.hand_geometry.get(), &robot.list, {}}, {human.hand_geometry.get(), &human.list, {}}, *robot.object,
-                            settings);
-  std::fprintf(stderr, "pairs of robot and person: %llu in %.3f s\n", whole(table.doubles().pairs), since(start));
+  const TransferTable table({robot.hand_geometry.get(), &robot.list, {}},
+                            {human.hand_geometry.get(), &human.list, {}}, *robot.object, settings);
+  std::fprintf(stderr, "pairs of robot and person: %llu in %.3f s\n", whole(table.doubles().pairs),
+               since(start));
   print_refusals(table.doubles().refusals());
 
   Scene scene = stage.scene;
-  scene.objects.push_back({"object", stage.object.name, stage.standing(o.at[0], o.at[1]), Holder::surface, "table", 0});
+  scene.objects.push_back(
+      {"object", stage.object.name, stage.standing(o.at[0], o.at[1]), Holder::surface, "table", 0});
   const Person person = somebody(o.person[0], o.person[1], o.stature);
   HumanState people;
   people.people.push_back(person);
@@ -107,12 +121,15 @@ int transfer(const TransferOptions& o) {
   weights.rank_transfer = 3;  // the person before all
   const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), weights);
   start = Clock::now();
-  const Choice choice = chooser.choose(request, robot.list, *robot.object, scene, people, {}, &table);
+  const Choice choice =
+      chooser.choose(request, robot.list, *robot.object, scene, people, {}, &table);
   std::fprintf(stderr, "chosen in %.1f ms\n", 1e3 * since(start));
   print_refusals(choice.refusals());
 
   const bool text = !json_wanted(o.as_json);
-  if (text) std::printf("%8s %8s %8s %8s %8s %8s %8s %8s\n", "robot", "person", "quality", "opposed", "strain", "aim", "tilt", "score");
+  if (text)
+    std::printf("%8s %8s %8s %8s %8s %8s %8s %8s\n", "robot", "person", "quality", "opposed",
+                "strain", "aim", "tilt", "score");
   bool any = false;
   for (std::size_t i = 0; i < choice.grasps.size(); ++i) {
     if (i >= choice.transfers.size() || !choice.transfers[i]) continue;
@@ -120,8 +137,9 @@ int transfer(const TransferOptions& o) {
     const Grasp &g = choice.grasps[i], &h = human.list.grasps[t.partner.human].grasp;
     const double tilt = std::acos(std::clamp(t.T_world_object.linear()(2, 2), -1.0, 1.0));
     if (text) {
-      std::printf("%8llu %8llu %8.3f %8.0f %8.2f %8.0f %8.0f %8.3f\n", whole(g.id), whole(h.id), g.quality, t.partner.opposition / kDegree,
-                  t.wrist.strain, t.aim / kDegree, tilt / kDegree, t.score);
+      std::printf("%8llu %8llu %8.3f %8.0f %8.2f %8.0f %8.0f %8.3f\n", whole(g.id), whole(h.id),
+                  g.quality, t.partner.opposition / kDegree, t.wrist.strain, t.aim / kDegree,
+                  tilt / kDegree, t.score);
     } else {
       std::cout << json{{"robot_grasp", g.id},
                         {"human_grasp", h.id},
@@ -143,14 +161,18 @@ int transfer(const TransferOptions& o) {
     }
     if (!any && !o.png.empty()) {
       const Manipulator& m = stage.arms.front().arm;
-      const Vector q = RobotModel::with(RobotModel::with(request.start, *m.arm, t.arm_joints), *m.fingers, g.hand_joints);
-      write(transfer_picture({*stage.robot, q}, scene, {person, *human.hand_geometry, h}, *robot.object, t, o.size), o.png);
+      const Vector q = RobotModel::with(RobotModel::with(request.start, *m.arm, t.arm_joints),
+                                        *m.fingers, g.hand_joints);
+      write(transfer_picture({*stage.robot, q}, scene, {person, *human.hand_geometry, h},
+                             *robot.object, t, o.size),
+            o.png);
     }
     any = true;
   }
   if (choice.grasps.empty()) std::fprintf(stderr, "%s\n", choice.why_none(robot.list).c_str());
   if (!choice.grasps.empty() && !any)
-    std::fprintf(stderr, "it can be picked up, but in no grasp that leaves the person a comfortable one\n");
+    std::fprintf(stderr,
+                 "it can be picked up, but in no grasp that leaves the person a comfortable one\n");
   return any ? 0 : 1;
 }
 
@@ -167,37 +189,56 @@ struct RegraspOptions : StageOptions {
 };
 
 void print_plan(const RegraspPlan& plan, const Stage& stage, bool text) {
-  const auto arm = [&](int index) { return index < 0 ? std::string() : stage.arms[static_cast<std::size_t>(index)].arm.name; };
-  const auto id = [&](int index, std::size_t grasp) { return stage.arms[static_cast<std::size_t>(index)].list->grasps[grasp].grasp.id; };
+  const auto arm = [&](int index) {
+    return index < 0 ? std::string() : stage.arms[static_cast<std::size_t>(index)].arm.name;
+  };
+  const auto id = [&](int index, std::size_t grasp) {
+    return stage.arms[static_cast<std::size_t>(index)].list->grasps[grasp].grasp.id;
+  };
   if (!text) {
     json steps = json::array(), rejected = json::array();
     for (const grasp_planner::RegraspStep& s : plan.steps) {
-      json step{{"step", name(s.kind)}, {"T_world_object", pose_line(s.T_world_object)}, {"q", numbers(s.q)}};
+      json step{{"step", name(s.kind)},
+                {"T_world_object", pose_line(s.T_world_object)},
+                {"q", numbers(s.q)}};
       if (s.from >= 0) step["from"] = {{"arm", arm(s.from)}, {"grasp", id(s.from, s.grasp_from)}};
       if (s.to >= 0) step["to"] = {{"arm", arm(s.to)}, {"grasp", id(s.to, s.grasp_to)}};
       steps.push_back(step);
     }
-    for (const Refusal& r : plan.rejected) rejected.push_back({{"what", r.what}, {"reason", r.reason}});
-    std::cout << json{{"solved", plan.solved}, {"reason", plan.reason}, {"steps", steps}, {"rejected", rejected}}.dump() << '\n';
+    for (const Refusal& r : plan.rejected)
+      rejected.push_back({{"what", r.what}, {"reason", r.reason}});
+    std::cout << json{{"solved", plan.solved},
+                      {"reason", plan.reason},
+                      {"steps", steps},
+                      {"rejected", rejected}}
+                     .dump()
+              << '\n';
     return;
   }
   for (std::size_t n = 0; n < plan.steps.size(); ++n) {
     const grasp_planner::RegraspStep& s = plan.steps[n];
     const Vector3 p = s.T_world_object.translation();
-    std::string who = s.from >= 0 ? arm(s.from) + " (grasp " + std::to_string(id(s.from, s.grasp_from)) + ")" : "";
-    if (s.to >= 0) who += (who.empty() ? "" : " to ") + arm(s.to) + " (grasp " + std::to_string(id(s.to, s.grasp_to)) + ")";
-    std::printf("%zu. %-5s %s, object at %.2f %.2f %.2f\n", n + 1, name(s.kind), who.c_str(), p.x(), p.y(), p.z());
+    std::string who =
+        s.from >= 0 ? arm(s.from) + " (grasp " + std::to_string(id(s.from, s.grasp_from)) + ")"
+                    : "";
+    if (s.to >= 0)
+      who += (who.empty() ? "" : " to ") + arm(s.to) + " (grasp " +
+             std::to_string(id(s.to, s.grasp_to)) + ")";
+    std::printf("%zu. %-5s %s, object at %.2f %.2f %.2f\n", n + 1, name(s.kind), who.c_str(), p.x(),
+                p.y(), p.z());
   }
-  if (plan.steps.empty()) std::printf("%s\n", plan.solved ? "nothing has to change" : plan.reason.c_str());
+  if (plan.steps.empty())
+    std::printf("%s\n", plan.solved ? "nothing has to change" : plan.reason.c_str());
 }
 
 int regrasp(const RegraspOptions& o) {
   const Stage stage(o);
   if (o.to_arm >= static_cast<int>(stage.arms.size())) {
-    throw ConfigError("--hold-with " + std::to_string(o.to_arm) + ": robot " + stage.robot->name() + " has " +
-                      std::to_string(stage.arms.size()) + " arms, counted from 0");
+    throw ConfigError("--hold-with " + std::to_string(o.to_arm) + ": robot " + stage.robot->name() +
+                      " has " + std::to_string(stage.arms.size()) + " arms, counted from 0");
   }
-  RegraspPlanner planner(*stage.robot, stage.arms, *stage.lists.front().object, stage.library(), stage.scene, "object");
+  RegraspPlanner planner(*stage.robot, stage.arms, *stage.lists.front().object, stage.library(),
+                         stage.scene, "object");
   RegraspTask task;
   task.start.T_world_object = stage.standing(o.from[0], o.from[1]);
   if (o.to_arm >= 0) {
@@ -205,61 +246,94 @@ int regrasp(const RegraspOptions& o) {
   } else {
     task.goal.T_world_object = stage.standing(o.to[0], o.to[1]);
   }
-  if (o.again) task.placements = stage.resting(0.5 * (o.from[0] + o.to[0]), 0.5 * (o.from[1] + o.to[1]));
+  if (o.again)
+    task.placements = stage.resting(0.5 * (o.from[0] + o.to[0]), 0.5 * (o.from[1] + o.to[1]));
   const auto start = Clock::now();
   const RegraspPlan plan = planner.plan(task);
-  std::fprintf(stderr, "%zu steps; %llu double grasps, %llu steps checked in %.2f s\n", plan.steps.size(), whole(plan.double_grasps),
-               whole(plan.judged), since(start));
+  std::fprintf(stderr, "%zu steps; %llu double grasps, %llu steps checked in %.2f s\n",
+               plan.steps.size(), whole(plan.double_grasps), whole(plan.judged), since(start));
   print_refusals(plan.rejected);
   print_plan(plan, stage, !json_wanted(o.as_json));
   if (!o.png.empty() && !plan.steps.empty())
-    write(regrasp_picture(*stage.robot, stage.scene, *stage.lists.front().object, plan, o.size), o.png);
+    write(regrasp_picture(*stage.robot, stage.scene, *stage.lists.front().object, plan, o.size),
+          o.png);
   return plan.solved ? 0 : 1;
 }
 
 }  // namespace
 
 void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
-  CLI::App* doubling = grasp.add_subcommand("double", "Pairs of grasps of two hands that do not collide, best first");
+  CLI::App* doubling = grasp.add_subcommand(
+      "double", "Pairs of grasps of two hands that do not collide, best first");
   auto d = std::make_shared<PairOptions>();
   add_list_options(*doubling, *d);
-  doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")->capture_default_str();
-  doubling->add_option("--best", d->max_of_each, "grasps taken from each list")->check(kAboveZero)->capture_default_str();
-  doubling->add_flag("--spread", d->spread, "take the best of every orientation and side in turn, not the best of all");
-  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(kNotNegative)->capture_default_str();
-  doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));
-  doubling->add_flag("--pass", d->passed, "only those in which either hand can come and leave while the other holds");
+  doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")
+      ->capture_default_str();
+  doubling->add_option("--best", d->max_of_each, "grasps taken from each list")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  doubling->add_flag("--spread", d->spread,
+                     "take the best of every orientation and side in turn, not the best of all");
+  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")
+      ->check(kNotNegative)
+      ->capture_default_str();
+  doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")
+      ->check(CLI::Range(0.0, 180.0));
+  doubling->add_flag("--pass", d->passed,
+                     "only those in which either hand can come and leave while the other holds");
   doubling->add_option("--png", d->png, "draws one of them into this file, from three sides");
-  doubling->add_option("--number", d->number, "which one, 1: the best")->check(kAboveZero)->capture_default_str();
-  doubling->add_option("--size", d->size, "of one of its pictures")->check(CLI::Range(64, 2000))->capture_default_str();
+  doubling->add_option("--number", d->number, "which one, 1: the best")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  doubling->add_option("--size", d->size, "of one of its pictures")
+      ->check(CLI::Range(64, 2000))
+      ->capture_default_str();
   doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
 
-  CLI::App* giving =
-      grasp.add_subcommand("transfer", "Grasps from which a person can take the object comfortably, and where it is offered");
+  CLI::App* giving = grasp.add_subcommand(
+      "transfer",
+      "Grasps from which a person can take the object comfortably, and where it is offered");
   auto t = std::make_shared<TransferOptions>();
   add_stage_options(*giving, *t);
-  giving->add_option("--taker", t->taker, "the person's right hand: name or file of its description")->capture_default_str();
-  giving->add_option("--at", t->at, "where the object stands on the table, x,y [m]")->delimiter(',')->expected(2)->capture_default_str();
+  giving
+      ->add_option("--taker", t->taker, "the person's right hand: name or file of its description")
+      ->capture_default_str();
+  giving->add_option("--at", t->at, "where the object stands on the table, x,y [m]")
+      ->delimiter(',')
+      ->expected(2)
+      ->capture_default_str();
   giving->add_option("--person", t->person, "where the person stands, facing the robot, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  giving->add_option("--stature", t->stature, "of the person [m]")->check(CLI::Range(0.8, 2.4))->capture_default_str();
-  giving->add_option("--tilt", t->tilt, "the object may be tilted by this [deg]")->check(CLI::Range(0.0, 180.0))->capture_default_str();
-  giving->add_option("--number", t->number, "of grasps")->check(CLI::Range(1, 1000))->capture_default_str();
+  giving->add_option("--stature", t->stature, "of the person [m]")
+      ->check(CLI::Range(0.8, 2.4))
+      ->capture_default_str();
+  giving->add_option("--tilt", t->tilt, "the object may be tilted by this [deg]")
+      ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  giving->add_option("--number", t->number, "of grasps")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   giving->callback([t, &exit_code] { exit_code = transfer(*t); });
 
-  CLI::App* changing =
-      grasp.add_subcommand("regrasp", "The fewest picks, passes from hand to hand and placings that bring an object somewhere");
+  CLI::App* changing = grasp.add_subcommand(
+      "regrasp",
+      "The fewest picks, passes from hand to hand and placings that bring an object somewhere");
   auto r = std::make_shared<RegraspOptions>();
   add_stage_options(*changing, *r);
   changing->add_option("--from", r->from, "where the object stands on the table, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  changing->add_option("--to", r->to, "where it shall stand")->delimiter(',')->expected(2)->capture_default_str();
-  changing->add_option("--hold-with", r->to_arm, "instead of that: the arm that shall hold it in the end, counted from 0");
-  changing->add_flag("--put-down", r->again, "it may be put down half way, any way it stands by itself");
+  changing->add_option("--to", r->to, "where it shall stand")
+      ->delimiter(',')
+      ->expected(2)
+      ->capture_default_str();
+  changing->add_option("--hold-with", r->to_arm,
+                       "instead of that: the arm that shall hold it in the end, counted from 0");
+  changing->add_flag("--put-down", r->again,
+                     "it may be put down half way, any way it stands by itself");
   changing->callback([r, &exit_code] { exit_code = regrasp(*r); });
 }
 

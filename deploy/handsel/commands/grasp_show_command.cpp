@@ -30,7 +30,8 @@ struct ShowOptions : ListOptions {
 /// Not to be mistaken for one another: the two sides of a grasp, seen past the hand.
 std::vector<Vector3> sides(const ShowOptions& o, const Vector3& from) {
   std::vector<Vector3> out;
-  const double start = from.head<2>().norm() > 1e-6 ? std::atan2(from.y(), from.x()) : 0.0, degree = std::numbers::pi / 180;
+  const double start = from.head<2>().norm() > 1e-6 ? std::atan2(from.y(), from.x()) : 0.0,
+               degree = std::numbers::pi / 180;
   for (const double turn : {70.0, -110.0}) {
     const double a = start + (o.azimuth + turn) * degree, e = o.elevation * degree;
     out.emplace_back(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
@@ -38,7 +39,8 @@ std::vector<Vector3> sides(const ShowOptions& o, const Vector3& from) {
   return out;
 }
 
-Eigen::AlignedBox3d with_hand(Eigen::AlignedBox3d box, const HandGeometry& hand_geometry, const Grasp& grasp) {
+Eigen::AlignedBox3d with_hand(Eigen::AlignedBox3d box, const HandGeometry& hand_geometry,
+                              const Grasp& grasp) {
   std::vector<std::vector<Pose>> T;
   hand_geometry.forward(grasp.hand_joints, T);
   for (const HandShape::Round& r : hand_geometry.shape.rounds(T)) {
@@ -71,10 +73,12 @@ Picture of_grasp(const ShowOptions& o, const Listed& listed, const Grasp& g) {
   const std::vector<Vector3> eyes = sides(o, g.T_object_hand.translation() - box.center());
   return from_sides(box, eyes, o.size, [&](Canvas& canvas, std::size_t) {
     const bool ellipsoids = o.figure == "ellipsoids";
-    draw_hand(canvas, *listed.hand_geometry, g.hand_joints, g.T_object_hand, kHand, o.figure == "grasp" ? 1 : 0.35);
+    draw_hand(canvas, *listed.hand_geometry, g.hand_joints, g.T_object_hand, kHand,
+              o.figure == "grasp" ? 1 : 0.35);
     if (o.figure == "candidates") {
       draw_object(canvas, *listed.object);
-      draw_candidates(canvas, *listed.hand_geometry, *listed.workspaces, *listed.object, g.T_object_hand);
+      draw_candidates(canvas, *listed.hand_geometry, *listed.workspaces, *listed.object,
+                      g.T_object_hand);
       return;
     }
     draw_object(canvas, *listed.object, ellipsoids ? 0.5 : 0.75);
@@ -87,16 +91,21 @@ Picture of_grasp(const ShowOptions& o, const Listed& listed, const Grasp& g) {
 }
 
 Picture of_object(const ShowOptions& o, const Listed& listed) {
-  return from_sides(listed.object->box(), sides(o, Vector3::UnitX()), o.size, [&](Canvas& canvas, std::size_t side) {
-    if (o.figure == "curvature") return draw_curvature(canvas, *listed.object, listed.hand_geometry->tip_radius());
-    if (side == 0) draw_object(canvas, *listed.object);
-    draw_points(canvas, *listed.object, side == 0 ? -1 : o.depth);
-  });
+  return from_sides(listed.object->box(), sides(o, Vector3::UnitX()), o.size,
+                    [&](Canvas& canvas, std::size_t side) {
+                      if (o.figure == "curvature")
+                        return draw_curvature(canvas, *listed.object,
+                                              listed.hand_geometry->tip_radius());
+                      if (side == 0) draw_object(canvas, *listed.object);
+                      draw_points(canvas, *listed.object, side == 0 ? -1 : o.depth);
+                    });
 }
 
-Picture of_workspace(const ShowOptions& o, const HandGeometry& hand_geometry, const FingerWorkspaces& workspaces) {
+Picture of_workspace(const ShowOptions& o, const HandGeometry& hand_geometry,
+                     const FingerWorkspaces& workspaces) {
   if (o.finger < 0 || o.finger >= static_cast<int>(workspaces.size()))
-    throw ConfigError("--finger " + std::to_string(o.finger) + ": hand " + hand_geometry.hand.name() + " has fingers 0 to " +
+    throw ConfigError("--finger " + std::to_string(o.finger) + ": hand " +
+                      hand_geometry.hand.name() + " has fingers 0 to " +
                       std::to_string(workspaces.size() - 1));
   Grasp open;
   open.hand_joints = hand_geometry.hand.pregrasp();
@@ -111,7 +120,8 @@ Picture of_workspace(const ShowOptions& o, const HandGeometry& hand_geometry, co
 }
 
 int show(const ShowOptions& o) {
-  const bool about_grasp = o.figure == "grasp" || o.figure == "ellipsoids" || o.figure == "candidates";
+  const bool about_grasp =
+      o.figure == "grasp" || o.figure == "ellipsoids" || o.figure == "candidates";
   Listed listed;
   Picture picture(1, 1, {});
   if (o.figure == "workspace") {
@@ -127,8 +137,9 @@ int show(const ShowOptions& o) {
       std::fprintf(stderr, "no such grasp: the list has %zu\n", listed.list.grasps.size());
       return 1;
     }
-    std::fprintf(stderr, "grasp %llu, quality %.3f, epsilon %.4f, %zu contacts\n", static_cast<unsigned long long>(g->grasp.id),
-                 g->grasp.quality, g->grasp.epsilon, g->grasp.contacts.size());
+    std::fprintf(stderr, "grasp %llu, quality %.3f, epsilon %.4f, %zu contacts\n",
+                 static_cast<unsigned long long>(g->grasp.id), g->grasp.quality, g->grasp.epsilon,
+                 g->grasp.contacts.size());
     picture = of_grasp(o, listed, g->grasp);
   }
   if (about_grasp) say_colours(listed.hand_geometry->hand);
@@ -140,26 +151,40 @@ int show(const ShowOptions& o) {
 }  // namespace
 
 void add_grasp_show(CLI::App& grasp, int& exit_code) {
-  CLI::App* command =
-      grasp.add_subcommand("show", "A picture of a grasp, of its hand's workspaces or of the object as the planner sees it");
+  CLI::App* command = grasp.add_subcommand(
+      "show",
+      "A picture of a grasp, of its hand's workspaces or of the object as the planner sees it");
   auto o = std::make_shared<ShowOptions>();
   add_list_options(*command, *o);
   command->add_option("--png", o->png, "file to write")->required();
   command
-      ->add_option(
-          "--figure", o->figure,
-          "grasp: hand on object, contacts, friction cones; ellipsoids: of the fingers' forces, and contact normals; candidates: points "
-          "in the fingers' workspaces; curvature: of the surface, red low, blue high; points: contact points and the boxes of their tree; "
-          "workspace: of a finger, as grid and as spheres")
-      ->check(CLI::IsMember({"grasp", "ellipsoids", "candidates", "curvature", "points", "workspace"}))
+      ->add_option("--figure", o->figure,
+                   "grasp: hand on object, contacts, friction cones; ellipsoids: of the fingers' "
+                   "forces, and contact normals; candidates: points "
+                   "in the fingers' workspaces; curvature: of the surface, red low, blue high; "
+                   "points: contact points and the boxes of their tree; "
+                   "workspace: of a finger, as grid and as spheres")
+      ->check(
+          CLI::IsMember({"grasp", "ellipsoids", "candidates", "curvature", "points", "workspace"}))
       ->capture_default_str();
-  command->add_option("--rank", o->rank, "which grasp: 1 is the best")->check(kAboveZero)->capture_default_str();
+  command->add_option("--rank", o->rank, "which grasp: 1 is the best")
+      ->check(kAboveZero)
+      ->capture_default_str();
   command->add_option("--id", o->id, "which grasp, by its id in `grasp list`")->check(kNotNegative);
-  command->add_option("--finger", o->finger, "whose workspace: 0 is the thumb")->capture_default_str();
-  command->add_option("--depth", o->depth, "of the boxes of the tree")->check(CLI::Range(0, 12))->capture_default_str();
-  command->add_option("--size", o->size, "height of the picture [points]")->check(CLI::Range(100, 2000))->capture_default_str();
-  command->add_option("--azimuth", o->azimuth, "turn of the view [deg]")->check(CLI::Range(-360.0, 360.0))->capture_default_str();
-  command->add_option("--elevation", o->elevation, "of the view [deg]")->check(CLI::Range(-89.0, 89.0))->capture_default_str();
+  command->add_option("--finger", o->finger, "whose workspace: 0 is the thumb")
+      ->capture_default_str();
+  command->add_option("--depth", o->depth, "of the boxes of the tree")
+      ->check(CLI::Range(0, 12))
+      ->capture_default_str();
+  command->add_option("--size", o->size, "height of the picture [points]")
+      ->check(CLI::Range(100, 2000))
+      ->capture_default_str();
+  command->add_option("--azimuth", o->azimuth, "turn of the view [deg]")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  command->add_option("--elevation", o->elevation, "of the view [deg]")
+      ->check(CLI::Range(-89.0, 89.0))
+      ->capture_default_str();
   command->callback([o, &exit_code] { exit_code = show(*o); });
 }
 

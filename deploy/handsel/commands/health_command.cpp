@@ -21,7 +21,9 @@ struct HealthOptions {
 /// Listens to nothing but health: this runs beside every process of a deployment, again and again.
 int ask(const HealthOptions& options) {
   catch_interrupts();
-  DdsBus bus({.component = "handsel", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
+  DdsBus bus({.component = "handsel",
+              .domain = static_cast<std::uint32_t>(options.domain),
+              .health = false});
   Snapshot heard;
   bus.subscribe<ComponentHealth>([&](const ComponentHealth& health, const Receipt& receipt) {
     heard.health[health.component] = {.ever = true, .sample = health, .arrival = receipt.arrival};
@@ -30,11 +32,14 @@ int ask(const HealthOptions& options) {
   const auto lacking = [&] {
     if (options.component.empty()) return not_ready(heard);
     const std::string why = why_not_ready(heard, options.component);
-    return why.empty() ? std::vector<std::string>{} : std::vector<std::string>{options.component + " (" + why + ")"};
+    return why.empty() ? std::vector<std::string>{}
+                       : std::vector<std::string>{options.component + " (" + why + ")"};
   };
-  const bool ready = bus.run_until([&] { return interrupted() || lacking().empty(); }, from_seconds(options.within));
+  const bool ready = bus.run_until([&] { return interrupted() || lacking().empty(); },
+                                   from_seconds(options.within));
   if (ready && !interrupted()) {
-    std::printf("%s\n", options.component.empty() ? "every process is ok" : (options.component + " is ok").c_str());
+    std::printf("%s\n", options.component.empty() ? "every process is ok"
+                                                  : (options.component + " is ok").c_str());
     return 0;
   }
   std::string text;
@@ -47,11 +52,15 @@ int ask(const HealthOptions& options) {
 
 void add_health_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<HealthOptions>();
-  CLI::App* command =
-      app.add_subcommand("health", "is a process, or without a name the whole system, there and ok? 0 yes, 1 no, 3 nothing is received");
+  CLI::App* command = app.add_subcommand("health",
+                                         "is a process, or without a name the whole system, there "
+                                         "and ok? 0 yes, 1 no, 3 nothing is received");
   add_domain_option(*command, options->domain);
-  command->add_option("--within", options->within, "[s] wait so long for a yes")->capture_default_str()->check(kAboveZero);
-  command->add_option("component", options->component, "as `handsel status` names it: spark, supervisor, ...");
+  command->add_option("--within", options->within, "[s] wait so long for a yes")
+      ->capture_default_str()
+      ->check(kAboveZero);
+  command->add_option("component", options->component,
+                      "as `handsel status` names it: spark, supervisor, ...");
   command->callback([options, &exit_code] { exit_code = ask(*options); });
 }
 

@@ -19,7 +19,9 @@ namespace {
 using nlohmann::json;
 using namespace command;
 
-bool is_urdf(const std::string& robot) { return robot.ends_with(".urdf") || robot.ends_with(".xml"); }
+bool is_urdf(const std::string& robot) {
+  return robot.ends_with(".urdf") || robot.ends_with(".xml");
+}
 
 /// A URDF file, a description file or the name of a robot.
 RobotModel load_any(const std::string& robot, Meshes meshes) {
@@ -51,12 +53,15 @@ void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
     for (std::size_t k = 0; k < i; ++k) {
       const auto &a = capsules[i], &b = capsules[k];
       if (a.link == b.link || robot.pair_disabled(a.link, b.link)) continue;
-      const double apart = std::sqrt(nearest_points(T[a.link] * a.a, T[a.link] * a.b, T[b.link] * b.a, T[b.link] * b.b, p, q));
+      const double apart = std::sqrt(
+          nearest_points(T[a.link] * a.a, T[a.link] * a.b, T[b.link] * b.a, T[b.link] * b.b, p, q));
       const std::pair pair(b.link, a.link);
-      if (apart >= a.radius + b.radius || std::find(seen.begin(), seen.end(), pair) != seen.end()) continue;
+      if (apart >= a.radius + b.radius || std::find(seen.begin(), seen.end(), pair) != seen.end())
+        continue;
       seen.push_back(pair);
-      lacks.push_back("the rest configuration brings the hulls of links " + robot.links()[b.link].name + " and " +
-                      robot.links()[a.link].name + " together; if they cannot collide, disable the pair in the SRDF");
+      lacks.push_back("the rest configuration brings the hulls of links " +
+                      robot.links()[b.link].name + " and " + robot.links()[a.link].name +
+                      " together; if they cannot collide, disable the pair in the SRDF");
     }
 }
 
@@ -64,10 +69,12 @@ void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
 bool pads_face(const HandModel& hand) {
   std::vector<Pose> T;
   for (int i = 0; i <= 10; ++i) {
-    hand.model().forward(hand.lower_contact() + 0.1 * i * (hand.upper_contact() - hand.lower_contact()), T);
+    hand.model().forward(
+        hand.lower_contact() + 0.1 * i * (hand.upper_contact() - hand.lower_contact()), T);
     const auto way = [&](const Finger& finger) {
-      return Vector3(T[static_cast<std::size_t>(hand.model().link_index(finger.tip_link))].linear() *
-                     finger.pad->T_tip_pad.linear().col(2));
+      return Vector3(
+          T[static_cast<std::size_t>(hand.model().link_index(finger.tip_link))].linear() *
+          finger.pad->T_tip_pad.linear().col(2));
     };
     if (way(hand.fingers()[0]).dot(way(hand.fingers()[1])) < -0.985) return true;
   }
@@ -77,11 +84,15 @@ bool pads_face(const HandModel& hand) {
 void check_masses(const RobotModel& robot, std::vector<std::string>& lacks) {
   for (const auto& link : robot.links()) {
     if (link.mass == 0) {
-      if (!link.collision.empty() && link.parent_joint >= 0) lacks.push_back("link " + link.name + " has shapes but no mass");
+      if (!link.collision.empty() && link.parent_joint >= 0)
+        lacks.push_back("link " + link.name + " has shapes but no mass");
       continue;
     }
-    const Vector3 i = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia, Eigen::EigenvaluesOnly).eigenvalues();
-    if (!(i[0] > 0) || i[0] + i[1] < i[2] * (1 - 1e-3)) lacks.push_back("link " + link.name + " has an inertia no body can have");
+    const Vector3 i =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    if (!(i[0] > 0) || i[0] + i[1] < i[2] * (1 - 1e-3))
+      lacks.push_back("link " + link.name + " has an inertia no body can have");
   }
 }
 
@@ -94,11 +105,14 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
   };
   need(robot.group("arm") != nullptr, "group \"arm\" is missing: the axes that carry the tool");
   need(robot.group("hand") != nullptr, "group \"hand\" is missing: the actuated finger joints");
-  need(robot.group("arm") == nullptr || robot.group("arm")->tip >= 0, "group \"arm\" has no tip_link");
+  need(robot.group("arm") == nullptr || robot.group("arm")->tip >= 0,
+       "group \"arm\" has no tip_link");
   need(robot.tool_link() >= 0, "tool_link is missing: the frame grasps are given in");
   need(!robot.hand().empty(), "hand is missing: which hand description the robot carries");
-  need(robot.gaze_link() >= 0 || robot.group("head") == nullptr, "gaze_link is missing: the camera that the head turns");
-  need(robot.redundancy_axis() >= 0 || robot.group("arm") == nullptr || robot.group("arm")->axes.size() < 7,
+  need(robot.gaze_link() >= 0 || robot.group("head") == nullptr,
+       "gaze_link is missing: the camera that the head turns");
+  need(robot.redundancy_axis() >= 0 || robot.group("arm") == nullptr ||
+           robot.group("arm")->axes.size() < 7,
        "redundancy_joint is missing for an arm of seven axes");
   for (const auto& axis : robot.axes()) {
     need(axis.upper > axis.lower, "joint " + axis.name + " has no range");
@@ -109,9 +123,12 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
       const HandModel hand = HandModel::load(hand_description(robot.hand()));
       const auto& group = *robot.group("hand");
       bool same = hand.model().axes().size() == group.axes.size();
-      for (std::size_t i = 0; same && i < group.axes.size(); ++i) same = hand.model().axes()[i].name == robot.axes()[group.axes[i]].name;
-      need(!hand.pinches() || pads_face(hand), "the pads of hand " + hand.name() + " never face each other");
-      need(same, "group \"hand\" does not have the joints of hand " + hand.name() + " in its order");
+      for (std::size_t i = 0; same && i < group.axes.size(); ++i)
+        same = hand.model().axes()[i].name == robot.axes()[group.axes[i]].name;
+      need(!hand.pinches() || pads_face(hand),
+           "the pads of hand " + hand.name() + " never face each other");
+      need(same,
+           "group \"hand\" does not have the joints of hand " + hand.name() + " in its order");
     } catch (const std::exception& error) {
       lacks.push_back(std::string("hand: ") + error.what());
     }
@@ -124,7 +141,8 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
 namespace {
 
 /// Further arms: their hands' descriptions and joints.
-void check_other_arms(const std::filesystem::path& description, const RobotModel& robot, std::vector<std::string>& lacks) {
+void check_other_arms(const std::filesystem::path& description, const RobotModel& robot,
+                      std::vector<std::string>& lacks) {
   for (const Manipulator& m : manipulators(description, robot)) {
     if (m.name == "arm") continue;
     try {
@@ -133,7 +151,9 @@ void check_other_arms(const std::filesystem::path& description, const RobotModel
       bool same = axes.size() == m.fingers->axes.size();
       for (std::size_t i = 0; same && i < axes.size(); ++i)
         same = axes[i].name == robot.axes()[static_cast<std::size_t>(m.fingers->axes[i])].name;
-      if (!same) lacks.push_back("group \"" + m.fingers->name + "\" does not have the joints of hand " + hand.name() + " in its order");
+      if (!same)
+        lacks.push_back("group \"" + m.fingers->name + "\" does not have the joints of hand " +
+                        hand.name() + " in its order");
     } catch (const std::exception& error) {
       lacks.push_back("hand of arm \"" + m.name + "\": " + error.what());
     }
@@ -159,8 +179,12 @@ int check(const std::string& name, bool as_json) {
 }
 
 json limits_of(const RobotModel& robot, int axis) {
-  const auto triple = [axis](const KinematicLimits& l) { return json{l.velocity[axis], l.acceleration[axis], l.jerk[axis]}; };
-  return {{"comfort", triple(robot.comfort_limits())}, {"guard", triple(robot.guard_limits())}, {"stop", triple(robot.stop_limits())}};
+  const auto triple = [axis](const KinematicLimits& l) {
+    return json{l.velocity[axis], l.acceleration[axis], l.jerk[axis]};
+  };
+  return {{"comfort", triple(robot.comfort_limits())},
+          {"guard", triple(robot.guard_limits())},
+          {"stop", triple(robot.stop_limits())}};
 }
 
 json describe(const RobotModel& robot) {
@@ -182,7 +206,9 @@ json describe(const RobotModel& robot) {
                     {"limits", limits_of(robot, i)}});
   }
   for (const auto& group : robot.groups())
-    groups.push_back({{"name", group.name}, {"axes", group.axes}, {"tip", group.tip < 0 ? "" : robot.links()[group.tip].name}});
+    groups.push_back({{"name", group.name},
+                      {"axes", group.axes},
+                      {"tip", group.tip < 0 ? "" : robot.links()[group.tip].name}});
   return {{"name", robot.name()},
           {"links", robot.links().size()},
           {"joints", robot.joints().size()},
@@ -194,19 +220,23 @@ json describe(const RobotModel& robot) {
 }
 
 void print(const json& info) {
-  std::printf("%s: %zu links from %s, %zu joints, %zu axes, %zu shapes, %.2f kg\n", info["name"].get<std::string>().c_str(),
-              info["links"].get<std::size_t>(), info["root"].get<std::string>().c_str(), info["joints"].get<std::size_t>(),
+  std::printf("%s: %zu links from %s, %zu joints, %zu axes, %zu shapes, %.2f kg\n",
+              info["name"].get<std::string>().c_str(), info["links"].get<std::size_t>(),
+              info["root"].get<std::string>().c_str(), info["joints"].get<std::size_t>(),
               info["axes"].size(), info["shapes"].get<std::size_t>(), info["mass"].get<double>());
-  std::printf("%-24s %-10s %8s %8s %8s %8s %8s %8s %8s\n", "axis", "kind", "lower", "upper", "rest", "v", "a", "j", "effort");
+  std::printf("%-24s %-10s %8s %8s %8s %8s %8s %8s %8s\n", "axis", "kind", "lower", "upper", "rest",
+              "v", "a", "j", "effort");
   for (const auto& a : info["axes"]) {
     const json& c = a["limits"]["comfort"];
-    std::printf("%-24s %-10s %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %8.1f\n", a["name"].get<std::string>().c_str(),
-                a["kind"].get<std::string>().c_str(), a["lower"].get<double>(), a["upper"].get<double>(), a["rest"].get<double>(),
-                c[0].get<double>(), c[1].get<double>(), c[2].get<double>(), a["effort"].get<double>());
+    std::printf("%-24s %-10s %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %8.1f\n",
+                a["name"].get<std::string>().c_str(), a["kind"].get<std::string>().c_str(),
+                a["lower"].get<double>(), a["upper"].get<double>(), a["rest"].get<double>(),
+                c[0].get<double>(), c[1].get<double>(), c[2].get<double>(),
+                a["effort"].get<double>());
   }
   for (const auto& g : info["groups"])
-    std::printf("group %s: %zu axes%s%s\n", g["name"].get<std::string>().c_str(), g["axes"].size(), g["tip"] == "" ? "" : ", tip ",
-                g["tip"].get<std::string>().c_str());
+    std::printf("group %s: %zu axes%s%s\n", g["name"].get<std::string>().c_str(), g["axes"].size(),
+                g["tip"] == "" ? "" : ", tip ", g["tip"].get<std::string>().c_str());
 }
 
 class ForwardKinematics {
@@ -226,7 +256,8 @@ class ForwardKinematics {
     json T = json::object();
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       json rows = json::array();
-      for (int r = 0; r < 3; ++r) rows.push_back({poses_[i](r, 0), poses_[i](r, 1), poses_[i](r, 2), poses_[i](r, 3)});
+      for (int r = 0; r < 3; ++r)
+        rows.push_back({poses_[i](r, 0), poses_[i](r, 1), poses_[i](r, 2), poses_[i](r, 3)});
       T[robot_.links()[i].name] = rows;
     }
     return {{"T", T}};
@@ -250,11 +281,13 @@ void add_model_commands(CLI::App& app, int& exit_code) {
     bool as_json{};
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* model = app.add_subcommand("model", "Robot descriptions and URDFs: what they lack, what they hold, forward kinematics");
+  CLI::App* model = app.add_subcommand(
+      "model", "Robot descriptions and URDFs: what they lack, what they hold, forward kinematics");
   model->require_subcommand(1);
   const auto add = [&](const char* name, const char* what) {
     CLI::App* command = model->add_subcommand(name, what);
-    command->add_option("robot", options->robot, "Name of a robot, a description or a URDF")->required();
+    command->add_option("robot", options->robot, "Name of a robot, a description or a URDF")
+        ->required();
     command->add_flag("--json", options->as_json, "JSON Lines");
     return command;
   };
@@ -270,9 +303,12 @@ void add_model_commands(CLI::App& app, int& exit_code) {
     exit_code = 0;
   });
   CLI::App* fk = add("fk", "Poses of all links in the root frame for joint values on stdin");
-  fk->footer(R"(A line: {"q": {joint: value}}, 0 for joints not named; the answer: {"T": {link: three rows of four}})");
-  fk->callback(
-      [options, &exit_code] { exit_code = for_each_line(std::cin, std::cout, ForwardKinematics(load_any(options->robot, Meshes::skip))); });
+  fk->footer(
+      R"(A line: {"q": {joint: value}}, 0 for joints not named; the answer: {"T": {link: three rows of four}})");
+  fk->callback([options, &exit_code] {
+    exit_code = for_each_line(std::cin, std::cout,
+                              ForwardKinematics(load_any(options->robot, Meshes::skip)));
+  });
 }
 
 }  // namespace handsel

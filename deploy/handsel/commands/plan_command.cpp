@@ -42,28 +42,35 @@ const std::map<std::string, PlannerKind> kPlanners = {{"auto", PlannerKind::auto
                                                       {"trrt", PlannerKind::trrt},
                                                       {"bitrrt", PlannerKind::bitrrt}};
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 RobotModel load_robot(const Options& options) {
   if (options.robot.ends_with(".urdf")) return RobotModel::load_urdf(options.robot, options.srdf);
-  if (!options.srdf.empty()) throw ConfigError("--srdf belongs to a .urdf; a robot description names its own");
+  if (!options.srdf.empty())
+    throw ConfigError("--srdf belongs to a .urdf; a robot description names its own");
   const std::filesystem::path description = robot_description(options.robot);
   RobotModel robot = RobotModel::load(description);
   if (!path_planner::drives(options.group)) return robot;
   if (auto mobile = on_platform(robot, description)) return *std::move(mobile);
-  throw ConfigError(description.string() + " tells of no platform, which the group \"" + options.group + "\" is about");
+  throw ConfigError(description.string() + " tells of no platform, which the group \"" +
+                    options.group + "\" is about");
 }
 
 class Batch {
  public:
-  explicit Batch(const Options& options) : options_(options), robot_(load_robot(options)), world_(robot_, nullptr) {
+  explicit Batch(const Options& options)
+      : options_(options), robot_(load_robot(options)), world_(robot_, nullptr) {
     if (!options.group.empty()) group_ = robot_.group(options.group);
   }
 
   json answer(const json& item) {
-    const std::string of_item = item.is_object() ? item.value("group", options_.group) : options_.group;
+    const std::string of_item =
+        item.is_object() ? item.value("group", options_.group) : options_.group;
     if (!options_.group.empty() && of_item != options_.group)
-      throw LineError("the problem is for the group \"" + of_item + "\", not for \"" + options_.group + "\"");
+      throw LineError("the problem is for the group \"" + of_item + "\", not for \"" +
+                      options_.group + "\"");
     path_planner::Problem problem;
     problem.planner = kPlanners.at(options_.planner);
     problem.stock = options_.stock;
@@ -89,7 +96,8 @@ class Batch {
     Clock::time_point smoothing = begin;
     bool smoothed = false;
     path_planner::Hooks hooks;
-    if (options_.checks == 0) hooks.cancelled = [&] { return seconds_since(begin) > options_.time; };
+    if (options_.checks == 0)
+      hooks.cancelled = [&] { return seconds_since(begin) > options_.time; };
     hooks.entered = [&](path_planner::Stage stage) {
       if (stage == path_planner::Stage::smooth && !smoothed) smoothing = Clock::now();
       smoothed = smoothed || stage == path_planner::Stage::smooth;
@@ -101,7 +109,8 @@ class Batch {
     else if (unreached.empty())
       result = path_planner::plan(robot_, world_, cost, problem, {}, hooks);
     const double total = seconds_since(begin);
-    const double search = smoothed ? std::chrono::duration<double>(smoothing - begin).count() : total;
+    const double search =
+        smoothed ? std::chrono::duration<double>(smoothing - begin).count() : total;
     ++asked_;
     solved_ += result.solved;
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%d of %d solved ", solved_, asked_);
@@ -140,48 +149,61 @@ class Batch {
     problem.upright.emplace();
     problem.upright->most = number(*upright, "most");
     if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
-    if (!(problem.upright->axis_tool.norm() > 1e-9)) throw LineError("\"axis\" of \"upright\" must not be zero");
+    if (!(problem.upright->axis_tool.norm() > 1e-9))
+      throw LineError("\"axis\" of \"upright\" must not be zero");
   }
 
   /// Leaves the axes of the path in the problem.
-  path_planner::Result in_the_cartesian_space(const json& item, HumanCost& cost, path_planner::Problem& problem,
+  path_planner::Result in_the_cartesian_space(const json& item, HumanCost& cost,
+                                              path_planner::Problem& problem,
                                               const path_planner::Hooks& hooks) {
     const json& goals = field(item, "goals");
-    if (!goals.is_array() || goals.size() != 1 || !goals[0].contains("pose") || goals[0].contains("slack") || goals[0].contains("turn"))
-      throw LineError("in the Cartesian space \"goals\" must be one {\"pose\": {\"p\", \"q\"}}, without slack or turn");
+    if (!goals.is_array() || goals.size() != 1 || !goals[0].contains("pose") ||
+        goals[0].contains("slack") || goals[0].contains("turn"))
+      throw LineError(
+          "in the Cartesian space \"goals\" must be one {\"pose\": {\"p\", \"q\"}}, without slack "
+          "or turn");
     if (problem.upright) throw LineError("\"upright\" is kept in the joint space only");
-    if (group_ == nullptr || group_->name != "arm") throw LineError("the Cartesian space is that of --group arm");
+    if (group_ == nullptr || group_->name != "arm")
+      throw LineError("the Cartesian space is that of --group arm");
     path_planner::CartesianProblem asked;
     asked.start = problem.start;
-    asked.T_root_goal = make_pose(vector3(goals[0]["pose"], "p"), quaternion(goals[0]["pose"], "q"));
+    asked.T_root_goal =
+        make_pose(vector3(goals[0]["pose"], "p"), quaternion(goals[0]["pose"], "q"));
     asked.seed = problem.seed;
-    asked.budget = options_.checks > 0 ? options_.checks : static_cast<std::uint64_t>(kCartesianChecks * options_.time);
+    asked.budget = options_.checks > 0
+                       ? options_.checks
+                       : static_cast<std::uint64_t>(kCartesianChecks * options_.time);
     const json also = item.value("also", json::object());
     asked.also_goal.resize(static_cast<Eigen::Index>(also.size()));
     for (const auto& [name, value] : also.items()) {
       asked.also.push_back(axis_of(robot_, name));
-      asked.also_goal[static_cast<Eigen::Index>(asked.also.size()) - 1] = number(also, name.c_str());
+      asked.also_goal[static_cast<Eigen::Index>(asked.also.size()) - 1] =
+          number(also, name.c_str());
     }
     problem.axes = group_->axes;
     problem.axes.insert(problem.axes.end(), asked.also.begin(), asked.also.end());
-    return path_planner::in_joints(path_planner::plan_cartesian(robot_, world_, cost, asked, {}, hooks), problem.axes);
+    return path_planner::in_joints(
+        path_planner::plan_cartesian(robot_, world_, cost, asked, {}, hooks), problem.axes);
   }
 
   /// Why no posture reaches the goals, or empty.
   std::string read_goals(const json& item, path_planner::Problem& problem) {
     const json& goals = field(item, "goals");
-    if (!goals.is_array() || goals.empty()) throw LineError("\"goals\" must be a list of at least one goal");
+    if (!goals.is_array() || goals.empty())
+      throw LineError("\"goals\" must be a list of at least one goal");
     if (goals[0].contains("pose")) return read_poses(goals, problem);
     if (group_ != nullptr) {
       problem.axes = group_->axes;
     } else {
-      for (const auto& [name, value] : goals[0].items()) problem.axes.push_back(axis_of(robot_, name));
+      for (const auto& [name, value] : goals[0].items())
+        problem.axes.push_back(axis_of(robot_, name));
       std::sort(problem.axes.begin(), problem.axes.end());
     }
     for (const json& goal : goals) {
       if (goal.size() != problem.axes.size())
-        throw LineError("a goal names " + std::to_string(goal.size()) + " axes, " + std::to_string(problem.axes.size()) +
-                        " are planned for");
+        throw LineError("a goal names " + std::to_string(goal.size()) + " axes, " +
+                        std::to_string(problem.axes.size()) + " are planned for");
       Vector q(problem.axes.size());
       for (std::size_t i = 0; i < problem.axes.size(); ++i)
         q[static_cast<Eigen::Index>(i)] = number(goal, robot_.axes()[problem.axes[i]].name.c_str());
@@ -201,12 +223,14 @@ class Batch {
       one.T_root_tip = make_pose(vector3(pose, "p"), quaternion(pose, "q"));
       if (goal.contains("slack")) one.slack = vector3(goal, "slack");
       if (goal.contains("turn")) one.turn = number(goal, "turn");
-      if (one.slack.minCoeff() < 0 || one.turn < 0) throw LineError("\"slack\" and \"turn\" must not be negative");
+      if (one.slack.minCoeff() < 0 || one.turn < 0)
+        throw LineError("\"slack\" and \"turn\" must not be negative");
       poses.push_back(one);
     }
-    path_planner::PoseGoals found = path_planner::drives(group_->name)
-                                        ? path_planner::reach_with_platform(robot_, world_, poses, problem.start, problem.seed)
-                                        : path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
+    path_planner::PoseGoals found =
+        path_planner::drives(group_->name)
+            ? path_planner::reach_with_platform(robot_, world_, poses, problem.start, problem.seed)
+            : path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
     problem.goals = std::move(found.goals);
     return found.reason;
   }
@@ -220,12 +244,15 @@ class Batch {
 
 std::string row(const json& result) {
   char text[320];
-  std::snprintf(text, sizeof text, "%-24s %4s  %-10s %8.1f ms + %6.1f ms  %3zu nodes  %6.2f rad  cost %7.3f  %9llu checks  %s",
-                result["set"].get<std::string>().c_str(), result["idx"].dump().c_str(),
-                result["solved"].get<bool>() ? result["planner"].get<std::string>().c_str() : "no path",
-                1e3 * result["plan_s"].get<double>(), 1e3 * result["simplify_s"].get<double>(), result["path"].size(),
-                result["length"].get<double>(), result["cost"].get<double>(),
-                static_cast<unsigned long long>(result["checks"].get<std::uint64_t>()), result["reason"].get<std::string>().c_str());
+  std::snprintf(
+      text, sizeof text,
+      "%-24s %4s  %-10s %8.1f ms + %6.1f ms  %3zu nodes  %6.2f rad  cost %7.3f  %9llu checks  %s",
+      result["set"].get<std::string>().c_str(), result["idx"].dump().c_str(),
+      result["solved"].get<bool>() ? result["planner"].get<std::string>().c_str() : "no path",
+      1e3 * result["plan_s"].get<double>(), 1e3 * result["simplify_s"].get<double>(),
+      result["path"].size(), result["length"].get<double>(), result["cost"].get<double>(),
+      static_cast<unsigned long long>(result["checks"].get<std::uint64_t>()),
+      result["reason"].get<std::string>().c_str());
   return text;
 }
 
@@ -240,17 +267,20 @@ int run_landscape(const Options& options) {
   if (options.json_lines || isatty(STDOUT_FILENO) == 0) {
     std::cout << result.answer.dump() << "\n";
   } else {
-    std::printf("%s, %zu nodes, length %.3f, integral cost %.4f, work %.4f\n", result.answer["solved"].get<bool>() ? "a path" : "no path",
-                result.answer["nodes"].get<std::size_t>(), result.answer["length"].get<double>(), result.answer["cost"].get<double>(),
-                result.answer["work"].get<double>());
+    std::printf("%s, %zu nodes, length %.3f, integral cost %.4f, work %.4f\n",
+                result.answer["solved"].get<bool>() ? "a path" : "no path",
+                result.answer["nodes"].get<std::size_t>(), result.answer["length"].get<double>(),
+                result.answer["cost"].get<double>(), result.answer["work"].get<double>());
   }
   return result.answer["solved"].get<bool>() ? 0 : 1;
 }
 
 int run(const Options& options) {
   if (options.landscape) return run_landscape(options);
-  if (!options.png.empty()) throw ConfigError("--png draws the planners on a landscape of costs: give --landscape, too");
-  if (options.robot.empty()) throw ConfigError("--robot is missing: a .urdf, or a robot description by name or file");
+  if (!options.png.empty())
+    throw ConfigError("--png draws the planners on a landscape of costs: give --landscape, too");
+  if (options.robot.empty())
+    throw ConfigError("--robot is missing: a .urdf, or a robot description by name or file");
   if (!(options.roam > 0)) throw ConfigError("--roam must be greater than 0");
   if (!(options.time > 0)) throw ConfigError("--time must be greater than 0");
   Batch batch(options);
@@ -266,7 +296,8 @@ int run(const Options& options) {
 
 void add_plan_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* plan = app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
+  CLI::App* plan =
+      app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
   plan->footer(
       R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}] or
  [{"pose": {"p": [x, y, z], "q": [x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
@@ -275,18 +306,24 @@ void add_plan_command(CLI::App& app, int& exit_code) {
  "upright": {"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height, radius.)");
   plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file");
   plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
-  plan->add_option("--group", options->group,
-                   "group of axes; where the robot names none, the axes of the goals. A robot with a platform has \"platform\" and "
-                   "\"robot\" (platform and arm), too: platform_x, platform_y [m], platform_heading [rad]");
-  plan->add_option("--roam", options->roam, "a platform keeps within this beyond the box around its start and goals [m]");
-  plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")->check(CLI::IsMember(kPlanners));
-  plan->add_option("--space", options->space, "joint, or cartesian: place of the tool and angle of the elbow")
+  plan->add_option(
+      "--group", options->group,
+      "group of axes; where the robot names none, the axes of the goals. A robot with a platform "
+      "has \"platform\" and "
+      "\"robot\" (platform and arm), too: platform_x, platform_y [m], platform_heading [rad]");
+  plan->add_option("--roam", options->roam,
+                   "a platform keeps within this beyond the box around its start and goals [m]");
+  plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")
+      ->check(CLI::IsMember(kPlanners));
+  plan->add_option("--space", options->space,
+                   "joint, or cartesian: place of the tool and angle of the elbow")
       ->check(CLI::IsMember({"joint", "cartesian"}));
   plan->add_flag("--stock", options->stock, "OMPL's planner of that name instead of the own one");
   plan->add_option("--time", options->time, "limit of a problem [s]");
   plan->add_option("--checks", options->checks, "limit in checked states instead: repeatable");
   plan->add_option("--seed", options->seed, "of every random choice");
-  plan->add_flag("--landscape", options->landscape, "instead of problems: trees and path on a landscape of costs over two axes");
+  plan->add_flag("--landscape", options->landscape,
+                 "instead of problems: trees and path on a landscape of costs over two axes");
   plan->add_option("--png", options->png, "file to draw the landscape, the trees and the path to");
   plan->add_flag("--json", options->json_lines, "JSON Lines on a terminal, too");
   plan->callback([options, &exit_code] { exit_code = run(*options); });

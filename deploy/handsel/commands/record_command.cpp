@@ -31,32 +31,47 @@ struct ReplayOptions {
 
 int record(const RecordOptions& options) {
   catch_interrupts();
-  DdsBus bus({.component = "recorder", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
-  Recorder recorder(bus, options.file, {{"domain", std::to_string(options.domain)}, {"version", version_text()}});
+  DdsBus bus({.component = "recorder",
+              .domain = static_cast<std::uint32_t>(options.domain),
+              .health = false});
+  Recorder recorder(bus, options.file,
+                    {{"domain", std::to_string(options.domain)}, {"version", version_text()}});
   bus.every(Recorder::kPollPeriod, [&](TimePoint) { recorder.poll(); });
-  std::fprintf(stderr, "recording DDS domain %d into %s; Ctrl-C ends it\n", options.domain, options.file.c_str());
-  bus.run_until([] { return interrupted(); }, options.seconds > 0 ? from_seconds(options.seconds) : Duration(std::chrono::hours(24 * 365)));
+  std::fprintf(stderr, "recording DDS domain %d into %s; Ctrl-C ends it\n", options.domain,
+               options.file.c_str());
+  bus.run_until([] { return interrupted(); }, options.seconds > 0
+                                                  ? from_seconds(options.seconds)
+                                                  : Duration(std::chrono::hours(24 * 365)));
   recorder.close();
   std::fprintf(stderr, "%s: %s\n", options.file.c_str(), amount(recorder.file()).c_str());
-  if (recorder.file().messages() == 0) std::fprintf(stderr, "handsel: nothing was said on domain %d\n", options.domain);
+  if (recorder.file().messages() == 0)
+    std::fprintf(stderr, "handsel: nothing was said on domain %d\n", options.domain);
   return recorder.file().messages() > 0 ? 0 : 1;
 }
 
 /// A robot must not be told two states, a system not two sights: who feeds it already goes first.
 void require_silence(DdsBus& bus, const std::vector<std::string>& topics) {
-  bus.run_until([] { return interrupted(); }, std::chrono::milliseconds(1500));  // until everybody is discovered
+  bus.run_until([] { return interrupted(); },
+                std::chrono::milliseconds(1500));  // until everybody is discovered
   const std::set<std::string> fed(topics.begin(), topics.end());
   for (const DomainEndpoint& end : bus.discovered_domain().endpoints) {
     const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;
-    if (!row || (row->profile != Profile::sensor && !has_one_writer(*row)) || !fed.contains(row->topic)) continue;
-    throw ConfigError((end.owner.component.empty() ? "process " + std::to_string(end.owner.pid) : end.owner.component) + " writes " +
-                      row->topic + " already; start the system with `handsel up --without sim`, or choose others with --topics");
+    if (!row || (row->profile != Profile::sensor && !has_one_writer(*row)) ||
+        !fed.contains(row->topic))
+      continue;
+    throw ConfigError((end.owner.component.empty() ? "process " + std::to_string(end.owner.pid)
+                                                   : end.owner.component) +
+                      " writes " + row->topic +
+                      " already; start the system with `handsel up --without sim`, or choose "
+                      "others with --topics");
   }
 }
 
 int replay(const ReplayOptions& options) {
   catch_interrupts();
-  DdsBus bus({.component = replay_name(options.what.topics), .domain = static_cast<std::uint32_t>(options.domain), .health = false});
+  DdsBus bus({.component = replay_name(options.what.topics),
+              .domain = static_cast<std::uint32_t>(options.domain),
+              .health = false});
   Replay replay(bus, options.what);
   std::vector<std::string> fed;
   for (const auto& [topic, count] : replay.counts()) fed.push_back(topic);
@@ -75,10 +90,12 @@ int replay(const ReplayOptions& options) {
     sent += count.sent;
     topics[topic] = {{"sent", count.sent}, {"refused", count.refused}};
     if (count.refused > 0)
-      std::fprintf(stderr, "handsel: %s: %llu refused: %s\n", topic.c_str(), static_cast<unsigned long long>(count.refused),
-                   count.refusal.c_str());
+      std::fprintf(stderr, "handsel: %s: %llu refused: %s\n", topic.c_str(),
+                   static_cast<unsigned long long>(count.refused), count.refusal.c_str());
   }
-  if (replay.cut()) std::fprintf(stderr, "handsel: %s was not ended in order; what is in it was replayed\n", options.what.file.c_str());
+  if (replay.cut())
+    std::fprintf(stderr, "handsel: %s was not ended in order; what is in it was replayed\n",
+                 options.what.file.c_str());
   if (json_wanted(options.json)) {
     std::printf("%s\n", nlohmann::json{{"duration_s", length}, {"topics", topics}}.dump().c_str());
   } else {
@@ -93,18 +110,25 @@ int replay(const ReplayOptions& options) {
 
 void add_record_commands(CLI::App& app, int& exit_code) {
   auto recorded = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record", "writes everything that is said on a domain into an MCAP file");
+  CLI::App* command =
+      app.add_subcommand("record", "writes everything that is said on a domain into an MCAP file");
   command->add_option("file", recorded->file, "e.g. today.mcap; must not be there yet")->required();
   add_domain_option(*command, recorded->domain);
-  command->add_option("--seconds", recorded->seconds, "end by itself after so long")->check(kAboveZero);
+  command->add_option("--seconds", recorded->seconds, "end by itself after so long")
+      ->check(kAboveZero);
   command->callback([recorded, &exit_code] { exit_code = record(*recorded); });
 
   auto replayed = std::make_shared<ReplayOptions>();
-  command = app.add_subcommand("replay", "feeds what came in from outside, as it was recorded, into a system started without sim");
+  command = app.add_subcommand(
+      "replay",
+      "feeds what came in from outside, as it was recorded, into a system started without sim");
   command->add_option("file", replayed->what.file, "an MCAP file of `handsel record`")->required();
   add_domain_option(*command, replayed->domain);
-  command->add_option("--from", replayed->what.from, "[s] of the recording to begin at")->check(kNotNegative);
-  command->add_option("--topics", replayed->what.topics, "these instead of robot state and observations, e.g. human_observation")
+  command->add_option("--from", replayed->what.from, "[s] of the recording to begin at")
+      ->check(kNotNegative);
+  command
+      ->add_option("--topics", replayed->what.topics,
+                   "these instead of robot state and observations, e.g. human_observation")
       ->delimiter(',');
   command->add_flag("--json", replayed->json, "print what was sent as JSON");
   command->callback([replayed, &exit_code] { exit_code = replay(*replayed); });

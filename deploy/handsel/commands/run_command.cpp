@@ -45,13 +45,17 @@ struct TemporaryFile {
 /// The scenario with its first person played from a recording, as a file of its own.
 std::filesystem::path with_recording(const std::string& name, const std::string& recording) {
   config::Scenario scenario = read_scenario(name);
-  if (scenario.people().empty()) throw ConfigError("--human needs a scenario with a person; " + name + " has none");
+  if (scenario.people().empty())
+    throw ConfigError("--human needs a scenario with a person; " + name + " has none");
   scenario.mutable_people(0)->set_behaviour(config::RECORDING);
-  const std::filesystem::path own =
-      std::filesystem::exists(recording) ? std::filesystem::absolute(recording) : std::filesystem::path(recording);
-  sim::load_recording(sim::resolve_recording(own, sim::data_root()));  // one that cannot be played starts nothing
+  const std::filesystem::path own = std::filesystem::exists(recording)
+                                        ? std::filesystem::absolute(recording)
+                                        : std::filesystem::path(recording);
+  sim::load_recording(
+      sim::resolve_recording(own, sim::data_root()));  // one that cannot be played starts nothing
   scenario.mutable_people(0)->set_recording(own.string());
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("handsel-" + std::to_string(getpid()) + ".txtpb");
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("handsel-" + std::to_string(getpid()) + ".txtpb");
   std::string text;
   google::protobuf::TextFormat::PrintToString(scenario, &text);
   std::ofstream(file) << text;
@@ -63,7 +67,9 @@ class Marks {
  public:
   Marks(Bus& bus, const RunOptions& options)
       : out_(bus.advertise<StudyMark>()),
-        mark_{.condition = options.condition, .participant = options.participant, .trial = options.trial} {}
+        mark_{.condition = options.condition,
+              .participant = options.participant,
+              .trial = options.trial} {}
   void operator()(const std::string& text) {
     mark_.text = text;
     out_->publish(mark_);
@@ -85,7 +91,8 @@ int run(RunOptions& options) {
   const config::Scenario scenario = read_scenario(options.system.scenario);
   scenario_goals(scenario);  // a scenario that cannot be performed starts nothing
   const std::string shown = options.system.scenario;
-  if (!options.report.empty()) write_report(options.report, nlohmann::json{{"success", false}, {"failure", "did not end"}});
+  if (!options.report.empty())
+    write_report(options.report, nlohmann::json{{"success", false}, {"failure", "did not end"}});
   TemporaryFile derived;
   if (!options.human.empty()) {
     derived.path = with_recording(options.system.scenario, options.human);
@@ -97,22 +104,28 @@ int run(RunOptions& options) {
   if (options.trial > 0) options.system.notes["trial"] = std::to_string(options.trial);
   check_scene(options.system);
   System system(options.system);
-  std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n", kProcesses.size(),
-               options.system.domain, shown.c_str(), static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());
+  std::fprintf(
+      stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n",
+      kProcesses.size(), options.system.domain, shown.c_str(),
+      static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());
   Session& session = system.session();
   Marks mark(session.bus(), options);
-  Performer performer(session.bus(), session.observer(), scenario, options.timeout, [&] { return not_ready(session.snapshot()).empty(); });
+  Performer performer(session.bus(), session.observer(), scenario, options.timeout,
+                      [&] { return not_ready(session.snapshot()).empty(); });
   const auto ready = system.wait_ready(kReadyTimeout);
   if (!ready) return 1;
   std::fprintf(stderr, "ready after %.1f s\n", to_seconds(*ready));
   announce_page(system, options.headless);
 
-  ReportInputs inputs{.scenario = shown, .robot = robot_of(options.system), .seed = options.system.seed};
+  ReportInputs inputs{
+      .scenario = shown, .robot = robot_of(options.system), .seed = options.system.seed};
   inputs.ready = to_seconds(*ready);
   inputs.before = counters(session.snapshot());
   inputs.ground_truth_before = session.snapshot().ground_truth.sample;
   session.observer().on_event([&](const TimelineEvent& event) {
-    std::fprintf(stderr, "%7.2f s  %s\n", performer.started() ? to_seconds(event.at - performer.begin()) : 0.0, event.text.c_str());
+    std::fprintf(stderr, "%7.2f s  %s\n",
+                 performer.started() ? to_seconds(event.at - performer.begin()) : 0.0,
+                 event.text.c_str());
   });
   system.wait(std::chrono::hours(24), [&] { return performer.started(); });
   mark("begin");
@@ -134,7 +147,8 @@ int run(RunOptions& options) {
   if (json_wanted(options.json)) std::printf("%s\n", report.dump().c_str());
   std::fflush(stdout);
   if (options.stay && !interrupted()) {
-    std::fprintf(stderr, "\nthe system stays up; `handsel task …` gives it more to do, Ctrl-C stops it\n");
+    std::fprintf(stderr,
+                 "\nthe system stays up; `handsel task …` gives it more to do, Ctrl-C stops it\n");
     while (!interrupted()) system.wait(from_seconds(3600), [] { return false; });
   }
   return performer.succeeded() ? 0 : 1;
@@ -144,17 +158,24 @@ int run(RunOptions& options) {
 
 void add_run_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "starts every process, performs the scenario's tasks, reports, stops all");
+  CLI::App* command = app.add_subcommand(
+      "run", "starts every process, performs the scenario's tasks, reports, stops all");
   add_system_options(*command, options->system);
   command->add_flag("--headless", options->headless, "open no browser");
   command->add_flag("--stay", options->stay, "stay up after the tasks until Ctrl-C");
   command->add_flag("--json", options->json, "print the report as JSON");
-  command->add_option("--human", options->human, "recording that the first person plays: .csv, .bvh, or a folder of the KTH handover set");
+  command->add_option(
+      "--human", options->human,
+      "recording that the first person plays: .csv, .bvh, or a folder of the KTH handover set");
   command->add_option("--report", options->report, "write the report to this file");
-  command->add_option("--condition", options->condition, "of a study: in the report and, as a mark at begin and end, in the record");
-  command->add_option("--participant", options->participant, "pseudonym, in the report and the record");
-  command->add_option("--trial", options->trial, "number of the trial, in the report and the record");
-  command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")->check(kAboveZero);
+  command->add_option("--condition", options->condition,
+                      "of a study: in the report and, as a mark at begin and end, in the record");
+  command->add_option("--participant", options->participant,
+                      "pseudonym, in the report and the record");
+  command->add_option("--trial", options->trial,
+                      "number of the trial, in the report and the record");
+  command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")
+      ->check(kAboveZero);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

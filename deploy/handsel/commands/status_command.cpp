@@ -29,7 +29,9 @@ int show(const StatusOptions& options) {
     const TimePoint now = session.bus().now();
     status = make_status(session.snapshot(), now);
     if (options.watch && !json) std::printf("\033[H\033[2J");
-    std::printf("%s%s", json ? to_json(status, session.snapshot(), now).dump().c_str() : to_text(status, session.snapshot(), now).c_str(),
+    std::printf("%s%s",
+                json ? to_json(status, session.snapshot(), now).dump().c_str()
+                     : to_text(status, session.snapshot(), now).c_str(),
                 json ? "\n" : "");
     std::fflush(stdout);
     if (options.watch) session.listen(from_seconds(0.5));
@@ -44,7 +46,8 @@ int show(const StatusOptions& options) {
 
 void add_status_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* command = app.add_subcommand("status", "each process, the task, the trajectory, the mode and why");
+  CLI::App* command =
+      app.add_subcommand("status", "each process, the task, the trajectory, the mode and why");
   add_domain_option(*command, options->domain);
   command->add_flag("--watch", options->watch, "again and again until Ctrl-C");
   command->add_flag("--json", options->json, "print JSON");

@@ -12,7 +12,8 @@ void add_story_command(CLI::App& app, int& exit_code) {
     std::vector<std::string> files;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("story", "runs story files (start, task, disturb, kill, expect) over real processes");
+  CLI::App* command = app.add_subcommand(
+      "story", "runs story files (start, task, disturb, kill, expect) over real processes");
   add_domain_option(*command, options->story.domain);
   command->add_option("--seed", options->story.seed, "instead of the story's");
   command->add_option("files", options->files, "story files")->required();

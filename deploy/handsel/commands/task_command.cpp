@@ -22,14 +22,16 @@ std::string tree_text(const std::vector<PlanStep>& tree) {
   constexpr std::array kMarks = {"[ ] ", "[>] ", "[x] ", "[!] ", "[-] "};
   std::string out;
   for (const PlanStep& step : tree) {
-    out += std::string(2 * step.depth, ' ') + kMarks[static_cast<std::size_t>(step.state)] + step.text;
+    out +=
+        std::string(2 * step.depth, ' ') + kMarks[static_cast<std::size_t>(step.state)] + step.text;
     if (step.depth > 0 && !step.reason.empty()) out += " (" + step.reason + ")";
     out += "\n";
   }
   return out;
 }
 
-/// Shows the tree on stderr whenever it changes, under what else happens: in place on a terminal, else only lines that are new.
+/// Shows the tree on stderr whenever it changes, under what else happens: in place on a terminal,
+/// else only lines that are new.
 class TreeView {
  public:
   void show(const TaskStatus& status) {
@@ -68,7 +70,10 @@ class TreeView {
 nlohmann::json tree_json(const std::vector<PlanStep>& tree) {
   nlohmann::json out = nlohmann::json::array();
   for (const PlanStep& step : tree)
-    out.push_back({{"text", step.text}, {"depth", step.depth}, {"state", name(step.state)}, {"reason", step.reason}});
+    out.push_back({{"text", step.text},
+                   {"depth", step.depth},
+                   {"state", name(step.state)},
+                   {"reason", step.reason}});
   return out;
 }
 
@@ -86,7 +91,8 @@ int perform(const TaskOptions& options) {
   TaskGoal goal = options.goal;
   goal.id = session.new_task_id();
   if (!session.send(goal))
-    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
+    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) +
+                       " takes tasks: the supervisor is not there");
   const auto status = [&]() -> const TaskStatus* {
     const auto found = session.snapshot().tasks.find(goal.id);
     return found == session.snapshot().tasks.end() ? nullptr : &found->second;
@@ -98,15 +104,16 @@ int perform(const TaskOptions& options) {
     if (status()) view.show(*status());
     // A supervisor that was started anew is told again; it takes the task up where the world is.
     const TimePoint now = session.bus().now();
-    if (status() && !is_over(status()->state) && now - session.snapshot().task.arrival >= kTaskSilence && now - sent >= kTaskSilence) {
+    if (status() && !is_over(status()->state) &&
+        now - session.snapshot().task.arrival >= kTaskSilence && now - sent >= kTaskSilence) {
       session.publish(goal);
       sent = now;
     }
     return status() && is_over(status()->state);
   };
   if (!session.wait(kAnswerTimeout, [&] { return status() != nullptr; }) && !interrupted()) {
-    throw MissingError("the supervisor did not answer the task within " + std::to_string(static_cast<int>(to_seconds(kAnswerTimeout))) +
-                       " s");
+    throw MissingError("the supervisor did not answer the task within " +
+                       std::to_string(static_cast<int>(to_seconds(kAnswerTimeout))) + " s");
   }
   if (!session.wait(std::chrono::hours(24), over) && interrupted()) {
     std::fprintf(stderr, "cancelling %s\n", describe(goal).c_str());
@@ -117,19 +124,23 @@ int perform(const TaskOptions& options) {
   const std::string state = status() ? name(status()->state) : "unanswered";
   const std::string reason = status() ? status()->reason : "";
   if (json_wanted(options.json)) {
-    std::printf("%s\n", nlohmann::json{{"task", describe(goal)},
-                                       {"state", state},
-                                       {"reason", reason},
-                                       {"tree", tree_json(status() ? status()->tree : std::vector<PlanStep>{})}}
-                            .dump()
-                            .c_str());
+    std::printf(
+        "%s\n",
+        nlohmann::json{{"task", describe(goal)},
+                       {"state", state},
+                       {"reason", reason},
+                       {"tree", tree_json(status() ? status()->tree : std::vector<PlanStep>{})}}
+            .dump()
+            .c_str());
   } else {
-    std::printf("%s: %s%s%s\n", describe(goal).c_str(), state.c_str(), reason.empty() ? "" : ": ", reason.c_str());
+    std::printf("%s: %s%s%s\n", describe(goal).c_str(), state.c_str(), reason.empty() ? "" : ": ",
+                reason.c_str());
   }
   return status() && status()->state == TaskState::succeeded ? 0 : 1;
 }
 
-/// About the running task, the robot or the system: pause, resume, cancel, acknowledge, speed. Prints what holds the robot afterwards.
+/// About the running task, the robot or the system: pause, resume, cancel, acknowledge, speed.
+/// Prints what holds the robot afterwards.
 int tell(const TaskOptions& options) {
   catch_interrupts();
   Session session(options.domain);
@@ -144,13 +155,16 @@ int tell(const TaskOptions& options) {
     return 1;
   }
   if (!session.send(goal))
-    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
+    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) +
+                       " takes tasks: the supervisor is not there");
   const auto answered = [&] {
-    if (const auto own = session.snapshot().tasks.find(goal.id); own != session.snapshot().tasks.end() && is_over(own->second.state))
+    if (const auto own = session.snapshot().tasks.find(goal.id);
+        own != session.snapshot().tasks.end() && is_over(own->second.state))
       return true;
     return goal.kind == TaskKind::cancel && is_over(session.snapshot().task.sample.state);
   };
-  const bool done = session.wait(std::chrono::seconds(goal.kind == TaskKind::speed ? 2 : 10), answered);
+  const bool done =
+      session.wait(std::chrono::seconds(goal.kind == TaskKind::speed ? 2 : 10), answered);
   const auto own = session.snapshot().tasks.find(goal.id);
   if (own != session.snapshot().tasks.end() && own->second.state == TaskState::refused) {
     std::printf("refused: %s\n", own->second.reason.c_str());
@@ -171,34 +185,42 @@ int clear_person(const TaskOptions& options) {
   Session session(options.domain);
   session.require_system();
   Seen<HumanState> people;
-  session.bus().subscribe<HumanState>([&](const HumanState& sample, const Receipt& receipt) { people = {true, sample, receipt.arrival}; });
+  session.bus().subscribe<HumanState>([&](const HumanState& sample, const Receipt& receipt) {
+    people = {true, sample, receipt.arrival};
+  });
   if (!session.wait(std::chrono::seconds(1), [&] { return people.ever; }))
-    throw MissingError("no HumanState on DDS domain " + std::to_string(options.domain) + ": SPARK is not there");
+    throw MissingError("no HumanState on DDS domain " + std::to_string(options.domain) +
+                       ": SPARK is not there");
   const auto lost = [&] {
     std::vector<std::string> out;
     for (const Person& person : people.sample.people)
-      if (person.inflation > 0 && person.hands.empty() && (options.goal.human.empty() || person.id == options.goal.human))
+      if (person.inflation > 0 && person.hands.empty() &&
+          (options.goal.human.empty() || person.id == options.goal.human))
         out.push_back(person.id);
     return out;
   };
   const std::vector<std::string> before = lost();
   if (before.empty()) {
-    const bool known = std::any_of(people.sample.people.begin(), people.sample.people.end(),
-                                   [&](const Person& person) { return person.id == options.goal.human; });
+    const bool known =
+        std::any_of(people.sample.people.begin(), people.sample.people.end(),
+                    [&](const Person& person) { return person.id == options.goal.human; });
     std::printf("%s\n", options.goal.human.empty() ? "nobody is lost"
-                        : known                    ? (options.goal.human + " is seen, and stays").c_str()
-                                                   : ("nobody is called " + options.goal.human).c_str());
+                        : known ? (options.goal.human + " is seen, and stays").c_str()
+                                : ("nobody is called " + options.goal.human).c_str());
     return 1;
   }
   TaskGoal goal = options.goal;
   goal.id = session.new_task_id();
-  if (!session.send(goal)) throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks");
+  if (!session.send(goal))
+    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks");
   const bool done = session.wait(std::chrono::seconds(2), [&] { return lost().empty(); });
-  for (const std::string& id : before) std::printf("%s: %s\n", id.c_str(), done ? "cleared" : "still held as lost");
+  for (const std::string& id : before)
+    std::printf("%s: %s\n", id.c_str(), done ? "cleared" : "still held as lost");
   return done ? 0 : 1;
 }
 
-std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* word, const char* help, TaskKind kind,
+std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* word,
+                                 const char* help, TaskKind kind,
                                  int (*action)(const TaskOptions&)) {
   auto options = std::make_shared<TaskOptions>();
   options->goal.kind = kind;
@@ -212,21 +234,32 @@ std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* w
 }  // namespace
 
 void add_task_commands(CLI::App& app, int& exit_code) {
-  CLI::App* task = app.add_subcommand("task", "sends a goal to a running system and follows it to the end; Ctrl-C cancels it");
+  CLI::App* task = app.add_subcommand(
+      "task", "sends a goal to a running system and follows it to the end; Ctrl-C cancels it");
   task->require_subcommand(1);
   const auto goal = [&](const char* word, const char* help, TaskKind kind) {
     auto options = add(*task, exit_code, word, help, kind, perform);
     return std::pair(task->get_subcommand(word), options);
   };
-  const auto object = [](auto& entry) { entry.first->add_option("object", entry.second->goal.object, "object")->required(); };
-  const auto surface = [](auto& entry) { entry.first->add_option("surface", entry.second->goal.surface, "surface")->required(); };
+  const auto object = [](auto& entry) {
+    entry.first->add_option("object", entry.second->goal.object, "object")->required();
+  };
+  const auto surface = [](auto& entry) {
+    entry.first->add_option("surface", entry.second->goal.surface, "surface")->required();
+  };
   auto give = goal("give", "hands an object to a person", TaskKind::give);
   object(give);
-  give.first->add_option("--to", give.second->goal.human, "person (default: the nearest attentive one)");
-  const auto onto = [](auto& entry, const char* what) { entry.first->add_option("--onto", entry.second->goal.onto, what); };
-  auto receive = goal("receive", "takes an object from a person and puts it down", TaskKind::receive);
-  receive.first->add_option("object", receive.second->goal.object, "object (default: what is offered)");
-  receive.first->add_option("--from", receive.second->goal.human, "person (default: who offers, or the nearest attentive one)");
+  give.first->add_option("--to", give.second->goal.human,
+                         "person (default: the nearest attentive one)");
+  const auto onto = [](auto& entry, const char* what) {
+    entry.first->add_option("--onto", entry.second->goal.onto, what);
+  };
+  auto receive =
+      goal("receive", "takes an object from a person and puts it down", TaskKind::receive);
+  receive.first->add_option("object", receive.second->goal.object,
+                            "object (default: what is offered)");
+  receive.first->add_option("--from", receive.second->goal.human,
+                            "person (default: who offers, or the nearest attentive one)");
   onto(receive, "surface it is put on (default: where there is room)");
   auto pick = goal("pick", "picks an object up", TaskKind::pick);
   object(pick);
@@ -236,8 +269,10 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   auto clear = goal("clear", "clears a surface", TaskKind::clear);
   surface(clear);
   onto(clear, "surface the things are put on (default: where there is room)");
-  auto tidy = goal("tidy", "puts an object, or all objects of a model, on a surface", TaskKind::tidy);
-  tidy.first->add_option("object", tidy.second->goal.object, "object, or the name of a model")->required();
+  auto tidy =
+      goal("tidy", "puts an object, or all objects of a model, on a surface", TaskKind::tidy);
+  tidy.first->add_option("object", tidy.second->goal.object, "object, or the name of a model")
+      ->required();
   tidy.first->add_option("onto", tidy.second->goal.onto, "surface")->required();
   auto regrasp = goal("regrasp", "takes another grasp of an object", TaskKind::regrasp);
   object(regrasp);
@@ -245,16 +280,23 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   object(lift);
   auto go_to = goal("goto", "moves the arm to a named configuration", TaskKind::go_to);
   go_to.first->add_option("place", go_to.second->goal.surface, "configuration: rest")->required();
-  add(*task, exit_code, "pause", "stops the robot with limited jerk until a person resumes, whatever restarts", TaskKind::pause, tell);
-  add(*task, exit_code, "resume", "ends a pause, and the wait after a stop of the robot", TaskKind::resume, tell);
+  add(*task, exit_code, "pause",
+      "stops the robot with limited jerk until a person resumes, whatever restarts",
+      TaskKind::pause, tell);
+  add(*task, exit_code, "resume", "ends a pause, and the wait after a stop of the robot",
+      TaskKind::resume, tell);
   add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, tell);
-  add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault or stop", TaskKind::acknowledge, tell);
+  add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault or stop",
+      TaskKind::acknowledge, tell);
 
   auto clear_lost =
-      add(*task, exit_code, "clear-person", "says that a person SPARK has lost sight of is gone", TaskKind::clear_person, clear_person);
-  task->get_subcommand("clear-person")->add_option("person", clear_lost->goal.human, "who; without, everybody lost");
+      add(*task, exit_code, "clear-person", "says that a person SPARK has lost sight of is gone",
+          TaskKind::clear_person, clear_person);
+  task->get_subcommand("clear-person")
+      ->add_option("person", clear_lost->goal.human, "who; without, everybody lost");
 
-  auto speed = add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, tell);
+  auto speed =
+      add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, tell);
   CLI::App* command = app.get_subcommand("speed");
   command
       ->add_option_function<double>(

@@ -29,11 +29,14 @@ TrajectoryRequest request_of(const json& line, const RobotModel& robot, const Gr
   const json& nodes = field(line, "nodes");
   if (!nodes.is_array()) throw LineError("\"nodes\" must be a list");
   for (const json& node : nodes) {
-    if (!node.is_object()) throw LineError("a node must be an object of joint names and positions, as {\"shoulder\": 0.5}");
+    if (!node.is_object())
+      throw LineError(
+          "a node must be an object of joint names and positions, as {\"shoulder\": 0.5}");
     Vector q = RobotModel::part(request.start, group);
     for (const auto& [name, value] : node.items()) {
       const auto at = std::find(group.axes.begin(), group.axes.end(), axis_of(robot, name));
-      if (at == group.axes.end()) throw LineError("axis \"" + name + "\" is none of the group \"" + group.name + "\"");
+      if (at == group.axes.end())
+        throw LineError("axis \"" + name + "\" is none of the group \"" + group.name + "\"");
       q[at - group.axes.begin()] = number(node, name.c_str());
     }
     if (request.nodes.empty()) request.start = RobotModel::with(request.start, group, q);
@@ -53,8 +56,9 @@ Surroundings around_in(const json& line) {
 }
 
 int run(const Options& options) {
-  const RobotModel robot =
-      options.robot.ends_with(".urdf") ? RobotModel::load_urdf(options.robot) : RobotModel::load(robot_description(options.robot));
+  const RobotModel robot = options.robot.ends_with(".urdf")
+                               ? RobotModel::load_urdf(options.robot)
+                               : RobotModel::load(robot_description(options.robot));
   const Group& group = robot.require_group(options.group);
   CollisionWorld world(robot, nullptr);
   std::vector<SpeedCurve> curves;
@@ -70,17 +74,20 @@ int run(const Options& options) {
     if (!options.svg.empty() && result.reply.solved) {
       const SpeedAlong people(robot, cost, around, {});
       const Vector limits = RobotModel::part(robot.comfort_limits().velocity, group);
-      curves.push_back(speed_curve(result.reply.trajectory, group.axes, limits, request.start, people));
+      curves.push_back(
+          speed_curve(result.reply.trajectory, group.axes, limits, request.start, people));
       curves.back().title = line.value("title", "");
     }
     json corners = json::array(), speeds = json::array();
-    for (const Refusal& corner : result.reply.corners) corners.push_back({{"what", corner.what}, {"reason", corner.reason}});
+    for (const Refusal& corner : result.reply.corners)
+      corners.push_back({{"what", corner.what}, {"reason", corner.reason}});
     for (const SpeedZones& leg : result.speeds) {
       speeds.push_back(json::array());
       for (const SpeedZone& zone : leg) speeds.back().push_back({zone.end, zone.scale});
     }
     std::vector<std::string> names;
-    for (const int axis : group.axes) names.push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
+    for (const int axis : group.axes)
+      names.push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
     return {{"solved", result.reply.solved},
             {"reason", result.reply.reason},
             {"duration", result.reply.trajectory.duration()},
@@ -104,14 +111,17 @@ int run(const Options& options) {
 
 void add_timed_command(CLI::App& trajectory, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = trajectory.add_subcommand("timed", "A path of a robot's joints to soft motion, slower where it costs people");
+  CLI::App* command = trajectory.add_subcommand(
+      "timed", "A path of a robot's joints to soft motion, slower where it costs people");
   command->footer(
       R"(A line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of the others, "obstacles"?, "human"?: {"joints": {name: [x, y, z]},
  "gaze"?: [x, y, z], "velocity"?: [x, y, z]} in the root frame, "weights"?, "speed_scale"?, "title"?: of the picture's panel}.
 An answer: "speeds" of each path segment, [[up to this fraction of it, this scale of the velocity limits], ...]; nothing without a human.)");
-  command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
+  command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
+      ->required();
   command->add_option("--group", options->group, "whose joints move")->capture_default_str();
-  command->add_option("--svg", options->svg, "file to draw speed and cost along the path to, a panel a line");
+  command->add_option("--svg", options->svg,
+                      "file to draw speed and cost along the path to, a panel a line");
   command->add_flag("--json")->description("JSON Lines (always so)");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

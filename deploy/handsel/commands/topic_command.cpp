@@ -23,13 +23,16 @@ struct TopicOptions {
 
 const MessageType& require_type(const std::string& topic) {
   const MessageType* type = find_message_type(topic);
-  if (!type) throw ConfigError("there is no topic \"" + topic + "\"; `handsel topic list` names them");
+  if (!type)
+    throw ConfigError("there is no topic \"" + topic + "\"; `handsel topic list` names them");
   return *type;
 }
 
 int list(const TopicOptions& options) {
   const bool json = json_wanted(options.json);
-  if (!json) std::printf("%-32s %-20s %-9s %6s %9s  %-24s %s\n", "topic", "type", "profile", "Hz", "deadline", "writers", "readers");
+  if (!json)
+    std::printf("%-32s %-20s %-9s %6s %9s  %-24s %s\n", "topic", "type", "profile", "Hz",
+                "deadline", "writers", "readers");
   for (const TopicRow& row : topics()) {
     if (json) {
       std::printf("%s\n", nlohmann::json{{"topic", row.topic},
@@ -43,8 +46,8 @@ int list(const TopicOptions& options) {
                               .dump()
                               .c_str());
     } else {
-      std::printf("%-32s %-20s %-9s %6.0f %7.0f ms  %-24.24s %s\n", row.topic, row.type, name(row.profile), row.rate, 1e3 * row.deadline,
-                  row.writers, row.readers);
+      std::printf("%-32s %-20s %-9s %6.0f %7.0f ms  %-24.24s %s\n", row.topic, row.type,
+                  name(row.profile), row.rate, 1e3 * row.deadline, row.writers, row.readers);
     }
   }
   return 0;
@@ -65,7 +68,9 @@ int echo(const TopicOptions& options) {
                                 ++seen;
                               },
                               {});
-  session.wait(options.seconds > 0 ? from_seconds(options.seconds) : Duration(std::chrono::hours(24 * 365)), done);
+  session.wait(
+      options.seconds > 0 ? from_seconds(options.seconds) : Duration(std::chrono::hours(24 * 365)),
+      done);
   if (seen == 0) std::fprintf(stderr, "handsel: nothing came on %s\n", type.row().topic);
   return seen > 0 ? 0 : 1;
 }
@@ -90,7 +95,8 @@ int rate(const TopicOptions& options) {
                               {});
   session.listen(from_seconds(options.seconds > 0 ? options.seconds : 2.0));
   if (count < 2) {
-    std::fprintf(stderr, "handsel: %s came on %s\n", count ? "one sample" : "nothing", type.row().topic);
+    std::fprintf(stderr, "handsel: %s came on %s\n", count ? "one sample" : "nothing",
+                 type.row().topic);
     return 1;
   }
   const double hz = static_cast<double>(count - 1) / to_seconds(last - first);
@@ -103,8 +109,9 @@ int rate(const TopicOptions& options) {
                             .dump()
                             .c_str());
   } else {
-    std::printf("%s: %.1f Hz, gaps %.1f to %.1f ms over %llu samples\n", type.row().topic, hz, 1e3 * to_seconds(shortest),
-                1e3 * to_seconds(longest), static_cast<unsigned long long>(count));
+    std::printf("%s: %.1f Hz, gaps %.1f to %.1f ms over %llu samples\n", type.row().topic, hz,
+                1e3 * to_seconds(shortest), 1e3 * to_seconds(longest),
+                static_cast<unsigned long long>(count));
   }
   return 0;
 }
@@ -114,15 +121,18 @@ int rate(const TopicOptions& options) {
 void add_topic_commands(CLI::App& app, int& exit_code) {
   CLI::App* topic = app.add_subcommand("topic", "looks at DDS traffic");
   topic->require_subcommand(1);
-  const auto add = [&](const char* word, const char* help, int (*action)(const TopicOptions&), bool named) {
+  const auto add = [&](const char* word, const char* help, int (*action)(const TopicOptions&),
+                       bool named) {
     auto options = std::make_shared<TopicOptions>();
     CLI::App* command = topic->add_subcommand(word, help);
     command->add_flag("--json", options->json, "print JSON Lines");
     if (named) {
       add_domain_option(*command, options->domain);
-      command->add_option("topic", options->topic, "topic or message type, e.g. robot_state")->required();
+      command->add_option("topic", options->topic, "topic or message type, e.g. robot_state")
+          ->required();
       command->add_option("--seconds", options->seconds, "listen for so long")->check(kAboveZero);
-      if (action == echo) command->add_option("--count", options->count, "stop after so many samples");
+      if (action == echo)
+        command->add_option("--count", options->count, "stop after so many samples");
     }
     command->callback([options, action, &exit_code] { exit_code = action(*options); });
   };

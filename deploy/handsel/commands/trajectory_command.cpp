@@ -11,27 +11,31 @@ namespace {
 using nlohmann::json;
 using namespace command;
 
-CLI::App* batch(CLI::App* group, const char* name, const char* what, int& exit_code, const std::function<json(const json&)>& answer) {
+CLI::App* batch(CLI::App* group, const char* name, const char* what, int& exit_code,
+                const std::function<json(const json&)>& answer) {
   CLI::App* command = group->add_subcommand(name, what);
   command->add_flag("--json")->description("JSON Lines (always so)");
-  command->callback([&exit_code, answer] { exit_code = for_each_line(std::cin, std::cout, answer); });
+  command->callback(
+      [&exit_code, answer] { exit_code = for_each_line(std::cin, std::cout, answer); });
   return command;
 }
 
 }  // namespace
 
 void add_trajectory_commands(CLI::App& app, int& exit_code) {
-  CLI::App* group = app.add_subcommand("trajectory", "Jerk-limited motion: JSON Lines on stdin, one answer a line");
+  CLI::App* group = app.add_subcommand(
+      "trajectory", "Jerk-limited motion: JSON Lines on stdin, one answer a line");
   group->require_subcommand(1);
   batch(group, "solve", "From state to state in minimum or imposed time", exit_code, solve_line)
       ->footer(
-          "A line: {\"p0\",\"v0\",\"a0\",\"pf\",\"vf\",\"af\",\"vmax\",\"amax\",\"jmax\": lists over axes, "
+          "A line: {\"p0\",\"v0\",\"a0\",\"pf\",\"vf\",\"af\",\"vmax\",\"amax\",\"jmax\": lists "
+          "over axes, "
           "\"sync\"?: \"time\"|\"none\", \"impose\"?: true, \"duration\"?}");
   batch(group, "smooth", "From a broken line to soft motion", exit_code, smooth_line)
       ->footer("A line: {\"nodes\":[[...],...],\"vmax\",\"amax\",\"jmax\",\"tau\"?}");
   auto period = std::make_shared<double>(0.01);
-  batch(group, "sample", "States of trajectories (as solve and smooth write them) at regular times", exit_code,
-        [period](const json& line) { return sample_line(line, *period); })
+  batch(group, "sample", "States of trajectories (as solve and smooth write them) at regular times",
+        exit_code, [period](const json& line) { return sample_line(line, *period); })
       ->add_option("--period", *period, "[s]")
       ->check(kAboveZero)
       ->capture_default_str();

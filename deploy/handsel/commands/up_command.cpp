@@ -12,19 +12,26 @@ namespace handsel {
 void add_up_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SystemOptions>();
   auto headless = std::make_shared<bool>(false);
-  CLI::App* up = app.add_subcommand("up", "starts every process, restarts what dies, stops all on Ctrl-C");
+  CLI::App* up =
+      app.add_subcommand("up", "starts every process, restarts what dies, stops all on Ctrl-C");
   add_system_options(*up, *options);
-  up->add_option("--only", options->only, "start these processes only, e.g. spark,bridge; the others run elsewhere")->delimiter(',');
-  up->add_option("--without", options->without, "start all but these, e.g. sim when a robot's driver takes its place")->delimiter(',');
+  up->add_option("--only", options->only,
+                 "start these processes only, e.g. spark,bridge; the others run elsewhere")
+      ->delimiter(',');
+  up->add_option("--without", options->without,
+                 "start all but these, e.g. sim when a robot's driver takes its place")
+      ->delimiter(',');
   up->add_flag("--headless", *headless, "open no browser");
   up->callback([options, headless, &exit_code] {
     catch_interrupts();
     check_scene(*options);
     System system(*options);
-    std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s; logs in %s\n", system.launcher().processes().size(),
-                 options->domain, options->scenario.c_str(), system.log_directory().c_str());
+    std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s; logs in %s\n",
+                 system.launcher().processes().size(), options->domain, options->scenario.c_str(),
+                 system.log_directory().c_str());
     // A part of a system has nobody to blame for what runs elsewhere: it waits.
-    const auto took = system.wait_ready(options->whole() ? kReadyTimeout : Duration(std::chrono::hours(24 * 365)));
+    const auto took = system.wait_ready(options->whole() ? kReadyTimeout
+                                                         : Duration(std::chrono::hours(24 * 365)));
     if (took) {
       std::fprintf(stderr, "ready after %.1f s\n", to_seconds(*took));
       announce_page(system, *headless);

@@ -37,12 +37,15 @@ constexpr Duration kEnter = std::chrono::seconds(5);  // for one participant, on
 constexpr Duration kMeet = std::chrono::seconds(3);   // for all to hear each other
 constexpr Duration kLook = std::chrono::milliseconds(800);
 constexpr Duration kSpeak = std::chrono::milliseconds(50);
-constexpr double kOffset = 0.05;                       // of clocks [s]; more than any transit on one machine or a local network
-constexpr double kFuture = 0.01;                       // a measurement from so far ahead cannot be [s]
-constexpr double kOld = 1.0;                           // older measurements than any sensor's latency [s]
-constexpr double kJump = 0.005;                        // of the wall clock against the monotonic one while looked at [s]
-constexpr double kBaseOff = 0.01, kBaseTurned = 0.01;  // of the robot's base from its calibration [m], [rad]
-constexpr const char* kDefaultRemedy = "correct it, or unset CYCLONEDDS_URI: Handsel then uses deploy/dds/loopback.xml";
+constexpr double kOffset =
+    0.05;  // of clocks [s]; more than any transit on one machine or a local network
+constexpr double kFuture = 0.01;  // a measurement from so far ahead cannot be [s]
+constexpr double kOld = 1.0;      // older measurements than any sensor's latency [s]
+constexpr double kJump = 0.005;   // of the wall clock against the monotonic one while looked at [s]
+constexpr double kBaseOff = 0.01,
+                 kBaseTurned = 0.01;  // of the robot's base from its calibration [m], [rad]
+constexpr const char* kDefaultRemedy =
+    "correct it, or unset CYCLONEDDS_URI: Handsel then uses deploy/dds/loopback.xml";
 
 std::string where(int domain) { return "domain " + std::to_string(domain); }
 
@@ -57,19 +60,21 @@ double wall_minus_monotonic() {
   timespec wall{}, monotonic{};
   clock_gettime(CLOCK_REALTIME, &wall);
   clock_gettime(CLOCK_MONOTONIC, &monotonic);
-  return static_cast<double>(wall.tv_sec - monotonic.tv_sec) + static_cast<double>(wall.tv_nsec - monotonic.tv_nsec) * 1e-9;
+  return static_cast<double>(wall.tv_sec - monotonic.tv_sec) +
+         static_cast<double>(wall.tv_nsec - monotonic.tv_nsec) * 1e-9;
 }
 
-/// The first that the transport said on stderr (but that it does without multicast), without its time, thread and process; else the last
-/// line.
+/// The first that the transport said on stderr (but that it does without multicast), without its
+/// time, thread and process; else the last line.
 std::string complaint(const std::string& said) {
   std::istringstream lines(said);
   std::string last;
   for (std::string line; std::getline(lines, line);) {
     const std::size_t bracket = line.find("] "), colon = line.find(": ");
-    const bool transport =
-        !line.empty() && std::isdigit(static_cast<unsigned char>(line[0])) && bracket < colon && colon != std::string::npos;
-    if (transport && line.find("not multicast-capable") == std::string::npos) return line.substr(colon + 2);
+    const bool transport = !line.empty() && std::isdigit(static_cast<unsigned char>(line[0])) &&
+                           bracket < colon && colon != std::string::npos;
+    if (transport && line.find("not multicast-capable") == std::string::npos)
+      return line.substr(colon + 2);
     if (!line.empty()) last = line;
   }
   return last;
@@ -78,9 +83,12 @@ std::string complaint(const std::string& said) {
 /// One process that speaks on the domain until it is ended; reports "in" once it has entered.
 Probe speaker(int domain, std::uint64_t meeting, std::uint64_t number) {
   return Probe([=](const Probe::Report& report) {
-    DdsBus bus({.component = "doctor", .domain = static_cast<std::uint32_t>(domain), .health = false});
+    DdsBus bus(
+        {.component = "doctor", .domain = static_cast<std::uint32_t>(domain), .health = false});
     auto publisher = bus.advertise<StateVerdict>();
-    bus.every(kSpeak, [&](TimePoint) { publisher->publish({.id = {.client = meeting, .number = number}}); });
+    bus.every(kSpeak, [&](TimePoint) {
+      publisher->publish({.id = {.client = meeting, .number = number}});
+    });
     report("in");
     bus.run_until([] { return interrupted(); }, std::chrono::minutes(1));
   });
@@ -92,7 +100,8 @@ struct Offset {
   double least{std::numeric_limits<double>::infinity()};
   void add(Stamp stamp, TimePoint arrival) {
     ++samples;
-    least = std::min(least, to_seconds(arrival.time_since_epoch()) + wall_minus_monotonic() - to_seconds(Duration(stamp)));
+    least = std::min(least, to_seconds(arrival.time_since_epoch()) + wall_minus_monotonic() -
+                                to_seconds(Duration(stamp)));
   }
 };
 
@@ -102,11 +111,13 @@ Json writers_of(const DomainView& view) {
   for (const DomainEndpoint& end : view.endpoints) {
     const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;
     if (row == nullptr || !has_one_writer(*row)) continue;
-    const std::string name = (end.owner.component.empty() ? "process " + end.owner.process : end.owner.component) + " (pid " +
-                             std::to_string(end.owner.pid) + " on " + end.owner.host + ")";
+    const std::string name =
+        (end.owner.component.empty() ? "process " + end.owner.process : end.owner.component) +
+        " (pid " + std::to_string(end.owner.pid) + " on " + end.owner.host + ")";
     // The lane has a writer of its own only while it hands over a command.
     if (row == &TopicOf<TrajectoryCommand>::row && end.owner.component == "ros2_lane") continue;
-    out[row->topic].push_back({{"who", name}, {"may", end.unmatched.empty() && may_write(*row, end.owner.component)}});
+    out[row->topic].push_back(
+        {{"who", name}, {"may", end.unmatched.empty() && may_write(*row, end.owner.component)}});
   }
   return out;
 }
@@ -120,11 +131,16 @@ class Look {
     bus.subscribe<StateVerdict>([this](const StateVerdict& verdict, const Receipt&) {
       if (verdict.id.client == meeting_) heard_.insert(verdict.id.number);
     });
-    bus.subscribe<ComponentHealth>(
-        [this](const ComponentHealth& health, const Receipt& receipt) { clocks_[health.component].add(health.stamp, receipt.arrival); });
-    watch<RobotState>("the robot's state", [this](const RobotState& state) { bases_[state.robot] = state.T_world_base; });
-    watch<HumanObservation>("people", [this](const HumanObservation& seen) { sources_.insert(seen.source); });
-    watch<ObjectObservation>("objects", [this](const ObjectObservation& seen) { sources_.insert(seen.source); });
+    bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt& receipt) {
+      clocks_[health.component].add(health.stamp, receipt.arrival);
+    });
+    watch<RobotState>("the robot's state", [this](const RobotState& state) {
+      bases_[state.robot] = state.T_world_base;
+    });
+    watch<HumanObservation>("people",
+                            [this](const HumanObservation& seen) { sources_.insert(seen.source); });
+    watch<ObjectObservation>(
+        "objects", [this](const ObjectObservation& seen) { sources_.insert(seen.source); });
   }
 
   Json operator()() {
@@ -134,7 +150,10 @@ class Look {
     const double took = to_seconds(monotonic_now() - begin);
     session_.listen(kLook);
     const double looked = to_seconds(monotonic_now() - begin);
-    Json out{{"received", heard_.size()}, {"met", met}, {"took", took}, {"jump", wall_minus_monotonic() - before}};
+    Json out{{"received", heard_.size()},
+             {"met", met},
+             {"took", took},
+             {"jump", wall_minus_monotonic() - before}};
     const SystemStatus status = make_status(session_.snapshot(), session_.bus().now());
     out["system"] = !session_.snapshot().health.empty();
     out["troubles"] = status.troubles;
@@ -143,28 +162,33 @@ class Look {
     for (const auto& [component, offset] : clocks_) out["clocks"][component] = offset.least;
     out["inputs"] = Json::array();
     for (const Input& input : inputs_) {
-      out["inputs"].push_back({{"what", input.what},
-                               {"topic", input.row->topic},
-                               {"wanted", input.row->rate},
-                               {"rate", static_cast<double>(input.status->received) / looked},
-                               {"rejected", input.status->rejected},
-                               {"last_rejection", input.status->last_rejection},
-                               {"least", input.offset->samples ? Json(input.offset->least) : Json()}});
+      out["inputs"].push_back(
+          {{"what", input.what},
+           {"topic", input.row->topic},
+           {"wanted", input.row->rate},
+           {"rate", static_cast<double>(input.status->received) / looked},
+           {"rejected", input.status->rejected},
+           {"last_rejection", input.status->last_rejection},
+           {"least", input.offset->samples ? Json(input.offset->least) : Json()}});
     }
     out["sources"] = sources_;
     out["bases"] = Json::object();
-    for (const auto& [robot, T] : bases_) out["bases"][robot] = std::vector<double>(T.data(), T.data() + 16);
+    for (const auto& [robot, T] : bases_)
+      out["bases"][robot] = std::vector<double>(T.data(), T.data() + 16);
     const DomainView view = session_.bus().discovered_domain();
     out["commanders"] = Json::array();
     char host[256] = {};
     gethostname(host, sizeof host - 1);
     for (const DomainParticipant& commander : view.commanders)
-      out["commanders"].push_back({{"who", commander.component + " (pid " + std::to_string(commander.pid) + " on " + commander.host + ")"},
-                                   {"elsewhere", commander.host != host}});
+      out["commanders"].push_back(
+          {{"who", commander.component + " (pid " + std::to_string(commander.pid) + " on " +
+                       commander.host + ")"},
+           {"elsewhere", commander.host != host}});
     out["writers"] = writers_of(view);
     out["strangers"] = Json::array();
     for (const DomainParticipant& one : view.participants)
-      if (!one.host.empty() && one.host != host) out["strangers"].push_back(one.component + " on " + one.host);
+      if (!one.host.empty() && one.host != host)
+        out["strangers"].push_back(one.component + " on " + one.host);
     return out;
   }
 
@@ -178,10 +202,11 @@ class Look {
   template <class M>
   void watch(const char* what, std::function<void(const M&)> look) {
     auto offset = std::make_shared<Offset>();
-    const SubscriptionStatus& status = session_.bus().subscribe<M>([offset, look](const M& message, const Receipt& receipt) {
-      offset->add(message.stamp, receipt.arrival);
-      look(message);
-    });
+    const SubscriptionStatus& status =
+        session_.bus().subscribe<M>([offset, look](const M& message, const Receipt& receipt) {
+          offset->add(message.stamp, receipt.arrival);
+          look(message);
+        });
     inputs_.push_back({what, &TopicOf<M>::row, &status, offset});
   }
 
@@ -204,12 +229,15 @@ Finding check_configuration(const DdsConfiguration& dds) {
   if (dds.max_sample_size && *dds.max_sample_size < largest) {
     return {"DDS settings", Verdict::bad,
             format("MaxSampleSize is %.2f MiB in %s; messages of up to %.2f MiB would be dropped",
-                   static_cast<double>(*dds.max_sample_size) / (1 << 20), source.c_str(), static_cast<double>(largest) / (1 << 20)),
+                   static_cast<double>(*dds.max_sample_size) / (1 << 20), source.c_str(),
+                   static_cast<double>(largest) / (1 << 20)),
             "set Internal/MaxSampleSize to 8MiB"};
   }
   if (!dds.max_sample_size) {
-    return {"DDS settings", Verdict::note, "MaxSampleSize is not set in " + source + "; a single hostile message may take all memory",
-            "set Internal/MaxSampleSize to 8MiB"};
+    return {
+        "DDS settings", Verdict::note,
+        "MaxSampleSize is not set in " + source + "; a single hostile message may take all memory",
+        "set Internal/MaxSampleSize to 8MiB"};
   }
   return {"DDS settings", Verdict::good, "read from " + source, ""};
 }
@@ -217,7 +245,8 @@ Finding check_configuration(const DdsConfiguration& dds) {
 std::string holders_of_indices(const DoctorOptions& options, int count) {
   std::set<std::string> holders;
   for (int index = 0; index < count; ++index) {
-    const std::string holder = port_holder("udp", participant_port(static_cast<std::uint32_t>(options.domain), index));
+    const std::string holder =
+        port_holder("udp", participant_port(static_cast<std::uint32_t>(options.domain), index));
     if (!holder.empty()) holders.insert(holder);
   }
   std::string text;
@@ -229,48 +258,65 @@ std::string holders_of_indices(const DoctorOptions& options, int count) {
 }
 
 /// Not every process that a system needs could enter the domain.
-Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, std::size_t entered, std::size_t wanted,
-                    const std::string& held_before, const std::string& said) {
+Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, std::size_t entered,
+                    std::size_t wanted, const std::string& held_before, const std::string& said) {
   const std::string what = complaint(said),
-                    no_multicast = said.find("not multicast-capable") == std::string::npos ? "" : ", and the interface has no multicast";
-  const std::string share =
-      (entered == 0 ? "no process" : "only " + std::to_string(entered) + " of " + std::to_string(wanted) + " processes") + " can enter " +
-      where(options.domain) + ": ";
+                    no_multicast = said.find("not multicast-capable") == std::string::npos
+                                       ? ""
+                                       : ", and the interface has no multicast";
+  const std::string share = (entered == 0 ? "no process"
+                                          : "only " + std::to_string(entered) + " of " +
+                                                std::to_string(wanted) + " processes") +
+                            " can enter " + where(options.domain) + ": ";
   if (said.find("free participant index") == std::string::npos) {
     if (what.find("join") != std::string::npos) {
-      return {"DDS", Verdict::bad, share + "it cannot join the multicast group of its settings (" + what + ")",
-              "set General/AllowMulticast to false and name <Peer address=\"localhost\"/> under Discovery/Peers, as "
+      return {"DDS", Verdict::bad,
+              share + "it cannot join the multicast group of its settings (" + what + ")",
+              "set General/AllowMulticast to false and name <Peer address=\"localhost\"/> under "
+              "Discovery/Peers, as "
               "deploy/dds/loopback.xml does"};
     }
     const bool interface = what.find("interface") != std::string::npos;
     return {"DDS", Verdict::bad, share + what,
-            interface ? "bring the interface up (ip link set lo up), or name another one in the DDS configuration" : kDefaultRemedy};
+            interface ? "bring the interface up (ip link set lo up), or name another one in the "
+                        "DDS configuration"
+                      : kDefaultRemedy};
   }
   if (static_cast<std::size_t>(dds.max_auto_index) >= wanted) {
     return {"DDS", Verdict::bad,
-            share + "all " + std::to_string(dds.max_auto_index) + " participant indices are in use" +
+            share + "all " + std::to_string(dds.max_auto_index) +
+                " participant indices are in use" +
                 (held_before.empty() ? "" : " by " + held_before),
             "end the processes that hold them, or choose another domain with --domain"};
   }
-  return {"DDS", Verdict::bad, share + "MaxAutoParticipantIndex is " + std::to_string(dds.max_auto_index) + no_multicast,
-          "set Discovery/MaxAutoParticipantIndex to 60" + (dds.source.empty() ? std::string() : " in " + dds.source) +
+  return {"DDS", Verdict::bad,
+          share + "MaxAutoParticipantIndex is " + std::to_string(dds.max_auto_index) + no_multicast,
+          "set Discovery/MaxAutoParticipantIndex to 60" +
+              (dds.source.empty() ? std::string() : " in " + dds.source) +
               ", or unset CYCLONEDDS_URI: deploy/dds/loopback.xml does"};
 }
 
-Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const Json& seen, std::size_t speakers) {
-  const std::string text =
-      format("%zu of %zu processes on domain %d are found within 3 s", seen["received"].get<std::size_t>(), speakers, options.domain);
+Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const Json& seen,
+                std::size_t speakers) {
+  const std::string text = format("%zu of %zu processes on domain %d are found within 3 s",
+                                  seen["received"].get<std::size_t>(), speakers, options.domain);
   if (dds.peers.empty()) {
-    return {"DDS", Verdict::bad, text + ": no peer is named and multicast does not reach this machine's own processes",
+    return {"DDS", Verdict::bad,
+            text + ": no peer is named and multicast does not reach this machine's own processes",
             "name a peer: <Peer address=\"localhost\"/> under Discovery/Peers"};
   }
   if (dds.participant_index != "auto") {
     return {"DDS", Verdict::bad,
-            text + ": peers are asked at the ports of participant indices, but ParticipantIndex is " + dds.participant_index,
+            text +
+                ": peers are asked at the ports of participant indices, but ParticipantIndex is " +
+                dds.participant_index,
             "set Discovery/ParticipantIndex to auto"};
   }
-  return {"DDS", Verdict::bad, text + ": the peers " + dds.peers.front() + (dds.peers.size() > 1 ? ", ..." : "") + " do not answer",
-          "look whether a firewall drops UDP on the interface, and whether the peers name this machine"};
+  return {"DDS", Verdict::bad,
+          text + ": the peers " + dds.peers.front() + (dds.peers.size() > 1 ? ", ..." : "") +
+              " do not answer",
+          "look whether a firewall drops UDP on the interface, and whether the peers name this "
+          "machine"};
 }
 
 /// check_perception looks closer at people and objects.
@@ -281,7 +327,8 @@ bool left_to_perception(const DoctorOptions& options, const std::string& topic) 
 void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   const double jump = seen["jump"];
   if (std::abs(jump) > kJump) {
-    out.push_back({"clocks", Verdict::bad, format("the wall clock jumped by %.3f s while it was checked", jump),
+    out.push_back({"clocks", Verdict::bad,
+                   format("the wall clock jumped by %.3f s while it was checked", jump),
                    "let one service alone set the clock (chrony or PTP), and let it slew"});
   }
   double worst = 0.0;
@@ -290,46 +337,60 @@ void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Fi
     if (std::abs(by) > std::abs(worst)) worst = by;
     if (std::abs(by) <= kOffset) continue;
     out.push_back({"clocks", Verdict::bad,
-                   format("the clock of %s is %.3f s %s this machine's", component.c_str(), std::abs(by), by > 0 ? "behind" : "ahead of"),
+                   format("the clock of %s is %.3f s %s this machine's", component.c_str(),
+                          std::abs(by), by > 0 ? "behind" : "ahead of"),
                    "run chrony or PTP on both hosts"});
   }
   for (const Json& input : seen["inputs"]) {
     if (input["least"].is_null() || left_to_perception(options, input["topic"])) continue;
     const double by = input["least"];
     if (by >= -kFuture && by <= kOld) continue;
-    out.push_back({"clocks", Verdict::bad,
-                   format("measurements of %s are stamped %.3f s %s", input["what"].get<std::string>().c_str(), std::abs(by),
-                          by > 0 ? "ago when they come" : "in the future"),
-                   "stamp them with the time of measurement, and run chrony or PTP on the host that does"});
+    out.push_back(
+        {"clocks", Verdict::bad,
+         format("measurements of %s are stamped %.3f s %s",
+                input["what"].get<std::string>().c_str(), std::abs(by),
+                by > 0 ? "ago when they come" : "in the future"),
+         "stamp them with the time of measurement, and run chrony or PTP on the host that does"});
   }
   if (!out.empty() && out.back().subject == "clocks") return;
   if (seen["clocks"].empty()) {
-    out.push_back({"clocks", Verdict::good, "this machine's clock runs steadily; nobody else is on " + where(options.domain), ""});
+    out.push_back({"clocks", Verdict::good,
+                   "this machine's clock runs steadily; nobody else is on " + where(options.domain),
+                   ""});
   } else {
-    out.push_back({"clocks", Verdict::good, format("stamps and arrivals differ by at most %.1f ms", 1e3 * std::abs(worst)), ""});
+    out.push_back({"clocks", Verdict::good,
+                   format("stamps and arrivals differ by at most %.1f ms", 1e3 * std::abs(worst)),
+                   ""});
   }
 }
 
-/// The inputs asked for must come, at half their rate or more and well formed; others are only mentioned when they are malformed.
+/// The inputs asked for must come, at half their rate or more and well formed; others are only
+/// mentioned when they are malformed.
 void judge_inputs(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   for (const Json& input : seen["inputs"]) {
     const std::string what = input["what"], topic = input["topic"];
     const double rate = input["rate"], wanted = input["wanted"];
     if (left_to_perception(options, topic)) continue;
     if (input["rejected"].get<std::uint64_t>() > 0) {
-      out.push_back({"inputs", Verdict::bad, "malformed samples on " + topic + ": " + input["last_rejection"].get<std::string>(),
-                     "correct the program that sends them; idl/ says what each field means"});
+      out.push_back(
+          {"inputs", Verdict::bad,
+           "malformed samples on " + topic + ": " + input["last_rejection"].get<std::string>(),
+           "correct the program that sends them; idl/ says what each field means"});
       continue;
     }
     if (!options.driver || topic != TopicOf<RobotState>::row.topic) continue;
     if (rate == 0.0) {
-      out.push_back({"inputs", Verdict::missing, "nothing comes on " + topic + " of " + where(options.domain),
+      out.push_back({"inputs", Verdict::missing,
+                     "nothing comes on " + topic + " of " + where(options.domain),
                      "start the program that measures " + what + " on this domain"});
     } else if (rate < wanted / 2.0) {
-      out.push_back({"inputs", Verdict::bad, format("%s comes %.0f times a second instead of %.0f", topic.c_str(), rate, wanted),
-                     "look at the load of its program and of the network"});
+      out.push_back(
+          {"inputs", Verdict::bad,
+           format("%s comes %.0f times a second instead of %.0f", topic.c_str(), rate, wanted),
+           "look at the load of its program and of the network"});
     } else {
-      out.push_back({"inputs", Verdict::good, format("%s comes %.0f times a second", topic.c_str(), rate), ""});
+      out.push_back({"inputs", Verdict::good,
+                     format("%s comes %.0f times a second", topic.c_str(), rate), ""});
     }
   }
 }
@@ -348,27 +409,31 @@ void judge_calibration(const DoctorOptions& options, const Json& seen, std::vect
   for (const std::string& source : heard)
     if (!calibration.sources().empty() && !calibration.sources().contains(source))
       out.push_back({"calibration", Verdict::bad,
-                     "source " + source + " publishes, and is not in " + file + ": taken to speak in frame world",
+                     "source " + source + " publishes, and is not in " + file +
+                         ": taken to speak in frame world",
                      "say there where it stands, or that it speaks_in WORLD"});
   for (const auto& [name, source] : calibration.sources())
     if (options.perception && !heard.contains(name))
-      out.push_back({"calibration", Verdict::missing, "source " + name + " of " + file + " says nothing on " + where(options.domain),
+      out.push_back({"calibration", Verdict::missing,
+                     "source " + name + " of " + file + " says nothing on " + where(options.domain),
                      "start it, or take it out of the file"});
   for (const auto& [name, numbers] : seen["bases"].items()) {
     const auto robot = calibration.robots().find(name);
     if (robot == calibration.robots().end()) continue;
     const std::vector<double> is = numbers;
-    const Pose T = robot->second.T_world_base.inverse() * Pose(Eigen::Map<const Eigen::Matrix4d>(is.data()));
+    const Pose T =
+        robot->second.T_world_base.inverse() * Pose(Eigen::Map<const Eigen::Matrix4d>(is.data()));
     const double off = T.translation().norm(), turned = Eigen::AngleAxisd(T.linear()).angle();
     if (off <= kBaseOff && turned <= kBaseTurned) continue;
-    out.push_back(
-        {"calibration", Verdict::bad,
-         format("the base of %s is %.3f m and %.1f degrees from where %s says", name.c_str(), off, turned * 180 / M_PI, file.c_str()),
-         "measure it again, or correct what its driver reports as T_world_base"});
+    out.push_back({"calibration", Verdict::bad,
+                   format("the base of %s is %.3f m and %.1f degrees from where %s says",
+                          name.c_str(), off, turned * 180 / M_PI, file.c_str()),
+                   "measure it again, or correct what its driver reports as T_world_base"});
   }
   if (out.size() == before && (!heard.empty() || !seen["bases"].empty()) &&
       !(calibration.sources().empty() && calibration.robots().empty()))
-    out.push_back({"calibration", Verdict::good, "what comes on " + where(options.domain) + " is as the file says", ""});
+    out.push_back({"calibration", Verdict::good,
+                   "what comes on " + where(options.domain) + " is as the file says", ""});
 }
 
 /// A topic with one writer must have no other, and none that the table does not name.
@@ -382,50 +447,68 @@ void judge_writers(const DoctorOptions& options, const Json& seen, std::vector<F
       strange = strange || !writer["may"].get<bool>();
     }
     if (writers.size() > 1)
-      out.push_back({"second_writer", Verdict::bad, "more than one process writes " + topic + " on " + where(options.domain) + ": " + names,
-                     "end all but the rightful one; samples of the others are refused"});
+      out.push_back(
+          {"second_writer", Verdict::bad,
+           "more than one process writes " + topic + " on " + where(options.domain) + ": " + names,
+           "end all but the rightful one; samples of the others are refused"});
     else if (strange)
-      out.push_back({"second_writer", Verdict::bad,
-                     topic + " on " + where(options.domain) + " is written by " + names +
-                         ", which is no writer of this topic; its samples are refused",
-                     "end it, or give its participant the name of the component that it stands for"});
+      out.push_back(
+          {"second_writer", Verdict::bad,
+           topic + " on " + where(options.domain) + " is written by " + names +
+               ", which is no writer of this topic; its samples are refused",
+           "end it, or give its participant the name of the component that it stands for"});
   }
   if (out.size() == before)
-    out.push_back({"second_writer", Verdict::good, "no topic with one writer has another on " + where(options.domain), ""});
+    out.push_back({"second_writer", Verdict::good,
+                   "no topic with one writer has another on " + where(options.domain), ""});
 }
 
-void judge_company(const DoctorOptions& options, const Json& seen, bool held, std::vector<Finding>& out) {
+void judge_company(const DoctorOptions& options, const Json& seen, bool held,
+                   std::vector<Finding>& out) {
   std::string commanders;
-  for (const Json& commander : seen["commanders"]) commanders += (commanders.empty() ? "" : ", ") + commander["who"].get<std::string>();
+  for (const Json& commander : seen["commanders"])
+    commanders += (commanders.empty() ? "" : ", ") + commander["who"].get<std::string>();
   const std::size_t count = seen["commanders"].size();
   if (count > 1) {
-    out.push_back({"commander", Verdict::bad, "more than one process sends set-points on " + where(options.domain) + ": " + commanders,
-                   "end all but one"});
-  } else if (count == 1 && !held && seen["commanders"][0]["elsewhere"].get<bool>() && seen["system"].get<bool>()) {
-    out.push_back({"commander", Verdict::note, "a system on another host moves the robot on " + where(options.domain) + ": " + commanders,
-                   "choose another domain with --domain if it is not meant to be this one"});
+    out.push_back(
+        {"commander", Verdict::bad,
+         "more than one process sends set-points on " + where(options.domain) + ": " + commanders,
+         "end all but one"});
+  } else if (count == 1 && !held && seen["commanders"][0]["elsewhere"].get<bool>() &&
+             seen["system"].get<bool>()) {
+    out.push_back(
+        {"commander", Verdict::note,
+         "a system on another host moves the robot on " + where(options.domain) + ": " + commanders,
+         "choose another domain with --domain if it is not meant to be this one"});
   } else if (count == 1 && !held) {
     out.push_back({"commander", Verdict::bad,
-                   "the robot on " + where(options.domain) + " has a commander that was not started here: " + commanders,
+                   "the robot on " + where(options.domain) +
+                       " has a commander that was not started here: " + commanders,
                    "end it, or choose another domain with --domain"});
   } else {
-    out.push_back({"commander", Verdict::good, count == 0 ? "nobody sends set-points on " + where(options.domain) : commanders, ""});
+    out.push_back({"commander", Verdict::good,
+                   count == 0 ? "nobody sends set-points on " + where(options.domain) : commanders,
+                   ""});
   }
   if (!seen["strangers"].empty()) {
-    out.push_back({"hosts", Verdict::note, "other hosts are on " + where(options.domain) + ": " + seen["strangers"][0].get<std::string>(),
+    out.push_back({"hosts", Verdict::note,
+                   "other hosts are on " + where(options.domain) + ": " +
+                       seen["strangers"][0].get<std::string>(),
                    "choose another domain with --domain if they are not meant to be"});
   }
   if (!seen["system"].get<bool>()) {
     out.push_back({"system", Verdict::good, "none runs on " + where(options.domain) + " now", ""});
   } else if (held && seen["troubles"].empty()) {
-    out.push_back({"system", Verdict::good, "runs on " + where(options.domain) + ", all processes ok", ""});
+    out.push_back(
+        {"system", Verdict::good, "runs on " + where(options.domain) + ", all processes ok", ""});
   } else if (held) {
     for (const Json& trouble : seen["troubles"])
-      out.push_back({"system", Verdict::note, trouble.get<std::string>(), "look at `handsel status` and at the log of the process"});
+      out.push_back({"system", Verdict::note, trouble.get<std::string>(),
+                     "look at `handsel status` and at the log of the process"});
   }
   for (const Json& one : seen["left_out"])
-    out.push_back(
-        {"left out", Verdict::note, one.get<std::string>(), "less of it, or a higher quota: components/spark/README.md says what is kept"});
+    out.push_back({"left out", Verdict::note, one.get<std::string>(),
+                   "less of it, or a higher quota: components/spark/README.md says what is kept"});
 }
 
 }  // namespace
@@ -433,11 +516,13 @@ void judge_company(const DoctorOptions& options, const Json& seen, bool held, st
 std::vector<Finding> check_domain(const DoctorOptions& options) {
   use_default_dds_configuration();
   const char* uri = std::getenv("CYCLONEDDS_URI");
-  const DdsConfiguration dds = read_dds_configuration(uri ? uri : "", static_cast<std::uint32_t>(options.domain));
+  const DdsConfiguration dds =
+      read_dds_configuration(uri ? uri : "", static_cast<std::uint32_t>(options.domain));
   std::vector<Finding> out{check_configuration(dds)};
   if (!dds.error.empty()) return out;
 
-  const bool held = domain_is_held(options.domain);  // then its processes have their places, and one more is a fair sample
+  const bool held = domain_is_held(
+      options.domain);  // then its processes have their places, and one more is a fair sample
   const std::size_t wanted = held ? 1 : kProcesses.size();
   const std::string held_before = holders_of_indices(options, dds.max_auto_index);
   const auto meeting = static_cast<std::uint64_t>(getpid());
@@ -456,19 +541,23 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
     speakers.pop_back();  // its place is for the one who looks
   }
 
-  Probe looker([&](const Probe::Report& report) { report(Look(options, meeting, speakers.size())().dump()); });
+  Probe looker([&](const Probe::Report& report) {
+    report(Look(options, meeting, speakers.size())().dump());
+  });
   const auto answer = looker.line(kEnter + kMeet + kLook);
   for (const Probe& probe : speakers) probe.end();
   if (!answer) {
-    if (entered == wanted) out.push_back(not_entered(options, dds, entered, wanted + 1, held_before, looker.said()));
+    if (entered == wanted)
+      out.push_back(not_entered(options, dds, entered, wanted + 1, held_before, looker.said()));
     return out;
   }
   const Json seen = Json::parse(*answer);
-  if (entered == wanted && !seen["met"].get<bool>()) out.push_back(not_met(options, dds, seen, speakers.size()));
+  if (entered == wanted && !seen["met"].get<bool>())
+    out.push_back(not_met(options, dds, seen, speakers.size()));
   if (entered == wanted && seen["met"].get<bool>()) {
     out.push_back({"DDS", Verdict::good,
-                   format("%zu processes on domain %d found each other after %.0f ms", speakers.size() + 1, options.domain,
-                          1e3 * seen["took"].get<double>()),
+                   format("%zu processes on domain %d found each other after %.0f ms",
+                          speakers.size() + 1, options.domain, 1e3 * seen["took"].get<double>()),
                    ""});
   }
   judge_clocks(options, seen, out);

@@ -27,9 +27,11 @@ constexpr Duration kPatience = std::chrono::seconds(5);
 Finding check_size() {
   const unsigned cores = std::thread::hardware_concurrency();
   const long mb = sysconf(_SC_PHYS_PAGES) / 1024 * (sysconf(_SC_PAGESIZE) / 1024);
-  const std::string text = std::to_string(cores) + " cores, " + std::to_string(mb) + " MB of memory";
+  const std::string text =
+      std::to_string(cores) + " cores, " + std::to_string(mb) + " MB of memory";
   if (cores >= 2 && mb >= 2000) return {"machine", Verdict::good, text, ""};
-  return {"machine", Verdict::note, text, "use a machine with two cores and 2 GB or more, the least that was tried"};
+  return {"machine", Verdict::note, text,
+          "use a machine with two cores and 2 GB or more, the least that was tried"};
 }
 
 /// Tries in a process of its own what a real-time process does at its start.
@@ -41,19 +43,24 @@ std::vector<Finding> check_realtime() {
     const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
     report(locked ? "" : std::strerror(errno));
   });
-  const std::string scheduling = probe.line(kPatience).value_or("no answer"), memory = probe.line(kPatience).value_or("no answer");
+  const std::string scheduling = probe.line(kPatience).value_or("no answer"),
+                    memory = probe.line(kPatience).value_or("no answer");
   std::vector<Finding> out;
   if (scheduling.empty()) {
     out.push_back({"real time", Verdict::good, "processes may ask for real-time priority", ""});
   } else {
-    out.push_back({"real time", Verdict::note, "real-time priority is not permitted (" + scheduling + "); expect more late cycles",
-                   "allow it with rtprio in /etc/security/limits.conf, or give the capability CAP_SYS_NICE"});
+    out.push_back(
+        {"real time", Verdict::note,
+         "real-time priority is not permitted (" + scheduling + "); expect more late cycles",
+         "allow it with rtprio in /etc/security/limits.conf, or give the capability CAP_SYS_NICE"});
   }
   if (memory.empty()) {
     out.push_back({"memory lock", Verdict::good, "processes may lock their memory", ""});
   } else {
-    out.push_back({"memory lock", Verdict::note, "memory cannot be locked (" + memory + "); a page fault may delay a cycle",
-                   "allow it with memlock in /etc/security/limits.conf, or give the capability CAP_IPC_LOCK"});
+    out.push_back({"memory lock", Verdict::note,
+                   "memory cannot be locked (" + memory + "); a page fault may delay a cycle",
+                   "allow it with memlock in /etc/security/limits.conf, or give the capability "
+                   "CAP_IPC_LOCK"});
   }
   return out;
 }
@@ -65,13 +72,17 @@ Finding check_logs() {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || access(folder.c_str(), W_OK) != 0) {
-    return {"logs", Verdict::bad, "logs cannot be written to " + folder.string() + ": " + (error ? error.message() : std::strerror(errno)),
+    return {"logs", Verdict::bad,
+            "logs cannot be written to " + folder.string() + ": " +
+                (error ? error.message() : std::strerror(errno)),
             "make it writable, or name another folder in XDG_STATE_HOME"};
   }
   struct statvfs system {};
-  if (statvfs(folder.c_str(), &system) != 0) return {"logs", Verdict::bad, folder.string() + ": " + std::strerror(errno), remedy};
+  if (statvfs(folder.c_str(), &system) != 0)
+    return {"logs", Verdict::bad, folder.string() + ": " + std::strerror(errno), remedy};
   const double room = static_cast<double>(system.f_bavail) * static_cast<double>(system.f_frsize);
-  const std::string text = std::to_string(std::lround(room / 1e6)) + " MB are free for logs in " + folder.string();
+  const std::string text =
+      std::to_string(std::lround(room / 1e6)) + " MB are free for logs in " + folder.string();
   if (room < kLittleRoom) return {"logs", Verdict::bad, "only " + text, remedy};
   if (room < kEnoughRoom) return {"logs", Verdict::note, "only " + text, remedy};
   return {"logs", Verdict::good, text, ""};
@@ -99,16 +110,20 @@ Finding check_programs() {
     const std::string version = output_of("'" + spec.binary.string() + "' --version 2>&1");
     if (version == version_text()) continue;
     return {"programs", Verdict::bad,
-            spec.binary.filename().string() + " says \"" + version.substr(0, 80) + "\", this command is " + version_text(),
+            spec.binary.filename().string() + " says \"" + version.substr(0, 80) +
+                "\", this command is " + version_text(),
             "build all of them from one state of the sources with ./run --build-only"};
   }
-  return {"programs", Verdict::good, "all " + std::to_string(kProcesses.size()) + " are built, " + version_text(), ""};
+  return {"programs", Verdict::good,
+          "all " + std::to_string(kProcesses.size()) + " are built, " + version_text(), ""};
 }
 
 Finding check_libraries() {
   const TransportLibrary dds = transport_library();
-  if (dds.agrees) return {"libraries", Verdict::good, "Cyclone DDS " + dds.built_for + " from " + dds.file, ""};
-  return {"libraries", Verdict::bad, "built for Cyclone DDS " + dds.built_for + ", running with " + dds.file,
+  if (dds.agrees)
+    return {"libraries", Verdict::good, "Cyclone DDS " + dds.built_for + " from " + dds.file, ""};
+  return {"libraries", Verdict::bad,
+          "built for Cyclone DDS " + dds.built_for + ", running with " + dds.file,
           "install libddsc0debian " + dds.built_for + ", or build again with ./run --build-only"};
 }
 

@@ -26,16 +26,18 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr Duration kLook = std::chrono::milliseconds(2500);
-constexpr Duration kStart = std::chrono::milliseconds(600);  // until those on the domain have found each other
+constexpr Duration kStart =
+    std::chrono::milliseconds(600);  // until those on the domain have found each other
 constexpr Duration kPatience = std::chrono::seconds(20);
 constexpr std::size_t kLikeness = 3;  // letters by which a name may differ
 
-/// A message of the table read from whoever writes its topic: without the deadline and the equality of types components ask for. What is
-/// malformed is told.
+/// A message of the table read from whoever writes its topic: without the deadline and the equality
+/// of types components ask for. What is malformed is told.
 class Lenient final : public MessageType {
  public:
   using Told = std::function<void(const std::string& why, bool whole)>;
-  Lenient(const MessageType& type, Told on_malformed) : type_(type), row_(type.row()), on_malformed_(std::move(on_malformed)) {
+  Lenient(const MessageType& type, Told on_malformed)
+      : type_(type), row_(type.row()), on_malformed_(std::move(on_malformed)) {
     row_.profile = Profile::sensor;
     row_.deadline = 0;
   }
@@ -45,7 +47,8 @@ class Lenient final : public MessageType {
     return type_.to_wire(message, now, wire, why);
   }
   using MessageType::from_wire;
-  bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements& left_out) const override {
+  bool from_wire(const void* wire, void* message, std::string& why,
+                 LeftOutElements& left_out) const override {
     const bool good = type_.from_wire(wire, message, why, left_out);
     if (!good) on_malformed_(why, true);
     if (good && left_out.count > 0) on_malformed_(left_out.why, false);
@@ -55,7 +58,9 @@ class Lenient final : public MessageType {
   void set_stamp(void* wire, Stamp stamp) const override { type_.set_stamp(wire, stamp); }
   std::string_view key(const void* wire) const override { return type_.key(wire); }
   std::string to_json(const void* message) const override { return type_.to_json(message); }
-  void leaves(void* wire, const std::function<void(const WireLeaf&)>& visit) const override { type_.leaves(wire, visit); }
+  void leaves(void* wire, const std::function<void(const WireLeaf&)>& visit) const override {
+    type_.leaves(wire, visit);
+  }
   void fill(void* wire, bool full) const override { type_.fill(wire, full); }
   std::shared_ptr<void> new_wire() const override { return type_.new_wire(); }
   std::shared_ptr<void> new_message() const override { return type_.new_message(); }
@@ -69,7 +74,8 @@ class Lenient final : public MessageType {
 std::string plain(std::string_view name) {
   std::string out;
   for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c))) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return out;
 }
 
@@ -90,66 +96,86 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 bool meant(const DomainEndpoint& endpoint, const TopicRow& row) {
   if (endpoint.topic == row.topic || find_topic(endpoint.topic) != nullptr) return false;
-  const std::string type = endpoint.type.substr(endpoint.type.rfind(':') == std::string::npos ? 0 : endpoint.type.rfind(':') + 1);
-  const std::string topic = plain(endpoint.topic), subject = plain(std::string_view(row.topic).substr(std::string_view("handsel/").size()));
-  return type == row.type || topic.find(subject) != std::string::npos || distance(topic, plain(row.topic)) <= kLikeness;
+  const std::string type = endpoint.type.substr(
+      endpoint.type.rfind(':') == std::string::npos ? 0 : endpoint.type.rfind(':') + 1);
+  const std::string topic = plain(endpoint.topic),
+                    subject = plain(
+                        std::string_view(row.topic).substr(std::string_view("handsel/").size()));
+  return type == row.type || topic.find(subject) != std::string::npos ||
+         distance(topic, plain(row.topic)) <= kLikeness;
 }
 
 std::string who(const DomainEndpoint& endpoint) {
   const DomainParticipant& owner = endpoint.owner;
-  const std::string name = !owner.component.empty() ? owner.component : !owner.process.empty() ? owner.process : "somebody";
+  const std::string name = !owner.component.empty() ? owner.component
+                           : !owner.process.empty() ? owner.process
+                                                    : "somebody";
   const std::string process = std::filesystem::path(name).filename();
-  return process + (owner.pid > 0 ? " (pid " + std::to_string(owner.pid) + " on " + owner.host + ")" : "");
+  return process +
+         (owner.pid > 0 ? " (pid " + std::to_string(owner.pid) + " on " + owner.host + ")" : "");
 }
 
 bool is_ours(const DomainEndpoint& endpoint) {
-  return std::find(kProcesses.begin(), kProcesses.end(), endpoint.owner.component) != kProcesses.end();
+  return std::find(kProcesses.begin(), kProcesses.end(), endpoint.owner.component) !=
+         kProcesses.end();
 }
 
 Finding bad(const std::string& subject, const std::string& text, const std::string& remedy) {
   return {subject, Verdict::bad, text, remedy};
 }
 
-/// Writers that nobody of the system can hear, and why. `heard`: how many the doctor itself hears on the topic.
-void judge_writers(const DomainView& view, const TopicRow& row, int heard, std::vector<Finding>& out) {
+/// Writers that nobody of the system can hear, and why. `heard`: how many the doctor itself hears
+/// on the topic.
+void judge_writers(const DomainView& view, const TopicRow& row, int heard,
+                   std::vector<Finding>& out) {
   const std::string type = std::string("handsel::") + row.type;
   std::vector<const DomainEndpoint*> right;
   for (const DomainEndpoint& endpoint : view.endpoints) {
     if (!endpoint.writes) continue;
     if (meant(endpoint, row)) {
-      out.push_back(bad("topic", who(endpoint) + " writes the topic " + endpoint.topic + ", which nobody reads",
-                        std::string("the topic is ") + row.topic + ", its type " + type));
+      out.push_back(bad(
+          "topic", who(endpoint) + " writes the topic " + endpoint.topic + ", which nobody reads",
+          std::string("the topic is ") + row.topic + ", its type " + type));
     }
     if (endpoint.topic != row.topic) continue;
     if (endpoint.type != type) {
-      out.push_back(bad("type", who(endpoint) + " writes " + row.topic + " with the type " + endpoint.type, "the type is " + type));
+      out.push_back(bad("type",
+                        who(endpoint) + " writes " + row.topic + " with the type " + endpoint.type,
+                        "the type is " + type));
       continue;
     }
     for (const std::string& policy : endpoint.unmatched)
-      out.push_back(bad("QoS", "nobody hears " + who(endpoint) + " on " + row.topic + ": its " + policy,
-                        "profile sensor: best effort, volatile, keep last 1, deadline 0.2 s, no partition"));
+      out.push_back(
+          bad("QoS", "nobody hears " + who(endpoint) + " on " + row.topic + ": its " + policy,
+              "profile sensor: best effort, volatile, keep last 1, deadline 0.2 s, no partition"));
     if (endpoint.unmatched.empty()) right.push_back(&endpoint);
   }
   if (heard >= static_cast<int>(right.size())) return;
   for (const DomainEndpoint* endpoint : right)
     if (!is_ours(*endpoint)) {
-      out.push_back(bad("IDL", who(*endpoint) + " writes " + type + " of another shape than this version's",
-                        "build it against the IDL of this version (idl/perception.idl, interface version in `handsel --version`)"));
+      out.push_back(
+          bad("IDL", who(*endpoint) + " writes " + type + " of another shape than this version's",
+              "build it against the IDL of this version (idl/perception.idl, interface version in "
+              "`handsel --version`)"));
     }
 }
 
 bool has_reader(const DomainView& view, const TopicRow& row) {
-  return std::any_of(view.endpoints.begin(), view.endpoints.end(), [&](const DomainEndpoint& endpoint) {
-    return !endpoint.writes && endpoint.topic == row.topic && endpoint.owner.component == "spark";
-  });
+  return std::any_of(view.endpoints.begin(), view.endpoints.end(),
+                     [&](const DomainEndpoint& endpoint) {
+                       return !endpoint.writes && endpoint.topic == row.topic &&
+                              endpoint.owner.component == "spark";
+                     });
 }
 
-/// Where the robot is and how far it reaches, from the scenario's descriptions; SPARK counts in the same way.
+/// Where the robot is and how far it reaches, from the scenario's descriptions; SPARK counts in the
+/// same way.
 PerceptionGround ground_of(const DoctorOptions& options) {
   PerceptionGround ground;
   config::Scenario scenario;
   load_text_proto(scenario_file(options.scenario), scenario);
-  const RobotModel robot = RobotModel::load(robot_description(options.robot.empty() ? scenario_robot(options.scenario) : options.robot));
+  const RobotModel robot = RobotModel::load(
+      robot_description(options.robot.empty() ? scenario_robot(options.scenario) : options.robot));
   ground.base = sim::pose_of(scenario.base()).translation();
   ground.reach = spark::reach_of(robot, ground.base);
   std::error_code ignored;
@@ -160,31 +186,42 @@ PerceptionGround ground_of(const DoctorOptions& options) {
 
 std::vector<Finding> look(const DoctorOptions& options) {
   PerceptionReview review(ground_of(options));
-  const Lenient humans(message_type<HumanObservation>(),
-                       [&](const std::string& why, bool whole) { review.on_malformed(TopicOf<HumanObservation>::row.topic, why, whole); });
+  const Lenient humans(message_type<HumanObservation>(), [&](const std::string& why, bool whole) {
+    review.on_malformed(TopicOf<HumanObservation>::row.topic, why, whole);
+  });
   const Lenient objects(message_type<ObjectObservation>(), [&](const std::string& why, bool whole) {
     review.on_malformed(TopicOf<ObjectObservation>::row.topic, why, whole);
   });
-  DdsBus bus({.component = "doctor", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
-  // Where the simulator gives the pace, stamps are of the system's time, which has stood still for so long.
+  DdsBus bus({.component = "doctor",
+              .domain = static_cast<std::uint32_t>(options.domain),
+              .health = false});
+  // Where the simulator gives the pace, stamps are of the system's time, which has stood still for
+  // so long.
   Duration stood_still{};
-  bus.subscribe<SimClock>([&](const SimClock& clock, const Receipt&) { stood_still = from_seconds(clock.waited); });
+  bus.subscribe<SimClock>(
+      [&](const SimClock& clock, const Receipt&) { stood_still = from_seconds(clock.waited); });
   bool counts = false;
   std::set<std::string> heard;
-  const auto watch = [&]<class M>(const Lenient& type, std::string topic, M*) -> const SubscriptionStatus& {
+  const auto watch = [&]<class M>(const Lenient& type, std::string topic,
+                                  M*) -> const SubscriptionStatus& {
     return bus.subscribe_any(type,
                              [&, topic](const void* message, const Receipt& receipt) {
                                heard.insert(topic);
                                if (counts)
-                                 review.on(*static_cast<const M*>(message), receipt.arrival, bus.stamp_now() - stood_still.count());
+                                 review.on(*static_cast<const M*>(message), receipt.arrival,
+                                           bus.stamp_now() - stood_still.count());
                              },
                              {});
   };
-  const SubscriptionStatus& of_people = watch(humans, TopicOf<HumanObservation>::row.topic, static_cast<HumanObservation*>(nullptr));
-  const SubscriptionStatus& of_objects = watch(objects, TopicOf<ObjectObservation>::row.topic, static_cast<ObjectObservation*>(nullptr));
+  const SubscriptionStatus& of_people =
+      watch(humans, TopicOf<HumanObservation>::row.topic, static_cast<HumanObservation*>(nullptr));
+  const SubscriptionStatus& of_objects = watch(objects, TopicOf<ObjectObservation>::row.topic,
+                                               static_cast<ObjectObservation*>(nullptr));
   bus.every(std::chrono::milliseconds(20), [](TimePoint) {});
   const TimePoint begin = bus.now();
-  bus.run_until([&] { return interrupted() || (heard.size() == 2 && bus.now() - begin > kStart / 3); }, kStart);
+  bus.run_until(
+      [&] { return interrupted() || (heard.size() == 2 && bus.now() - begin > kStart / 3); },
+      kStart);
   counts = true;
   bus.run_until([] { return interrupted(); }, kLook);
 
@@ -192,33 +229,44 @@ std::vector<Finding> look(const DoctorOptions& options) {
   std::vector<Finding> out;
   std::vector<Finding> silent;
   bool reader = false;
-  for (const auto& [row, status, what] : {std::tuple{&TopicOf<HumanObservation>::row, &of_people, "people"},
-                                          std::tuple{&TopicOf<ObjectObservation>::row, &of_objects, "objects"}}) {
+  for (const auto& [row, status, what] :
+       {std::tuple{&TopicOf<HumanObservation>::row, &of_people, "people"},
+        std::tuple{&TopicOf<ObjectObservation>::row, &of_objects, "objects"}}) {
     const std::size_t before = out.size();
     judge_writers(view, *row, status->writers, out);
     reader = reader || has_reader(view, *row);
     if (status->received + status->rejected > 0 || out.size() > before) continue;
     const bool writer = std::any_of(view.endpoints.begin(), view.endpoints.end(),
-                                    [r = row](const DomainEndpoint& e) { return e.writes && e.topic == r->topic && !is_ours(e); });
-    silent.push_back({"inputs", Verdict::missing,
-                      std::string("nothing comes on ") + row->topic + " of domain " + std::to_string(options.domain),
-                      writer ? "its writer is there but silent: publish at an even rate, also while nobody is there"
-                             : std::string("start the program that measures ") + what + " on this domain"});
+                                    [r = row](const DomainEndpoint& e) {
+                                      return e.writes && e.topic == r->topic && !is_ours(e);
+                                    });
+    silent.push_back(
+        {"inputs", Verdict::missing,
+         std::string("nothing comes on ") + row->topic + " of domain " +
+             std::to_string(options.domain),
+         writer
+             ? "its writer is there but silent: publish at an even rate, also while nobody is there"
+             : std::string("start the program that measures ") + what + " on this domain"});
   }
   for (Finding& finding : silent) {
-    if (silent.size() == 1) finding.verdict = Verdict::note;  // people alone, or objects alone, may be all that is meant
+    if (silent.size() == 1)
+      finding.verdict = Verdict::note;  // people alone, or objects alone, may be all that is meant
     out.push_back(std::move(finding));
   }
   for (Finding& finding : review.findings()) out.push_back(std::move(finding));
   if (!reader)
     out.push_back({"readers", Verdict::note,
-                   "nobody reads people or objects here yet: no system runs on domain " + std::to_string(options.domain),
+                   "nobody reads people or objects here yet: no system runs on domain " +
+                       std::to_string(options.domain),
                    "start one with `handsel up`; what is published was checked all the same"});
   return out;
 }
 
 Json to_json(const Finding& finding) {
-  return {{"subject", finding.subject}, {"verdict", static_cast<int>(finding.verdict)}, {"text", finding.text}, {"remedy", finding.remedy}};
+  return {{"subject", finding.subject},
+          {"verdict", static_cast<int>(finding.verdict)},
+          {"text", finding.text},
+          {"remedy", finding.remedy}};
 }
 
 }  // namespace
@@ -226,7 +274,8 @@ Json to_json(const Finding& finding) {
 std::vector<Finding> check_perception(const DoctorOptions& options) {
   use_default_dds_configuration();
   Probe probe([&](const Probe::Report& report) {
-    for (const Finding& finding : look(options)) report(to_json(finding).dump(-1, ' ', false, Json::error_handler_t::replace));
+    for (const Finding& finding : look(options))
+      report(to_json(finding).dump(-1, ' ', false, Json::error_handler_t::replace));
     report("end");
   });
   std::vector<Finding> out;
@@ -235,13 +284,15 @@ std::vector<Finding> check_perception(const DoctorOptions& options) {
     const auto line = probe.line(deadline - monotonic_now());
     if (!line) {
       out.push_back({"DDS", Verdict::bad,
-                     "perception on domain " + std::to_string(options.domain) + " could not be checked: " + probe.said(),
+                     "perception on domain " + std::to_string(options.domain) +
+                         " could not be checked: " + probe.said(),
                      "`handsel doctor` without --inputs-only says what is wrong with DDS here"});
       return out;
     }
     if (*line == "end") return out;
     const Json finding = Json::parse(*line);
-    out.push_back({finding["subject"], static_cast<Verdict>(finding["verdict"].get<int>()), finding["text"], finding["remedy"]});
+    out.push_back({finding["subject"], static_cast<Verdict>(finding["verdict"].get<int>()),
+                   finding["text"], finding["remedy"]});
   }
 }
 

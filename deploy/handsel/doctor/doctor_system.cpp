@@ -29,9 +29,11 @@ Finding attempt(const std::string& subject, const std::function<std::string()>& 
   try {
     return {subject, Verdict::good, load(), ""};
   } catch (const MissingError& error) {
-    return {subject, Verdict::missing, error.what(), "put the file there, or correct what names it"};
+    return {subject, Verdict::missing, error.what(),
+            "put the file there, or correct what names it"};
   } catch (const std::exception& error) {
-    return {subject, Verdict::bad, error.what(), "correct it; `handsel model check` says more about a robot"};
+    return {subject, Verdict::bad, error.what(),
+            "correct it; `handsel model check` says more about a robot"};
   }
 }
 
@@ -51,7 +53,8 @@ bool is_free(int port) {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const int reuse = 1;
   setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-  const bool bound = bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 && listen(fd, 1) == 0;
+  const bool bound =
+      bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 && listen(fd, 1) == 0;
   close(fd);
   return bound;
 }
@@ -59,7 +62,8 @@ bool is_free(int port) {
 bool plays_on(const RunningProcess& process, int domain) {
   if (process.name.rfind("handsel_", 0) != 0) return false;
   const auto at = std::find(process.arguments.begin(), process.arguments.end(), "--domain");
-  return at != process.arguments.end() && at + 1 != process.arguments.end() && *(at + 1) == std::to_string(domain);
+  return at != process.arguments.end() && at + 1 != process.arguments.end() &&
+         *(at + 1) == std::to_string(domain);
 }
 
 Finding check_port(const DoctorOptions& options, const std::vector<RunningProcess>& here) {
@@ -69,16 +73,20 @@ Finding check_port(const DoctorOptions& options, const std::vector<RunningProces
   const std::string holder = port_holder("tcp", number);
   for (const RunningProcess& process : here) {
     if (holder.ends_with("(pid " + std::to_string(process.pid) + ")"))
-      return {"port", Verdict::good, port + " serves the system on domain " + std::to_string(options.domain), ""};
+      return {"port", Verdict::good,
+              port + " serves the system on domain " + std::to_string(options.domain), ""};
   }
-  return {"port", Verdict::bad, port + " is taken" + (holder.empty() ? "" : " by " + holder) + "; a system that starts now shows no page",
+  return {"port", Verdict::bad,
+          port + " is taken" + (holder.empty() ? "" : " by " + holder) +
+              "; a system that starts now shows no page",
           "end what holds it, or choose another with --port"};
 }
 
 Finding check_calibration() {
   const std::string file = (resource_root() / "config/calibration.txtpb").string();
   if (!std::filesystem::exists(file))
-    return {"calibration", Verdict::note, file + " is not there: every source is taken to speak in frame world",
+    return {"calibration", Verdict::note,
+            file + " is not there: every source is taken to speak in frame world",
             "write one; docs/calibration.md says how"};
   try {
     const spark::Calibration calibration(file);
@@ -89,35 +97,45 @@ Finding check_calibration() {
     const auto judge = [&](const std::string& what, const std::string& measured) {
       const auto days = spark::days_between(measured, today);
       if (!days) return;
-      if (*days < -1) stale += (stale.empty() ? "" : ", ") + what + " was measured on " + measured + ", which is not yet";
+      if (*days < -1)
+        stale += (stale.empty() ? "" : ", ") + what + " was measured on " + measured +
+                 ", which is not yet";
       if (calibration.valid_days() > 0 && *days > calibration.valid_days())
-        stale += (stale.empty() ? "" : ", ") + what + " was measured " + std::to_string(static_cast<int>(*days)) + " days ago";
+        stale += (stale.empty() ? "" : ", ") + what + " was measured " +
+                 std::to_string(static_cast<int>(*days)) + " days ago";
     };
-    for (const auto& [name, source] : calibration.sources()) judge("source " + name, source.measured);
+    for (const auto& [name, source] : calibration.sources())
+      judge("source " + name, source.measured);
     for (const auto& [name, robot] : calibration.robots()) judge("robot " + name, robot.measured);
-    if (!stale.empty()) return {"calibration", Verdict::note, stale, "measure again, and write the date to " + file};
+    if (!stale.empty())
+      return {"calibration", Verdict::note, stale, "measure again, and write the date to " + file};
     const std::size_t count = calibration.sources().size();
     return {"calibration", Verdict::good,
             count == 0 ? "no source is listed: each speaks in frame world"
-                       : std::to_string(count) + " sources and " + std::to_string(calibration.robots().size()) + " robots",
+                       : std::to_string(count) + " sources and " +
+                             std::to_string(calibration.robots().size()) + " robots",
             ""};
   } catch (const std::exception& error) {
-    return {"calibration", Verdict::bad, error.what(), "correct it; docs/calibration.md says what stands there"};
+    return {"calibration", Verdict::bad, error.what(),
+            "correct it; docs/calibration.md says what stands there"};
   }
 }
 
 std::string names(const std::vector<RunningProcess>& processes) {
   std::string text;
   for (const RunningProcess& process : processes)
-    text += (text.empty() ? "" : ", ") + process.name + " (pid " + std::to_string(process.pid) + ")";
+    text +=
+        (text.empty() ? "" : ", ") + process.name + " (pid " + std::to_string(process.pid) + ")";
   return text;
 }
 
 Finding check_leftovers(const DoctorOptions& options, const std::vector<RunningProcess>& here) {
   const std::string domain = "domain " + std::to_string(options.domain);
-  if (here.empty()) return {"processes", Verdict::good, "no process of Handsel is on " + domain + " here", ""};
+  if (here.empty())
+    return {"processes", Verdict::good, "no process of Handsel is on " + domain + " here", ""};
   if (!domain_is_held(options.domain)) {
-    return {"processes", Verdict::bad, "processes without a `handsel` that watches them are on " + domain + ": " + names(here),
+    return {"processes", Verdict::bad,
+            "processes without a `handsel` that watches them are on " + domain + ": " + names(here),
             "end them with kill, or choose another domain with --domain"};
   }
   std::vector<RunningProcess> stopped, replaced;
@@ -129,10 +147,12 @@ Finding check_leftovers(const DoctorOptions& options, const std::vector<RunningP
     return {"processes", Verdict::bad, "processes on " + domain + " are stopped: " + names(stopped),
             "continue them with kill -CONT, or stop the system"};
   if (!replaced.empty()) {
-    return {"processes", Verdict::bad, "processes on " + domain + " are older than their program files: " + names(replaced),
+    return {"processes", Verdict::bad,
+            "processes on " + domain + " are older than their program files: " + names(replaced),
             "stop the system and start it again"};
   }
-  return {"processes", Verdict::good, std::to_string(here.size()) + " processes of Handsel are on " + domain + " here", ""};
+  return {"processes", Verdict::good,
+          std::to_string(here.size()) + " processes of Handsel are on " + domain + " here", ""};
 }
 
 }  // namespace
@@ -167,7 +187,9 @@ std::vector<Finding> check_descriptions(const DoctorOptions& options) {
     return text.empty() ? std::string("the scenario has none") : text;
   }));
   out.push_back(check_calibration());
-  const bool loads = std::all_of(out.begin(), out.end(), [](const Finding& finding) { return finding.verdict == Verdict::good; });
+  const bool loads = std::all_of(out.begin(), out.end(), [](const Finding& finding) {
+    return finding.verdict == Verdict::good;
+  });
   if (loads) {
     out.push_back(attempt("settings", [&] {
       const LockstepSystem whole(load_context(robot, options.scenario));
@@ -179,7 +201,8 @@ std::vector<Finding> check_descriptions(const DoctorOptions& options) {
 
 std::vector<Finding> check_occupation(const DoctorOptions& options) {
   std::vector<RunningProcess> here = running_processes();
-  std::erase_if(here, [&](const RunningProcess& process) { return !plays_on(process, options.domain); });
+  std::erase_if(here,
+                [&](const RunningProcess& process) { return !plays_on(process, options.domain); });
   return {check_port(options, here), check_leftovers(options, here)};
 }
 

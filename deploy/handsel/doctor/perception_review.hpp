@@ -14,7 +14,7 @@ namespace handsel {
 
 /// What a source ought to see.
 struct PerceptionGround {
-  Coverage reach;                 ///< of the robot, world [m]: sources of people together must look at all of it
+  Coverage reach;  ///< of the robot, world [m]: sources of people together must look at all of it
   Vector3 base{Vector3::Zero()};  ///< of the robot, world [m]
   std::set<std::string> models;   ///< object descriptions there are
 };
@@ -80,9 +80,12 @@ class PerceptionReview {
     std::string last;
   };
   void add_person(Bodies& bodies, const ObservedPerson& person) const;
-  void check_source(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const;
-  void check_frame(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const;
-  void check_source(const std::string& source, const Things& things, std::vector<Finding>& out) const;
+  void check_source(const std::string& source, const Bodies& bodies,
+                    std::vector<Finding>& out) const;
+  void check_frame(const std::string& source, const Bodies& bodies,
+                   std::vector<Finding>& out) const;
+  void check_source(const std::string& source, const Things& things,
+                    std::vector<Finding>& out) const;
   void check_coverage(std::vector<Finding>& out) const;
 
   PerceptionGround ground_;

@@ -23,7 +23,8 @@ namespace {
 constexpr Duration kEndPatience = std::chrono::seconds(1);
 
 int milliseconds(Duration d) {
-  return static_cast<int>(std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::milliseconds>(d).count()));
+  return static_cast<int>(
+      std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::milliseconds>(d).count()));
 }
 
 }  // namespace
@@ -31,11 +32,13 @@ int milliseconds(Duration d) {
 Probe::Probe(const std::function<void(const Report&)>& work) {
   int channel[2];
   errors_ = memfd_create("errors", MFD_CLOEXEC);
-  if (errors_ < 0 || pipe(channel) != 0) throw MissingError(std::string("cannot start a process to look with: ") + std::strerror(errno));
+  if (errors_ < 0 || pipe(channel) != 0)
+    throw MissingError(std::string("cannot start a process to look with: ") + std::strerror(errno));
   std::fflush(nullptr);
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ < 0) throw MissingError(std::string("cannot start a process to look with: ") + std::strerror(errno));
+  if (pid_ < 0)
+    throw MissingError(std::string("cannot start a process to look with: ") + std::strerror(errno));
   reports_ = channel[0];
   if (pid_ > 0) {
     close(channel[1]);
@@ -109,7 +112,8 @@ std::string Probe::said() const {
   std::string all;
   char bytes[4096];
   off_t at = 0;
-  for (ssize_t n; (n = pread(errors_, bytes, sizeof bytes, at)) > 0; at += n) all.append(bytes, static_cast<std::size_t>(n));
+  for (ssize_t n; (n = pread(errors_, bytes, sizeof bytes, at)) > 0; at += n)
+    all.append(bytes, static_cast<std::size_t>(n));
   return all;
 }
 

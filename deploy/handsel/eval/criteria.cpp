@@ -18,30 +18,36 @@ constexpr double kGivenUp = 1.0;    // [s] no reaction: counts as this
 constexpr double kStill = 0.05;     // [m/s] a joint slower than this does not move
 constexpr double kTruthStep = 0.1;  // [s] a longer silence of the truth counts as no more
 constexpr double kClose = 0.5;      // [m] within which closing speeds count
-constexpr double kJump = 0.1;       // [m] between two truths: what is excepted has changed, nobody moved so far
+constexpr double kJump =
+    0.1;  // [m] between two truths: what is excepted has changed, nobody moved so far
 constexpr Duration kBefore = std::chrono::milliseconds(500);
 
 constexpr const char* kWorks[] = {"people", "objects", "forecast", "cost_map", "replan"};
-constexpr const char* kChain[] = {"spark",        "costmap",       "collision_checker",  "attention",
-                                  "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner"};
-constexpr const char* kRuns[][2] = {{"Facts", "facts"},        {"Scene", "scene"},       {"TrajectoryForecast", "forecast"},
-                                    {"Costmap", "cost_map"},   {"PathRequest", "paths"}, {"TrajectoryRequest", "trajectories"},
-                                    {"GraspRequest", "grasps"}};
+constexpr const char* kChain[] = {
+    "spark",        "costmap",       "collision_checker",  "attention",
+    "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner"};
+constexpr const char* kRuns[][2] = {
+    {"Facts", "facts"},        {"Scene", "scene"},       {"TrajectoryForecast", "forecast"},
+    {"Costmap", "cost_map"},   {"PathRequest", "paths"}, {"TrajectoryRequest", "trajectories"},
+    {"GraspRequest", "grasps"}};
 
-constexpr std::uint32_t kForPeople =
-    bit(Cause::attention_slow) | bit(Cause::separation) | bit(Cause::forecast_collision) | bit(Cause::cost_ahead);
+constexpr std::uint32_t kForPeople = bit(Cause::attention_slow) | bit(Cause::separation) |
+                                     bit(Cause::forecast_collision) | bit(Cause::cost_ahead);
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1];
+  return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) -
+                1];
 }
 
-/// Of the person: how fast their fastest joint is, and how fast the nearest to `p` comes nearer to it [m/s].
+/// Of the person: how fast their fastest joint is, and how fast the nearest to `p` comes nearer to
+/// it [m/s].
 struct PersonMotion {
   double fastest{}, toward{};
 };
 
-PersonMotion motion(const std::vector<BodyJoint>& before, const std::vector<BodyJoint>& now, const Vector3& p, double step) {
+PersonMotion motion(const std::vector<BodyJoint>& before, const std::vector<BodyJoint>& now,
+                    const Vector3& p, double step) {
   PersonMotion motion;
   if (before.size() != now.size() || step <= 0) return motion;
   double nearest = 1e9;
@@ -59,18 +65,23 @@ PersonMotion motion(const std::vector<BodyJoint>& before, const std::vector<Body
 
 Criteria::Criteria(Bus& bus, LocalNetwork& network) : network_(network) {
   network.meter({std::begin(kChain), std::end(kChain)});
-  bus.subscribe<GroundTruth>([this](const GroundTruth& ground_truth, const Receipt& r) { on(ground_truth, r.arrival); });
-  bus.subscribe<ExecutionStatus>([this](const ExecutionStatus& status, const Receipt& r) { on(status, r.arrival); });
+  bus.subscribe<GroundTruth>(
+      [this](const GroundTruth& ground_truth, const Receipt& r) { on(ground_truth, r.arrival); });
+  bus.subscribe<ExecutionStatus>(
+      [this](const ExecutionStatus& status, const Receipt& r) { on(status, r.arrival); });
   bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt& r) {
     running_ = active.trajectory != 0;
     speed_factor_ = running_ ? active.speed_factor : 0.0;
-    std::erase_if(speed_samples_, [&](const SpeedSample& look) { return r.arrival - look.at > kBefore; });
+    std::erase_if(speed_samples_,
+                  [&](const SpeedSample& look) { return r.arrival - look.at > kBefore; });
     speed_samples_.push_back({r.arrival, speed_factor_});
     settle(r.arrival);
   });
   bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& a, const Receipt&) {
-    const std::array<double, 5> periods{a.people_period, a.objects_period, a.forecast_period, a.cost_map_period, a.replan_period};
-    for (std::size_t i = 0; i < periods.size(); ++i) rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
+    const std::array<double, 5> periods{a.people_period, a.objects_period, a.forecast_period,
+                                        a.cost_map_period, a.replan_period};
+    for (std::size_t i = 0; i < periods.size(); ++i)
+      rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
     ++advices_;
   });
 }
@@ -93,19 +104,24 @@ void Criteria::on(const ExecutionStatus& status, TimePoint) {
 void Criteria::on(const GroundTruth& ground_truth, TimePoint now) {
   if (last_) {
     const double step = std::clamp(ground_truth.sim_time - last_->sim_time, 0.0, kTruthStep);
-    const PersonMotion person = motion(last_->person, ground_truth.person, status_.nearest_on_robot, step);
+    const PersonMotion person =
+        motion(last_->person, ground_truth.person, status_.nearest_on_robot, step);
     const bool moves = person.fastest > kStill;
     if (!ground_truth.robot_moving) robot_idle_ += step;
     if (!moves) person_idle_ += step;
     if (moves && ground_truth.robot_moving) concurrent_ += step;
     if (!moves && !ground_truth.robot_moving) both_idle_ += step;
     if (limited_) limited_for_ += step;
-    if (ground_truth.robot_moving && status_.separation < status_.separation_limit) below_for_ += step;
+    if (ground_truth.robot_moving && status_.separation < status_.separation_limit)
+      below_for_ += step;
     const double nearer = last_->separation - ground_truth.separation;
-    if (step > 0 && last_->separation < kClose && nearer < kJump) closing_speed_ = std::max(closing_speed_, nearer / step);
+    if (step > 0 && last_->separation < kClose && nearer < kJump)
+      closing_speed_ = std::max(closing_speed_, nearer / step);
     const bool entered = ground_truth.separation < kNear && last_->separation >= kNear;
     if (entered && !waiting_ && running_ && ground_truth.robot_moving && person.toward > kToward) {
-      double most = (status_.causes & kForPeople) != 0 ? 1.0 : speed_factor_;  // that it would have with nobody there
+      double most = (status_.causes & kForPeople) != 0
+                        ? 1.0
+                        : speed_factor_;  // that it would have with nobody there
       for (const SpeedSample& look : speed_samples_) most = std::max(most, look.speed_factor);
       if (most > 0.1) waiting_ = Reaction{now, most};
       settle(now);
@@ -124,13 +140,15 @@ void Criteria::watch_handover(const GroundTruth& ground_truth) {
     else if (before != "both")
       carried_from_ = p, carried_ = 0;
   }
-  if (ground_truth.carrier != "both" || (before != "robot" && before != "human") || ground_truth.person.size() != kBodyJoints.size())
+  if (ground_truth.carrier != "both" || (before != "robot" && before != "human") ||
+      ground_truth.person.size() != kBodyJoints.size())
     return;
   Person person;
   person.joints = ground_truth.person;
   discomfort_ = arm_comfort_cost(person, p);
   legibility_.reset();
-  if (before == "robot" && carried_from_ && carried_ > kCarried) legibility_ = std::min(1.0, (p - *carried_from_).norm() / carried_);
+  if (before == "robot" && carried_from_ && carried_ > kCarried)
+    legibility_ = std::min(1.0, (p - *carried_from_).norm() / carried_);
 }
 
 nlohmann::json Criteria::fields() const {
@@ -148,11 +166,13 @@ nlohmann::json Criteria::fields() const {
     for (const auto& [type, run] : kRuns)
       if (end.writes && end.type == type) runs[run] = runs[run].get<std::uint64_t>() + end.samples;
   for (std::size_t i = 0; i < rates_.size(); ++i)
-    periods[kWorks[i]] = rates_[i] > 0 ? Json(static_cast<double>(advices_) / rates_[i]) : Json(nullptr);
+    periods[kWorks[i]] =
+        rates_[i] > 0 ? Json(static_cast<double>(advices_) / rates_[i]) : Json(nullptr);
   return {{"reactions_s", reactions},
           {"reaction_p50_s", reactions.empty() ? Json(nullptr) : Json(quantile(reactions, 0.5))},
           {"reaction_p99_s", reactions.empty() ? Json(nullptr) : Json(quantile(reactions, 0.99))},
-          {"late_reactions", std::count_if(reactions.begin(), reactions.end(), [](double r) { return r > kLate; })},
+          {"late_reactions",
+           std::count_if(reactions.begin(), reactions.end(), [](double r) { return r > kLate; })},
           {"interventions", interventions_},
           {"intervention_s", limited_for_},
           {"below_separation_s", below_for_},

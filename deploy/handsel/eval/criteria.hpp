@@ -69,7 +69,8 @@ class Criteria {
   ExecutionStatus status_;
   bool running_{}, limited_{};
   std::uint64_t interventions_{}, advices_{};
-  double closing_speed_{}, limited_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{}, both_idle_{};
+  double closing_speed_{}, limited_for_{}, below_for_{}, robot_idle_{}, person_idle_{},
+      concurrent_{}, both_idle_{};
   std::optional<Vector3> carried_from_;  // where the robot alone began to carry it
   double carried_{};                     // distance moved since [m]
   std::optional<double> discomfort_, legibility_;

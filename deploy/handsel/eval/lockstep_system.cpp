@@ -15,8 +15,8 @@
 
 namespace handsel {
 
-NodeContext system_context(const std::string& scenario, const std::string& robot, std::uint64_t seed,
-                           const std::filesystem::path& settings) {
+NodeContext system_context(const std::string& scenario, const std::string& robot,
+                           std::uint64_t seed, const std::filesystem::path& settings) {
   return load_context(robot_of({.robot = robot, .scenario = scenario}), scenario, settings, seed);
 }
 
@@ -25,7 +25,8 @@ void LockstepSystem::add(const std::string& component, const NodeContext& contex
   nodes_.push_back(std::make_shared<Node>(network_.add(component), context));
 }
 
-LockstepSystem::LockstepSystem(const NodeContext& context) : network_(context.seed), bus_(network_.add("handsel")), observer_(bus_) {
+LockstepSystem::LockstepSystem(const NodeContext& context)
+    : network_(context.seed), bus_(network_.add("handsel")), observer_(bus_) {
   add<sim::Node>("sim", context);
   add<spark::Node>("spark", context);
   add<costmap::Node>("costmap", context);
@@ -39,7 +40,8 @@ LockstepSystem::LockstepSystem(const NodeContext& context) : network_(context.se
   add<supervisor::Node>("supervisor", context);
 }
 
-LockstepSystem::LockstepSystem(const std::string& scenario, const std::string& robot, std::uint64_t seed)
+LockstepSystem::LockstepSystem(const std::string& scenario, const std::string& robot,
+                               std::uint64_t seed)
     : LockstepSystem(system_context(scenario, robot, seed)) {}
 
 }  // namespace handsel

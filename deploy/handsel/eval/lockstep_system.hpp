@@ -38,7 +38,7 @@ class LockstepSystem {
 
 /// What load_context() would give the processes of this scenario; the robot is the scenario's when
 /// `robot` is empty.
-NodeContext system_context(const std::string& scenario, const std::string& robot, std::uint64_t seed,
-                           const std::filesystem::path& settings = {});
+NodeContext system_context(const std::string& scenario, const std::string& robot,
+                           std::uint64_t seed, const std::filesystem::path& settings = {});
 
 }  // namespace handsel

@@ -10,18 +10,22 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json finite(double value) { return std::isfinite(value) && std::abs(value) < 1e8 ? Json(value) : Json(nullptr); }
+Json finite(double value) {
+  return std::isfinite(value) && std::abs(value) < 1e8 ? Json(value) : Json(nullptr);
+}
 
 Json refusals(const Refusals& list) {
   Json result = Json::array();
-  for (const Refusal& refusal : list) result.push_back({{"what", refusal.what}, {"reason", refusal.reason}});
+  for (const Refusal& refusal : list)
+    result.push_back({{"what", refusal.what}, {"reason", refusal.reason}});
   return result;
 }
 
 Json task_json(const TaskOutcome& outcome) {
   Json steps = Json::array();
   for (const StepOutcome& step : outcome.steps)
-    steps.push_back({{"step", step.step}, {"started_s", step.started}, {"duration_s", step.duration}});
+    steps.push_back(
+        {{"step", step.step}, {"started_s", step.started}, {"duration_s", step.duration}});
   return {{"task", outcome.task},
           {"success", outcome.success},
           {"state", outcome.state},
@@ -53,21 +57,26 @@ std::map<std::string, Counters> counters(const Snapshot& snapshot) {
   return result;
 }
 
-nlohmann::json make_report(const ReportInputs& inputs, const Performer& performer, const Observer& observer) {
+nlohmann::json make_report(const ReportInputs& inputs, const Performer& performer,
+                           const Observer& observer) {
   const Snapshot& seen = observer.snapshot();
   const GroundTruth& ground_truth = seen.ground_truth.sample;
   const ExecutionStatus& execution = seen.execution.sample;
-  Json tasks = Json::array(), gathered = Json::array(), misses = Json::object(), rejected = Json::object(), timeline = Json::array();
+  Json tasks = Json::array(), gathered = Json::array(), misses = Json::object(),
+       rejected = Json::object(), timeline = Json::array();
   std::string failure;
   for (const TaskOutcome& outcome : performer.outcomes()) {
     tasks.push_back(task_json(outcome));
     for (const Json& refusal : tasks.back()["refusals"]) gathered.push_back(refusal);
-    if (!outcome.success && failure.empty()) failure = outcome.reason.empty() ? outcome.state : outcome.reason;
+    if (!outcome.success && failure.empty())
+      failure = outcome.reason.empty() ? outcome.state : outcome.reason;
   }
   for (const auto& [component, now] : counters(seen)) {
     const auto before = inputs.before.find(component);
     const Counters base =
-        before == inputs.before.end() || before->second.deadline_misses > now.deadline_misses ? Counters{} : before->second;
+        before == inputs.before.end() || before->second.deadline_misses > now.deadline_misses
+            ? Counters{}
+            : before->second;
     misses[component] = now.deadline_misses - base.deadline_misses;
     rejected[component] = now.rejected - std::min(base.rejected, now.rejected);
   }
@@ -75,7 +84,8 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
     timeline.push_back({{"t_s", to_seconds(event.at - performer.begin())}, {"event", event.text}});
   }
   const double sim_time = ground_truth.sim_time - inputs.ground_truth_before.sim_time;
-  const double set_points = static_cast<double>(ground_truth.set_points - inputs.ground_truth_before.set_points);
+  const double set_points =
+      static_cast<double>(ground_truth.set_points - inputs.ground_truth_before.set_points);
   return {{"success", performer.succeeded()},
           {"failure", failure},
           {"scenario", inputs.scenario},
@@ -89,7 +99,9 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
            {{"carrier", ground_truth.carrier},
             {"held_s", ground_truth.held_time},
             {"constraint_s", ground_truth.constraint_time},
-            {"contact_share", ground_truth.held_time > 0 ? Json(1 - ground_truth.constraint_time / ground_truth.held_time) : Json(nullptr)},
+            {"contact_share", ground_truth.held_time > 0
+                                  ? Json(1 - ground_truth.constraint_time / ground_truth.held_time)
+                                  : Json(nullptr)},
             {"max_lifted_m", ground_truth.max_lifted},
             {"human_contact_before_release_s", ground_truth.human_contact_before_release},
             {"human_alone_s", ground_truth.human_alone},
@@ -101,12 +113,17 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
             {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
             {"commanders", ground_truth.commanders},
             {"hash", ground_truth.hash}}},
-          {"min_separation_m", seen.ground_truth.ever ? finite(ground_truth.min_separation) : Json(nullptr)},
+          {"min_separation_m",
+           seen.ground_truth.ever ? finite(ground_truth.min_separation) : Json(nullptr)},
           {"ssm_violations", ground_truth.ssm_violations},
           {"limit_ratio",
-           {{"v", ground_truth.limit_ratio_velocity}, {"a", ground_truth.limit_ratio_acceleration}, {"j", ground_truth.limit_ratio_jerk}}},
+           {{"v", ground_truth.limit_ratio_velocity},
+            {"a", ground_truth.limit_ratio_acceleration},
+            {"j", ground_truth.limit_ratio_jerk}}},
           {"limit_share_sent",
-           {{"v", execution.limit_ratio_velocity}, {"a", execution.limit_ratio_acceleration}, {"j", execution.limit_ratio_jerk}}},
+           {{"v", execution.limit_ratio_velocity},
+            {"a", execution.limit_ratio_acceleration},
+            {"j", execution.limit_ratio_jerk}}},
           {"deadline_misses", std::move(misses)},
           {"rejected", std::move(rejected)},
           {"refusals", std::move(gathered)},
@@ -115,7 +132,9 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"set_point_rate_hz", sim_time > 0 ? Json(set_points / sim_time) : Json(nullptr)},
           {"cycles", execution.cycles},
           {"late_cycles", execution.late_cycles},
-          {"late_share", execution.cycles ? static_cast<double>(execution.late_cycles) / static_cast<double>(execution.cycles) : 0.0},
+          {"late_share", execution.cycles ? static_cast<double>(execution.late_cycles) /
+                                                static_cast<double>(execution.cycles)
+                                          : 0.0},
           {"real_time_factor", ground_truth.real_time_factor},
           {"restarts", inputs.restarts},
           {"timeline", std::move(timeline)}};
@@ -124,43 +143,54 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
 std::string summary(const nlohmann::json& report) {
   std::string text;
   for (const Json& task : report["tasks"]) {
-    text += (task["success"].get<bool>() ? "done    " : "failed  ") + task["task"].get<std::string>() +
+    text += (task["success"].get<bool>() ? "done    " : "failed  ") +
+            task["task"].get<std::string>() +
             format(" in %.1f s", task["duration_s"].get<double>());
     if (!task["success"].get<bool>()) text += ": " + task["reason"].get<std::string>();
     text += "\n";
     for (const Json& step : task["steps"]) {
-      text += format("          %5.1f s  ", step["started_s"].get<double>()) + step["step"].get<std::string>() +
+      text += format("          %5.1f s  ", step["started_s"].get<double>()) +
+              step["step"].get<std::string>() +
               format(" (%.1f s)", step["duration_s"].get<double>()) + "\n";
     }
     if (task["success"].get<bool>()) continue;
     for (const Json& refusal : task["refusals"]) {
-      text += "          refused " + refusal["what"].get<std::string>() + ": " + refusal["reason"].get<std::string>() + "\n";
+      text += "          refused " + refusal["what"].get<std::string>() + ": " +
+              refusal["reason"].get<std::string>() + "\n";
     }
   }
   const Json& oracle = report["oracle"];
-  text += format("oracle  lifted %.2f m, person's hand on it %.2f s before release, person alone %.1f s\n",
-                 oracle["max_lifted_m"].get<double>(), oracle["human_contact_before_release_s"].get<double>(),
-                 oracle["human_alone_s"].get<double>());
+  text += format(
+      "oracle  lifted %.2f m, person's hand on it %.2f s before release, person alone %.1f s\n",
+      oracle["max_lifted_m"].get<double>(), oracle["human_contact_before_release_s"].get<double>(),
+      oracle["human_alone_s"].get<double>());
   if (!oracle["contact_share"].is_null())
-    text += format("hold    %.1f s in the robot's hand, %.0f %% of it by contact alone\n", oracle["held_s"].get<double>(),
-                   100 * oracle["contact_share"].get<double>());
+    text += format("hold    %.1f s in the robot's hand, %.0f %% of it by contact alone\n",
+                   oracle["held_s"].get<double>(), 100 * oracle["contact_share"].get<double>());
   const Json& share = report["limit_ratio"];
-  text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed", 100 * share["v"].get<double>(),
-                 100 * share["a"].get<double>(), 100 * share["j"].get<double>());
+  text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed",
+                 100 * share["v"].get<double>(), 100 * share["a"].get<double>(),
+                 100 * share["j"].get<double>());
   text += "; " + std::to_string(oracle["limit_violations"].get<std::uint64_t>()) + " violations\n";
   text += report["min_separation_m"].is_null()
               ? std::string("nearest nobody came near\n")
-              : format("nearest %.2f m to the person", report["min_separation_m"].get<double>()) + "; " +
-                    std::to_string(report["ssm_violations"].get<std::uint64_t>()) + " speed-and-separation violations\n";
+              : format("nearest %.2f m to the person", report["min_separation_m"].get<double>()) +
+                    "; " + std::to_string(report["ssm_violations"].get<std::uint64_t>()) +
+                    " speed-and-separation violations\n";
   if (!report["set_point_rate_hz"].is_null()) {
-    text += format("timing  %.0f set-points/s, longest gap %.1f ms, %.3f %% of cycles late", report["set_point_rate_hz"].get<double>(),
-                   1e3 * report["set_point_gap_max_s"].get<double>(), 100 * report["late_share"].get<double>());
+    text += format("timing  %.0f set-points/s, longest gap %.1f ms, %.3f %% of cycles late",
+                   report["set_point_rate_hz"].get<double>(),
+                   1e3 * report["set_point_gap_max_s"].get<double>(),
+                   100 * report["late_share"].get<double>());
     text += format(", real-time factor %.3f\n", report["real_time_factor"].get<double>());
   }
   std::uint64_t misses = 0, rejected = 0;
-  for (const auto& [component, count] : report["deadline_misses"].items()) misses += count.get<std::uint64_t>();
-  for (const auto& [component, count] : report["rejected"].items()) rejected += count.get<std::uint64_t>();
-  text += "health  " + std::to_string(misses) + " deadline misses, " + std::to_string(rejected) + " rejected messages";
+  for (const auto& [component, count] : report["deadline_misses"].items())
+    misses += count.get<std::uint64_t>();
+  for (const auto& [component, count] : report["rejected"].items())
+    rejected += count.get<std::uint64_t>();
+  text += "health  " + std::to_string(misses) + " deadline misses, " + std::to_string(rejected) +
+          " rejected messages";
   for (const auto& [process, count] : report["restarts"].items())
     text += ", " + process + " restarted " + std::to_string(count.get<int>()) + " times";
   return text + "\n";

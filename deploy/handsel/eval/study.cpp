@@ -54,7 +54,8 @@ std::optional<double> value(const Json& line, const Measure& measure) {
   if (name == "looks") {
     if (!line.contains("runs")) return std::nullopt;
     double sum = 0;
-    for (const char* run : {"facts", "scene", "forecast", "cost_map", "paths"}) sum += line["runs"].value(run, 0.0);
+    for (const char* run : {"facts", "scene", "forecast", "cost_map", "paths"})
+      sum += line["runs"].value(run, 0.0);
     return sum;
   }
   const auto at = line.find(name);
@@ -62,7 +63,9 @@ std::optional<double> value(const Json& line, const Measure& measure) {
 }
 
 double mean(const std::vector<double>& values) {
-  return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return values.empty() ? 0.0
+                        : std::accumulate(values.begin(), values.end(), 0.0) /
+                              static_cast<double>(values.size());
 }
 
 std::string number(double v, int decimals) {
@@ -72,13 +75,17 @@ std::string number(double v, int decimals) {
 }
 
 int successes(const std::map<std::uint64_t, Json>& trials) {
-  return static_cast<int>(std::count_if(trials.begin(), trials.end(), [](const auto& t) { return t.second.value("success", false); }));
+  return static_cast<int>(std::count_if(trials.begin(), trials.end(), [](const auto& t) {
+    return t.second.value("success", false);
+  }));
 }
 
 }  // namespace
 
-PairedDifference paired_difference(const std::vector<double>& first, const std::vector<double>& second) {
-  if (first.size() != second.size()) throw std::invalid_argument("paired_difference: pairs are missing");
+PairedDifference paired_difference(const std::vector<double>& first,
+                                   const std::vector<double>& second) {
+  if (first.size() != second.size())
+    throw std::invalid_argument("paired_difference: pairs are missing");
   constexpr int kResamples = 4000, kDraws = 10000;
   PairedDifference d;
   d.pairs = first.size();
@@ -93,7 +100,8 @@ PairedDifference paired_difference(const std::vector<double>& first, const std::
   std::vector<double> means(kResamples);
   for (double& m : means) {
     m = 0;
-    for (std::size_t i = 0; i < differences.size(); ++i) m += differences[below(differences.size())];
+    for (std::size_t i = 0; i < differences.size(); ++i)
+      m += differences[below(differences.size())];
     m /= static_cast<double>(differences.size());
   }
   std::sort(means.begin(), means.end());
@@ -107,7 +115,8 @@ PairedDifference paired_difference(const std::vector<double>& first, const std::
       if (i % 64 == 0) bits = random();
       sum += (bits & 1) ? differences[i] : -differences[i];
     }
-    as_large += std::abs(sum) >= std::abs(d.difference) * static_cast<double>(differences.size()) - 1e-12;
+    as_large +=
+        std::abs(sum) >= std::abs(d.difference) * static_cast<double>(differences.size()) - 1e-12;
   }
   d.p = (1.0 + as_large) / (1.0 + kDraws);
   return d;
@@ -117,12 +126,14 @@ double mcnemar(int only_first, int only_second) {
   const int n = only_first + only_second;
   double tail = 0;
   for (int k = 0; k <= std::min(only_first, only_second); ++k)
-    tail += std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) - n * std::log(2.0));
+    tail += std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) -
+                     n * std::log(2.0));
   return std::min(1.0, 2 * tail);
 }
 
 void Study::add(const Json& line) {
-  lines_[line.at("scenario")][line.value("condition", line.at("attention").get<std::string>())][line.at("seed")] = line;
+  lines_[line.at("scenario")][line.value("condition", line.at("attention").get<std::string>())]
+        [line.at("seed")] = line;
   rows_.push_back(line);
 }
 
@@ -199,25 +210,33 @@ std::vector<Json> Study::comparison(const std::string& reference) const {
 std::string Study::table(const std::string& reference) const {
   std::string text, head;
   for (const Json& row : comparison(reference)) {
-    const std::string title = row["scenario"].get<std::string>() + ": " + reference + " against " + row["against"].get<std::string>();
+    const std::string title = row["scenario"].get<std::string>() + ": " + reference + " against " +
+                              row["against"].get<std::string>();
     char line[200];
     if (title != head) {
       head = title;
       text += "\n" + title + "\n";
-      std::snprintf(line, sizeof line, "  %-20s %10s %10s %10s   %-22s %8s %6s\n", "", reference.substr(0, 10).c_str(), "the other",
-                    "difference", "95 % of the difference", "p", "pairs");
+      std::snprintf(line, sizeof line, "  %-20s %10s %10s %10s   %-22s %8s %6s\n", "",
+                    reference.substr(0, 10).c_str(), "the other", "difference",
+                    "95 % of the difference", "p", "pairs");
       text += line;
     }
     const std::string measure = row["measure"];
-    const auto* known = std::find_if(std::begin(kMeasures), std::end(kMeasures), [&](const Measure& m) { return measure == m.name; });
+    const auto* known = std::find_if(std::begin(kMeasures), std::end(kMeasures),
+                                     [&](const Measure& m) { return measure == m.name; });
     const int decimals = known == std::end(kMeasures) ? 3 : known->decimals;
-    const auto show = [&](const char* key) { return row.contains(key) ? number(row[key].get<double>(), decimals) : std::string(); };
+    const auto show = [&](const char* key) {
+      return row.contains(key) ? number(row[key].get<double>(), decimals) : std::string();
+    };
     const std::string interval = row.contains("low")
                                      ? show("low") + " … " + show("high")
-                                     : number(row["low_of"][0].get<double>(), 3) + "–" + number(row["high_of"][0].get<double>(), 3) + ", " +
-                                           number(row["low_of"][1].get<double>(), 3) + "–" + number(row["high_of"][1].get<double>(), 3);
-    std::snprintf(line, sizeof line, "  %-20s %10s %10s %10s   %-24s %8s %6d\n", measure.c_str(), show("mean").c_str(),
-                  show("mean_against").c_str(), show("difference").c_str(), interval.c_str(), number(row["p"].get<double>(), 4).c_str(),
+                                     : number(row["low_of"][0].get<double>(), 3) + "–" +
+                                           number(row["high_of"][0].get<double>(), 3) + ", " +
+                                           number(row["low_of"][1].get<double>(), 3) + "–" +
+                                           number(row["high_of"][1].get<double>(), 3);
+    std::snprintf(line, sizeof line, "  %-20s %10s %10s %10s   %-24s %8s %6d\n", measure.c_str(),
+                  show("mean").c_str(), show("mean_against").c_str(), show("difference").c_str(),
+                  interval.c_str(), number(row["p"].get<double>(), 4).c_str(),
                   row["pairs"].get<int>());
     text += line;
   }
@@ -230,9 +249,11 @@ std::string Study::csv() const {
   text += "\n";
   std::size_t order = 0;
   for (const Json& line : rows_) {
-    text += std::to_string(line.value("order", ++order)) + "," + line["scenario"].get<std::string>() + "," +
-            line.value("condition", line["attention"].get<std::string>()) + "," + line.value("law", "") + "," +
-            line.value("participant", "") + "," + std::to_string(line["seed"].get<std::uint64_t>()) + "," +
+    text += std::to_string(line.value("order", ++order)) + "," +
+            line["scenario"].get<std::string>() + "," +
+            line.value("condition", line["attention"].get<std::string>()) + "," +
+            line.value("law", "") + "," + line.value("participant", "") + "," +
+            std::to_string(line["seed"].get<std::uint64_t>()) + "," +
             (line.value("success", false) ? "1" : "0") + "," + line.value("failure", "");
     for (const Measure& measure : kMeasures) {
       const auto v = value(line, {measure.name, measure.decimals, false});
@@ -253,23 +274,29 @@ std::string Study::plot(const std::string& scenario) const {
     const double m = mean(v);
     double sum = 0;
     for (double x : v) sum += (x - m) * (x - m);
-    return v.size() < 2 ? 0.0 : 1.96 * std::sqrt(sum / static_cast<double>(v.size() - 1) / static_cast<double>(v.size()));
+    return v.size() < 2 ? 0.0
+                        : 1.96 * std::sqrt(sum / static_cast<double>(v.size() - 1) /
+                                           static_cast<double>(v.size()));
   };
   for (const auto& [condition, trials] : lines_.at(scenario)) {
     std::vector<double> cost, separation;
     for (const auto& [seed, line] : trials) {
-      const auto c = value(line, {"cpu_chain_s", 0, false}), s = value(line, {"min_separation_m", 0, false});
+      const auto c = value(line, {"cpu_chain_s", 0, false}),
+                 s = value(line, {"min_separation_m", 0, false});
       if (!c || !s) continue;
       cost.push_back(*c);
       separation.push_back(*s);
     }
-    if (!cost.empty()) points.push_back({condition, mean(cost), mean(separation), spread(cost), spread(separation)});
+    if (!cost.empty())
+      points.push_back({condition, mean(cost), mean(separation), spread(cost), spread(separation)});
   }
   constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 20, kTop = 40, kBottom = 50;
   std::ostringstream svg;
   svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << kWidth << ' ' << kHeight
-      << "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"" << kLeft
-      << "\" y=\"22\" font-size=\"14\">" << scenario << ": work of perception and planning, and least separation</text>\n";
+      << "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
+         "fill=\"white\"/>\n<text x=\""
+      << kLeft << "\" y=\"22\" font-size=\"14\">" << scenario
+      << ": work of perception and planning, and least separation</text>\n";
   if (points.empty()) return svg.str() + "</svg>\n";
   double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
   for (const Point& p : points) {
@@ -278,35 +305,47 @@ std::string Study::plot(const std::string& scenario) const {
   }
   const double mx = 0.08 * std::max(1e-6, x1 - x0), my = 0.08 * std::max(1e-6, y1 - y0);
   x0 -= mx, x1 += 3 * mx, y0 -= my, y1 += my;
-  const auto px = [&](double x) { return kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight); };
-  const auto py = [&](double y) { return kHeight - kBottom - (y - y0) / (y1 - y0) * (kHeight - kTop - kBottom); };
+  const auto px = [&](double x) {
+    return kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight);
+  };
+  const auto py = [&](double y) {
+    return kHeight - kBottom - (y - y0) / (y1 - y0) * (kHeight - kTop - kBottom);
+  };
   for (int k = 0; k <= 4; ++k) {
     const double x = x0 + (x1 - x0) * k / 4, y = y0 + (y1 - y0) * k / 4;
-    svg << "<path d=\"M" << px(x) << ' ' << py(y0) << 'V' << py(y1) << 'M' << px(x0) << ' ' << py(y) << 'H' << px(x1)
-        << "\" stroke=\"#ddd\"/>\n<text x=\"" << px(x) << "\" y=\"" << kHeight - kBottom + 16 << "\" text-anchor=\"middle\">"
-        << number(x, 2) << "</text>\n<text x=\"" << kLeft - 6 << "\" y=\"" << py(y) + 4 << "\" text-anchor=\"end\">" << number(y, 3)
-        << "</text>\n";
+    svg << "<path d=\"M" << px(x) << ' ' << py(y0) << 'V' << py(y1) << 'M' << px(x0) << ' ' << py(y)
+        << 'H' << px(x1) << "\" stroke=\"#ddd\"/>\n<text x=\"" << px(x) << "\" y=\""
+        << kHeight - kBottom + 16 << "\" text-anchor=\"middle\">" << number(x, 2)
+        << "</text>\n<text x=\"" << kLeft - 6 << "\" y=\"" << py(y) + 4 << "\" text-anchor=\"end\">"
+        << number(y, 3) << "</text>\n";
   }
   svg << "<text x=\"" << kWidth / 2 << "\" y=\"" << kHeight - 12
-      << "\" text-anchor=\"middle\">CPU time of perception and planning a trial [s]</text>\n<text transform=\"translate(16 " << kHeight / 2
-      << ") rotate(-90)\" text-anchor=\"middle\">least separation [m]</text>\n";
+      << "\" text-anchor=\"middle\">CPU time of perception and planning a trial [s]</text>\n<text "
+         "transform=\"translate(16 "
+      << kHeight / 2 << ") rotate(-90)\" text-anchor=\"middle\">least separation [m]</text>\n";
   std::vector<Point> curve;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(curve), [](const Point& p) { return p.condition.starts_with("fixed"); });
-  std::sort(curve.begin(), curve.end(), [](const Point& a, const Point& b) { return a.condition < b.condition; });
+  std::copy_if(points.begin(), points.end(), std::back_inserter(curve),
+               [](const Point& p) { return p.condition.starts_with("fixed"); });
+  std::sort(curve.begin(), curve.end(),
+            [](const Point& a, const Point& b) { return a.condition < b.condition; });
   for (std::size_t i = 0; i < curve.size(); ++i)
-    svg << (i ? " L" : "<path fill=\"none\" stroke=\"#888\" d=\"M") << px(curve[i].x) << ' ' << py(curve[i].y)
-        << (i + 1 == curve.size() ? "\"/>\n" : "");
+    svg << (i ? " L" : "<path fill=\"none\" stroke=\"#888\" d=\"M") << px(curve[i].x) << ' '
+        << py(curve[i].y) << (i + 1 == curve.size() ? "\"/>\n" : "");
   for (const Point& p : points) {
-    const char* colour = p.condition.starts_with("adaptive") ? "#c0392b" : p.condition.starts_with("fixed") ? "#888" : "#2c5d9b";
-    svg << "<path d=\"M" << px(p.x - p.dx) << ' ' << py(p.y) << 'H' << px(p.x + p.dx) << 'M' << px(p.x) << ' ' << py(p.y - p.dy) << 'V'
-        << py(p.y + p.dy) << "\" stroke=\"" << colour << "\" opacity=\"0.5\"/>\n<circle cx=\"" << px(p.x) << "\" cy=\"" << py(p.y)
-        << "\" r=\"4\" fill=\"" << colour << "\"/>\n<text x=\"" << px(p.x) + 7 << "\" y=\"" << py(p.y) - 5 << "\" fill=\"" << colour
-        << "\">" << p.condition << "</text>\n";
+    const char* colour = p.condition.starts_with("adaptive") ? "#c0392b"
+                         : p.condition.starts_with("fixed")  ? "#888"
+                                                             : "#2c5d9b";
+    svg << "<path d=\"M" << px(p.x - p.dx) << ' ' << py(p.y) << 'H' << px(p.x + p.dx) << 'M'
+        << px(p.x) << ' ' << py(p.y - p.dy) << 'V' << py(p.y + p.dy) << "\" stroke=\"" << colour
+        << "\" opacity=\"0.5\"/>\n<circle cx=\"" << px(p.x) << "\" cy=\"" << py(p.y)
+        << "\" r=\"4\" fill=\"" << colour << "\"/>\n<text x=\"" << px(p.x) + 7 << "\" y=\""
+        << py(p.y) - 5 << "\" fill=\"" << colour << "\">" << p.condition << "</text>\n";
   }
   return svg.str() + "</svg>\n";
 }
 
-void write_study(const Study& study, const std::string& reference, const std::filesystem::path& folder) {
+void write_study(const Study& study, const std::string& reference,
+                 const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   const auto write = [&](const std::string& name, const std::string& text) {
     std::ofstream out(folder / name);

@@ -23,7 +23,8 @@ struct PairedDifference {
 };
 /// Equal lengths; seeded, so that equal data give equal numbers. Throws std::invalid_argument
 /// otherwise.
-PairedDifference paired_difference(const std::vector<double>& first, const std::vector<double>& second);
+PairedDifference paired_difference(const std::vector<double>& first,
+                                   const std::vector<double>& second);
 
 /// Two-sided exact test of McNemar: pairs in which only the first, or only the second succeeded.
 double mcnemar(int only_first, int only_second);
@@ -59,6 +60,7 @@ class Study {
 
 /// Writes comparison.jsonl, trials.csv, table.txt and a plot a scenario into `folder`, made when it
 /// is not there.
-void write_study(const Study& study, const std::string& reference, const std::filesystem::path& folder);
+void write_study(const Study& study, const std::string& reference,
+                 const std::filesystem::path& folder);
 
 }  // namespace handsel

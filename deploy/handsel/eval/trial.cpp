@@ -37,7 +37,10 @@ std::string failure_kind(const Performer& performer, const GroundTruth& ground_t
 }
 
 Json base_line(const NodeContext& context, const TrialOptions& options) {
-  Json line{{"scenario", options.scenario}, {"seed", context.seed}, {"attention", options.attention}, {"law", options.clock_law}};
+  Json line{{"scenario", options.scenario},
+            {"seed", context.seed},
+            {"attention", options.attention},
+            {"law", options.clock_law}};
   line["condition"] = options.condition.empty() ? options.attention : options.condition;
   if (!options.participant.empty()) line["participant"] = options.participant;
   if (options.order > 0) line["order"] = options.order;
@@ -53,7 +56,8 @@ struct Worker {
 
 Worker start_worker(const std::vector<Trial>& trials, std::size_t index) {
   int channel[2];
-  if (pipe(channel) != 0) throw MissingError(std::string("cannot make a pipe: ") + std::strerror(errno));
+  if (pipe(channel) != 0)
+    throw MissingError(std::string("cannot make a pipe: ") + std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid < 0) throw MissingError(std::string("cannot start a worker: ") + std::strerror(errno));
@@ -88,9 +92,10 @@ Json finish_worker(const Worker& worker, const std::vector<Trial>& trials, bool&
   if (!line.is_discarded() && WIFEXITED(status) && WEXITSTATUS(status) == 0) return line;
   crashed = true;
   line = base_line(trials[worker.trial].context, trials[worker.trial].options);
-  line.update({{"success", false},
-               {"failure", "crash"},
-               {"reason", WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "ended without an answer"}});
+  line.update(
+      {{"success", false},
+       {"failure", "crash"},
+       {"reason", WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "ended without an answer"}});
   return line;
 }
 
@@ -104,11 +109,12 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   if (options.hash_outputs) system.network().hash_outputs();
   std::unique_ptr<LocalRecording> recording;
   if (!options.record.empty()) {
-    recording = std::make_unique<LocalRecording>(system.network(), options.record,
-                                                 mcap::Metadata{{"robot", context.robot->name()},
-                                                                {"scenario", options.scenario},
-                                                                {"seed", std::to_string(context.seed)},
-                                                                {"attention", options.attention}});
+    recording =
+        std::make_unique<LocalRecording>(system.network(), options.record,
+                                         mcap::Metadata{{"robot", context.robot->name()},
+                                                        {"scenario", options.scenario},
+                                                        {"seed", std::to_string(context.seed)},
+                                                        {"attention", options.attention}});
   }
   bool is_ready = false;
   const auto ready = [&] {
@@ -120,12 +126,15 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
     if (options.on_event) options.on_event(to_seconds(event.at.time_since_epoch()), event.text);
   });
   const TimePoint start = system.now();
-  system.network().run_until([&] { return performer.started(); }, start + from_seconds(kReadyTimeout));
-  if (performer.started()) system.network().run_until([&] { return performer.finished(); }, start + std::chrono::hours(1));
+  system.network().run_until([&] { return performer.started(); },
+                             start + from_seconds(kReadyTimeout));
+  if (performer.started())
+    system.network().run_until([&] { return performer.finished(); }, start + std::chrono::hours(1));
   system.observer().on_event({});
   if (!performer.finished()) performer.abort("not ready");
 
-  const ReportInputs inputs{.scenario = options.scenario, .robot = context.robot->name(), .seed = context.seed};
+  const ReportInputs inputs{
+      .scenario = options.scenario, .robot = context.robot->name(), .seed = context.seed};
   const Json report = make_report(inputs, performer, system.observer());
   const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
   std::uint64_t activations = 0, fastest = 0;
@@ -140,8 +149,9 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   Json line = base_line(context, options);
   line.update({{"success", report["success"].get<bool>() && !ground_truth.dropped},
                {"failure", failure_kind(performer, ground_truth)},
-               {"reason", ground_truth.dropped && report["success"].get<bool>() ? Json(ground_truth.object + " was dropped afterwards")
-                                                                                : report["failure"]},
+               {"reason", ground_truth.dropped && report["success"].get<bool>()
+                              ? Json(ground_truth.object + " was dropped afterwards")
+                              : report["failure"]},
                {"duration_s", report["duration_s"]},
                {"min_separation_m", report["min_separation_m"]},
                {"ssm_violations", report["ssm_violations"]},
@@ -162,19 +172,22 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   line.update(criteria.fields());
   if (recording) recording->close();
   if (options.hash_outputs) {
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(system.network().output_hash()));
+    std::snprintf(hash, sizeof hash, "%016llx",
+                  static_cast<unsigned long long>(system.network().output_hash()));
     line["output_hash"] = hash;
   }
   return line;
 }
 
-bool run_trials(const std::vector<Trial>& trials, int jobs, const std::function<void(const nlohmann::json&)>& on_line) {
+bool run_trials(const std::vector<Trial>& trials, int jobs,
+                const std::function<void(const nlohmann::json&)>& on_line) {
   std::vector<Worker> running;
   std::map<std::size_t, Json> done;
   std::size_t next = 0, told = 0;
   bool crashed = false;
   while (told < trials.size()) {
-    while (next < trials.size() && running.size() < static_cast<std::size_t>(jobs)) running.push_back(start_worker(trials, next++));
+    while (next < trials.size() && running.size() < static_cast<std::size_t>(jobs))
+      running.push_back(start_worker(trials, next++));
     std::vector<pollfd> fds;
     for (const Worker& worker : running) fds.push_back({worker.fd, POLLIN, 0});
     poll(fds.data(), fds.size(), -1);

@@ -18,9 +18,9 @@ struct TrialOptions {
   std::string attention{"adaptive"}, clock_law{"linear"};
   std::string condition, participant;  ///< of a study; empty: the attention's mode; nobody
   std::size_t order{};                 ///< number among the trials asked for, from 1; 0: none
-  bool hash_outputs{};                 ///< adds "output_hash": of every value every component sent, and when
-  std::string record;                  ///< file that every sample is recorded into; empty: none
-  double timeout{};                    ///< [s] of virtual time; 0: the scenario's
+  bool hash_outputs{};  ///< adds "output_hash": of every value every component sent, and when
+  std::string record;   ///< file that every sample is recorded into; empty: none
+  double timeout{};     ///< [s] of virtual time; 0: the scenario's
   /// Time [s] and text of each event; may be empty.
   std::function<void(double, const std::string&)> on_event;
 };
@@ -38,7 +38,8 @@ struct Trial {
 /// Each trial in an operating-system process of its own, `jobs` at a time, so that no state is
 /// carried over and a crash is one failed trial (failure "crash"). Calls on_line in the order of
 /// the trials. False when one crashed.
-bool run_trials(const std::vector<Trial>& trials, int jobs, const std::function<void(const nlohmann::json&)>& on_line);
+bool run_trials(const std::vector<Trial>& trials, int jobs,
+                const std::function<void(const nlohmann::json&)>& on_line);
 
 /// Returns the 95 % score interval of a ratio (Wilson 1927): low, high.
 std::pair<double, double> wilson_interval(int successes, int trials);

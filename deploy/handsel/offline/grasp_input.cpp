@@ -16,7 +16,8 @@ using namespace grasp_planner;
 namespace {
 
 void report_mesh(const Graspable& object) {
-  for (const std::string& s : sentences(object.findings())) std::fprintf(stderr, "mesh: %s\n", s.c_str());
+  for (const std::string& s : sentences(object.findings()))
+    std::fprintf(stderr, "mesh: %s\n", s.c_str());
 }
 
 /// Frames are dealt out to the cores.
@@ -30,7 +31,8 @@ GraspList on_all_cores(const Listed& with, const GraspListSettings& settings) {
     for (std::uint64_t first; (first = next.fetch_add(64)) < frames;) {
       lister.test(first, 64);
       if (of == 0 && progress_wanted())
-        std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * first / frames), static_cast<unsigned long long>(frames));
+        std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * first / frames),
+                     static_cast<unsigned long long>(frames));
     }
     parts[of] = lister.list();
   };
@@ -71,7 +73,8 @@ std::shared_ptr<const HandGeometry> hand_geometry_of(const std::string& hand) {
 Listed prepared(const std::string& hand, const ListOptions& o, bool quiet) {
   Listed out;
   out.hand_geometry = hand_geometry_of(hand);
-  out.object = std::make_shared<const Graspable>(object_of(o), out.hand_geometry->tip_radius(), GraspListSettings{}.step_fraction, o.seed);
+  out.object = std::make_shared<const Graspable>(object_of(o), out.hand_geometry->tip_radius(),
+                                                 GraspListSettings{}.step_fraction, o.seed);
   if (!quiet) report_mesh(*out.object);
   return out;
 }
@@ -88,20 +91,32 @@ Listed list_with(const std::string& hand, const ListOptions& o, bool quiet) {
   out.list = on_all_cores(out, settings);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (quiet) return out;
-  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", out.list.grasps.size(),
-               out.list.hand.c_str(), out.list.object.c_str(), static_cast<unsigned long long>(out.list.frames), out.seconds,
+  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n",
+               out.list.grasps.size(), out.list.hand.c_str(), out.list.object.c_str(),
+               static_cast<unsigned long long>(out.list.frames), out.seconds,
                static_cast<unsigned long long>(o.seed));
-  for (const Refusal& r : out.list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
+  for (const Refusal& r : out.list.refusals())
+    std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
   return out;
 }
 
 void add_list_options(CLI::App& command, ListOptions& o) {
   command.add_option("--hand", o.hand, "hand description: name or file")->capture_default_str();
-  command.add_option("--object", o.object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
-  command.add_option("--scale", o.scale, "factor on the object's size")->check(kAboveZero)->capture_default_str();
-  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")->check(kAboveZero)->capture_default_str();
-  command.add_option("--orientations", o.orientations, "and orientations at each")->check(kAboveZero)->capture_default_str();
-  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")->check(kAboveZero);
+  command
+      .add_option("--object", o.object,
+                  "mesh file (OBJ, STL, DAE), or an object description: name or file")
+      ->required();
+  command.add_option("--scale", o.scale, "factor on the object's size")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  command.add_option("--orientations", o.orientations, "and orientations at each")
+      ->check(kAboveZero)
+      ->capture_default_str();
+  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")
+      ->check(kAboveZero);
   command.add_option("--seed", o.seed, "of the contact points")->capture_default_str();
   command.add_flag("--json", o.as_json, "JSON Lines also on a terminal");
 }

@@ -12,7 +12,8 @@ struct ListOptions {
   /// Factor on the object's size; Coulomb coefficient, 0: the object's.
   double scale{1}, friction{0};
   /// Number of positions of the hand in the object's box, and of orientations at each.
-  std::uint32_t positions{grasp_planner::GraspListSettings{}.positions}, orientations{grasp_planner::GraspListSettings{}.orientations};
+  std::uint32_t positions{grasp_planner::GraspListSettings{}.positions},
+      orientations{grasp_planner::GraspListSettings{}.orientations};
   std::uint64_t seed{1};  ///< of the contact points
   bool as_json{};         ///< JSON Lines also on a terminal
 };
@@ -28,8 +29,8 @@ struct Listed {
   std::shared_ptr<const grasp_planner::HandGeometry> hand_geometry;   ///< model of the hand
   std::shared_ptr<const grasp_planner::FingerWorkspaces> workspaces;  ///< null from prepared()
   std::shared_ptr<const grasp_planner::Graspable> object;             ///< with its contact points
-  grasp_planner::GraspList list;                                      ///< empty from prepared(); best grasp first
-  double seconds{};                                                   ///< that the list took
+  grasp_planner::GraspList list;  ///< empty from prepared(); best grasp first
+  double seconds{};               ///< that the list took
 };
 /// Loads a hand by the name or file of its description.
 std::shared_ptr<const grasp_planner::HandGeometry> hand_geometry_of(const std::string& hand);

@@ -18,15 +18,21 @@ void add_stage_options(CLI::App& command, StageOptions& o) {
   command.remove_option(command.get_option("--hand"));
   command.remove_option(command.get_option("--seed"));
   command.add_option("--robot", o.robot, "robot description: name or file")->capture_default_str();
-  command.add_option("--table", o.table, "middle x,y, size x,y and height [m], seen from the robot's base")
+  command
+      .add_option("--table", o.table,
+                  "middle x,y, size x,y and height [m], seen from the robot's base")
       ->delimiter(',')
       ->expected(5)
       ->capture_default_str();
   command.add_option("--png", o.png, "draws it into this file");
-  command.add_option("--size", o.size, "of one of its pictures")->check(CLI::Range(64, 2000))->capture_default_str();
+  command.add_option("--size", o.size, "of one of its pictures")
+      ->check(CLI::Range(64, 2000))
+      ->capture_default_str();
 }
 
-Stage::Stage(const StageOptions& o) : file(robot_description(o.robot)), robot(std::make_shared<const RobotModel>(RobotModel::load(file))) {
+Stage::Stage(const StageOptions& o)
+    : file(robot_description(o.robot)),
+      robot(std::make_shared<const RobotModel>(RobotModel::load(file))) {
   object = object_of(o);
   for (const Manipulator& m : manipulators(file, *robot)) {
     lists.push_back(list_with(m.hand, o));
@@ -36,7 +42,10 @@ Stage::Stage(const StageOptions& o) : file(robot_description(o.robot)), robot(st
   for (std::size_t i = 0; i < arms.size(); ++i) arms[i].list = &lists[i].list;
   scene.robot_known = true;
   scene.robot_position = robot->rest_configuration();
-  scene.boxes.push_back({"table", make_pose({o.table[0], o.table[1], 0.5 * o.table[4]}), {o.table[2], o.table[3], o.table[4]}, true});
+  scene.boxes.push_back({"table",
+                         make_pose({o.table[0], o.table[1], 0.5 * o.table[4]}),
+                         {o.table[2], o.table[3], o.table[4]},
+                         true});
   top = o.table[4];
 }
 
@@ -59,8 +68,10 @@ std::vector<Pose> Stage::resting(double x, double y) const {
   for (const Placement& placement : stable_placements(object.mesh, object.com)) {
     if ((placement.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999) continue;
     for (int k = 0; k < kTurns; ++k)
-      out.push_back(make_pose({x, y, top}, Eigen::Quaterniond(Eigen::AngleAxisd(2 * std::numbers::pi * k / kTurns, Vector3::UnitZ()))) *
-                    placement.T_support_object);
+      out.push_back(
+          make_pose({x, y, top}, Eigen::Quaterniond(Eigen::AngleAxisd(
+                                     2 * std::numbers::pi * k / kTurns, Vector3::UnitZ()))) *
+          placement.T_support_object);
   }
   return out;
 }
@@ -81,14 +92,18 @@ void write(const Picture& picture, const std::string& file) {
 }
 
 void print_refusals(const Refusals& refusals) {
-  for (const Refusal& r : refusals) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
+  for (const Refusal& r : refusals)
+    std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
 }
 
 nlohmann::json pose_line(const Pose& T) {
   const Eigen::Quaterniond q(T.linear());
-  return {{"p", {T.translation().x(), T.translation().y(), T.translation().z()}}, {"q", {q.x(), q.y(), q.z(), q.w()}}};
+  return {{"p", {T.translation().x(), T.translation().y(), T.translation().z()}},
+          {"q", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-nlohmann::json numbers(const Vector& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
+nlohmann::json numbers(const Vector& v) {
+  return std::vector<double>(v.data(), v.data() + v.size());
+}
 
 }  // namespace handsel

@@ -41,8 +41,8 @@ struct Stage {
   ObjectModel object;                           ///< scaled as the options say
   std::vector<Listed> lists;                    ///< one an arm, in the order of `arms`
   std::vector<grasp_planner::RegraspArm> arms;  ///< each with its hand and its list; at least one
-  Scene scene;                                  ///< the robot at its rest configuration and the table; robot base frame
-  double top{};                                 ///< height of the table [m]
+  Scene scene;   ///< the robot at its rest configuration and the table; robot base frame
+  double top{};  ///< height of the table [m]
 };
 
 /// Called "person", facing the origin.

@@ -21,7 +21,8 @@ double opening_of(const HandGeometry& hand_geometry) {
   double widest = 0;
   const Vector3 thumb = hand_geometry.chains[0].tip(hand_geometry.hand.pregrasp());
   for (std::size_t f = 1; f < hand_geometry.chains.size(); ++f)
-    widest = std::max(widest, (hand_geometry.chains[f].tip(hand_geometry.hand.pregrasp()) - thumb).norm());
+    widest = std::max(widest,
+                      (hand_geometry.chains[f].tip(hand_geometry.hand.pregrasp()) - thumb).norm());
   return widest;
 }
 
@@ -51,9 +52,11 @@ TableRow table_row(const std::string& hand, const ListOptions& options, bool fit
     row.frames = listed.list.frames;
     row.seconds = listed.seconds;
     if (row.grasps > 0) row.best = listed.list.grasps.front().grasp.quality;
-    for (const std::string& s : sentences(listed.object->findings())) row.findings += (row.findings.empty() ? "" : " ") + s;
+    for (const std::string& s : sentences(listed.object->findings()))
+      row.findings += (row.findings.empty() ? "" : " ") + s;
     const auto most = std::max_element(listed.list.reasons.begin() + 1, listed.list.reasons.end());
-    row.reason = std::to_string(*most) + ": " + reason_text(static_cast<FrameReason>(most - listed.list.reasons.begin()));
+    row.reason = std::to_string(*most) + ": " +
+                 reason_text(static_cast<FrameReason>(most - listed.list.reasons.begin()));
   } catch (const ConfigError& e) {
     row.reason = e.what();
   }
@@ -62,15 +65,17 @@ TableRow table_row(const std::string& hand, const ListOptions& options, bool fit
 
 std::string table_head() {
   char line[200];
-  std::snprintf(line, sizeof line, "%-16s %-12s %8s %7s %9s %7s %7s %6s %7s  %s", "object", "hand", "scale", "size[m]", "triangles",
-                "frames", "grasps", "best", "time[s]", "most frequent reason of the frames without a grasp");
+  std::snprintf(line, sizeof line, "%-16s %-12s %8s %7s %9s %7s %7s %6s %7s  %s", "object", "hand",
+                "scale", "size[m]", "triangles", "frames", "grasps", "best", "time[s]",
+                "most frequent reason of the frames without a grasp");
   return line;
 }
 
 std::string table_line(const TableRow& r) {
   char line[200];
-  std::snprintf(line, sizeof line, "%-16.16s %-12.12s %8.4g %7.3f %9zu %7llu %7zu %6.3f %7.2f  ", r.object.c_str(), r.hand.c_str(), r.scale,
-                r.size, r.triangles, static_cast<unsigned long long>(r.frames), r.grasps, r.best, r.seconds);
+  std::snprintf(line, sizeof line, "%-16.16s %-12.12s %8.4g %7.3f %9zu %7llu %7zu %6.3f %7.2f  ",
+                r.object.c_str(), r.hand.c_str(), r.scale, r.size, r.triangles,
+                static_cast<unsigned long long>(r.frames), r.grasps, r.best, r.seconds);
   return line + r.reason;
 }
 

@@ -10,9 +10,9 @@
 namespace handsel {
 
 struct TableRow {
-  std::string hand, object;           ///< as given; file name of the object without folder and extension
-  double scale{1};                    ///< what the object was multiplied by
-  double size{};                      ///< its largest extent then [m]
+  std::string hand, object;  ///< as given; file name of the object without folder and extension
+  double scale{1};           ///< what the object was multiplied by
+  double size{};             ///< its largest extent then [m]
   std::size_t triangles{}, grasps{};  ///< of the object's mesh; found
   std::uint64_t frames{};             ///< grasp frames that were tested
   double best{};                      ///< quality

@@ -12,14 +12,17 @@
 namespace handsel {
 
 void check_scene(const SystemOptions& options) {
-  const auto has = [](const std::vector<std::string>& names) { return std::find(names.begin(), names.end(), "sim") != names.end(); };
+  const auto has = [](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), "sim") != names.end();
+  };
   if (has(options.without) || (!options.only.empty() && !has(options.only))) return;
   check_system(options);
   config::Scenario scenario;
   load_text_proto(scenario_file(options.scenario), scenario);
   const RobotModel robot = RobotModel::load(robot_description(robot_of(options)));
   const sim::SimSettings settings = sim::load_settings(resource("config"));
-  sim::set_up(scenario, robot, load_object_library(), settings.coverage, settings.data_root, options.seed);
+  sim::set_up(scenario, robot, load_object_library(), settings.coverage, settings.data_root,
+              options.seed);
 }
 
 }  // namespace handsel

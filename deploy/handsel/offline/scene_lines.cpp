@@ -15,12 +15,15 @@ int axis_of(const RobotModel& robot, const std::string& name) {
 }
 
 Vector configuration_in(const RobotModel& robot, const json& joints, const char* what) {
-  Vector q = robot.rest_configuration().size() == robot.dof() ? robot.rest_configuration() : Vector::Zero(robot.dof());
+  Vector q = robot.rest_configuration().size() == robot.dof() ? robot.rest_configuration()
+                                                              : Vector::Zero(robot.dof());
   if (!joints.is_object())
-    throw LineError(std::string("\"") + what + "\" must be an object of joint names and positions, as {\"shoulder\": 0.5}");
+    throw LineError(std::string("\"") + what +
+                    "\" must be an object of joint names and positions, as {\"shoulder\": 0.5}");
   const auto fixed = [&](const std::string& name) {
-    return std::any_of(robot.joints().begin(), robot.joints().end(),
-                       [&](const Joint& j) { return j.name == name && j.kind == JointKind::fixed; });
+    return std::any_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& j) {
+      return j.name == name && j.kind == JointKind::fixed;
+    });
   };
   for (const auto& [name, value] : joints.items())
     if (!fixed(name)) q[axis_of(robot, name)] = number(joints, name.c_str());
@@ -34,7 +37,8 @@ Obstacle obstacle_of(const json& item) {
   const Vector dims = vector_of(item, "dims");
   const auto expect = [&](int n) {
     if (dims.size() != n || !(dims.minCoeff() > 0))
-      throw LineError("\"dims\" of a " + type.dump() + " must be " + std::to_string(n) + " numbers > 0");
+      throw LineError("\"dims\" of a " + type.dump() + " must be " + std::to_string(n) +
+                      " numbers > 0");
   };
   Obstacle obstacle;
   obstacle.id = item.value("id", "");
@@ -68,7 +72,8 @@ HumanState people_in(const json& problem) {
   if (human == problem.end()) return state;
   ObservedPerson seen;
   const json& joints = field(*human, "joints");
-  if (!joints.is_object()) throw LineError("\"joints\" of \"human\" must be an object of points by joint name");
+  if (!joints.is_object())
+    throw LineError("\"joints\" of \"human\" must be an object of points by joint name");
   for (const auto& [name, point] : joints.items()) {
     if (body_joint_index(name) < 0) throw LineError("\"" + name + "\" is no joint of a body");
     seen.joints.push_back({name, vector3(joints, name.c_str()), 1.0});
@@ -99,7 +104,8 @@ CostSettings weights_in(const json& problem) {
   read("safety", settings.w_safety);
   read("visibility", settings.w_visibility);
   read("comfort", settings.w_comfort);
-  if (!(settings.w_safety + settings.w_visibility + settings.w_comfort > 0)) throw LineError("at least one of the \"weights\" must be > 0");
+  if (!(settings.w_safety + settings.w_visibility + settings.w_comfort > 0))
+    throw LineError("at least one of the \"weights\" must be > 0");
   return settings;
 }
 

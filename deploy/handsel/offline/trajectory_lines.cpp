@@ -15,12 +15,15 @@ namespace {
 
 json list_of(const Vector& v) { return std::vector<double>(v.begin(), v.end()); }
 
-KinematicLimits limits_in(const json& line) { return {vector_of(line, "vmax"), vector_of(line, "amax"), vector_of(line, "jmax")}; }
+KinematicLimits limits_in(const json& line) {
+  return {vector_of(line, "vmax"), vector_of(line, "amax"), vector_of(line, "jmax")};
+}
 
 /// Numbers near the ends of the range of a double give answers that are none.
 void require_finite(const Trajectory& trajectory) {
   const MotionState3 end = final_state(trajectory);
-  if (!std::isfinite(trajectory.duration()) || !end.position.allFinite() || !end.velocity.allFinite() || !end.acceleration.allFinite()) {
+  if (!std::isfinite(trajectory.duration()) || !end.position.allFinite() ||
+      !end.velocity.allFinite() || !end.acceleration.allFinite()) {
     throw LineError("the numbers are too large or too small to compute with");
   }
 }
@@ -32,14 +35,18 @@ json axes_of(const Trajectory& trajectory) {
   for (const AxisTrajectory& axis : trajectory.axes) {
     json segments = json::array();
     for (const Segment& s : axis.segments) segments.push_back({s.duration, s.jerk});
-    axes.push_back({{"p0", axis.start.position}, {"v0", axis.start.velocity}, {"a0", axis.start.acceleration}, {"segments", segments}});
+    axes.push_back({{"p0", axis.start.position},
+                    {"v0", axis.start.velocity},
+                    {"a0", axis.start.acceleration},
+                    {"segments", segments}});
   }
   return axes;
 }
 
 Trajectory trajectory_in(const json& line) {
   const json& axes = field(line, "axes");
-  if (!axes.is_array() || axes.empty()) throw LineError("\"axes\" must be a list of axes, as trajectory solve writes it");
+  if (!axes.is_array() || axes.empty())
+    throw LineError("\"axes\" must be a list of axes, as trajectory solve writes it");
   Trajectory trajectory;
   for (const json& axis : axes) {
     AxisTrajectory out{{number(axis, "p0"), number(axis, "v0"), number(axis, "a0")}, {}};
@@ -47,7 +54,8 @@ Trajectory trajectory_in(const json& line) {
     if (!segments.is_array()) throw LineError("\"segments\" must be a list of [duration, jerk]");
     for (const json& segment : segments) {
       const Vector pair = vector_of(json{{"segments", segment}}, "segments");
-      if (pair.size() != 2 || pair[0] < 0) throw LineError("a segment must be [duration, jerk], the duration not negative");
+      if (pair.size() != 2 || pair[0] < 0)
+        throw LineError("a segment must be [duration, jerk], the duration not negative");
       out.segments.push_back({pair[0], pair[1]});
     }
     trajectory.axes.push_back(std::move(out));
@@ -68,7 +76,8 @@ json solve_line(const json& line) {
   Sync sync = Sync::time;
   if (line.contains("sync")) {
     const json& wanted = line["sync"];
-    if (wanted != "time" && wanted != "none") throw LineError("\"sync\" must be \"time\" or \"none\"");
+    if (wanted != "time" && wanted != "none")
+      throw LineError("\"sync\" must be \"time\" or \"none\"");
     if (wanted == "none") sync = Sync::none;
   }
   std::optional<double> imposed;
@@ -79,7 +88,9 @@ json solve_line(const json& line) {
   const Solution solution = solve(from, to, limits_in(line), sync, imposed);
   if (!solution.ok()) throw LineError(solution.reason);
   require_finite(solution.trajectory);
-  json out{{"duration", solution.trajectory.duration()}, {"min_durations", solution.min_durations}, {"axes", axes_of(solution.trajectory)}};
+  json out{{"duration", solution.trajectory.duration()},
+           {"min_durations", solution.min_durations},
+           {"axes", axes_of(solution.trajectory)}};
   if (imposed) out["excess"] = solution.excess;
   return out;
 }
@@ -96,7 +107,8 @@ json smooth_line(const json& line) {
   require_finite(result.trajectory);
   json corners = json::array();
   for (const BlendReport& c : result.corners) {
-    json corner{{"node", c.node}, {"method", name(c.method)}, {"excess", c.excess}, {"saved_s", c.saved}};
+    json corner{
+        {"node", c.node}, {"method", name(c.method)}, {"excess", c.excess}, {"saved_s", c.saved}};
     if (!c.reason.empty()) corner["reason"] = c.reason;
     corners.push_back(corner);
   }
@@ -110,7 +122,8 @@ json sample_line(const json& line, double period) {
   constexpr double kMostSamples = 1e6;
   const Trajectory trajectory = trajectory_in(line);
   const SegmentTable table(trajectory);
-  if (table.duration() / period > kMostSamples) throw LineError("more than a million samples; take a longer --period");
+  if (table.duration() / period > kMostSamples)
+    throw LineError("more than a million samples; take a longer --period");
   MotionState3 state = trajectory.at(0);
   json out{{"t", json::array()}, {"p", json::array()}, {"v", json::array()}, {"a", json::array()}};
   int cursor = 0;

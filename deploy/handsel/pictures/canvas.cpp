@@ -14,7 +14,8 @@ constexpr int kRound = 28;
 using Triangles = std::vector<std::array<int, 3>>;
 
 /// Rings of points about z: radius and height of each; closed at both ends.
-void lathe(const std::vector<std::pair<double, double>>& profile, std::vector<Vector3>& vertices, Triangles& triangles) {
+void lathe(const std::vector<std::pair<double, double>>& profile, std::vector<Vector3>& vertices,
+           Triangles& triangles) {
   for (const auto& [radius, z] : profile) {
     for (int i = 0; i < kRound; ++i) {
       const double angle = 2 * std::numbers::pi * i / kRound;
@@ -41,9 +42,13 @@ std::vector<std::pair<double, double>> capsule_profile(double radius, double hal
   return out;
 }
 
-Eigen::Vector3f plain(Colour c) { return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])}; }
+Eigen::Vector3f plain(Colour c) {
+  return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
+}
 
-Pose along(const Vector3& from, const Vector3& axis) { return make_pose(from, Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis)); }
+Pose along(const Vector3& from, const Vector3& axis) {
+  return make_pose(from, Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis));
+}
 
 Eigen::Matrix3d axes(const Eye& eye) {
   const Vector3 z = eye.from.normalized();
@@ -67,7 +72,10 @@ Eye eye_on(const Eigen::AlignedBox3d& box, const Vector3& from) {
 }
 
 Canvas::Canvas(int width, int height, const Eye& eye)
-    : width_(width * kFine), height_(height * kFine), target_(eye.target), scale_(height_ / eye.height) {
+    : width_(width * kFine),
+      height_(height * kFine),
+      target_(eye.target),
+      scale_(height_ / eye.height) {
   R_eye_world_ = axes(eye);
   samples_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
                   {Eigen::Vector3f::Constant(255), -std::numeric_limits<float>::infinity()});
@@ -75,7 +83,8 @@ Canvas::Canvas(int width, int height, const Eye& eye)
 
 Eigen::Vector3f Canvas::project(const Vector3& p) const {
   const Vector3 e = R_eye_world_ * (p - target_);
-  return Vector3(0.5 * width_ + scale_ * e.x(), 0.5 * height_ - scale_ * e.y(), e.z()).cast<float>();
+  return Vector3(0.5 * width_ + scale_ * e.x(), 0.5 * height_ - scale_ * e.y(), e.z())
+      .cast<float>();
 }
 
 double Canvas::light(const Vector3& a, const Vector3& b, const Vector3& c) const {
@@ -84,9 +93,11 @@ double Canvas::light(const Vector3& a, const Vector3& b, const Vector3& c) const
   return 0.45 + 0.55 * std::abs(n.dot(lamp));
 }
 
-void Canvas::triangle(const Vector3& a, const Vector3& b, const Vector3& c, Colour colour, double opacity) {
+void Canvas::triangle(const Vector3& a, const Vector3& b, const Vector3& c, Colour colour,
+                      double opacity) {
   const Eigen::Vector3f lit = static_cast<float>(light(a, b, c)) * plain(colour);
-  const Piece piece{{project(a), project(b), project(c)}, {lit, lit, lit}, static_cast<float>(opacity)};
+  const Piece piece{
+      {project(a), project(b), project(c)}, {lit, lit, lit}, static_cast<float>(opacity)};
   if (opacity < 1) {
     seen_through_.push_back(piece);
   } else {
@@ -110,8 +121,10 @@ void Canvas::put(const Piece& piece, std::vector<Sample>& samples) const {
   if (!(std::abs(area) > 1e-9F)) return;
   const auto least = [&](int k) { return std::min({p[k], q[k], r[k]}); };
   const auto most = [&](int k) { return std::max({p[k], q[k], r[k]}); };
-  const int x0 = std::max(0, static_cast<int>(std::ceil(least(0) - 0.5F))), x1 = std::min(width_ - 1, static_cast<int>(most(0)));
-  const int y0 = std::max(0, static_cast<int>(std::ceil(least(1) - 0.5F))), y1 = std::min(height_ - 1, static_cast<int>(most(1)));
+  const int x0 = std::max(0, static_cast<int>(std::ceil(least(0) - 0.5F))),
+            x1 = std::min(width_ - 1, static_cast<int>(most(0)));
+  const int y0 = std::max(0, static_cast<int>(std::ceil(least(1) - 0.5F))),
+            y1 = std::min(height_ - 1, static_cast<int>(most(1)));
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       const float px = static_cast<float>(x) + 0.5F, py = static_cast<float>(y) + 0.5F;
@@ -120,18 +133,23 @@ void Canvas::put(const Piece& piece, std::vector<Sample>& samples) const {
       const float w = 1 - u - v;
       if (u < -1e-5F || v < -1e-5F || w < -1e-5F) continue;
       const float depth = u * p.z() + v * q.z() + w * r.z();
-      Sample& s = samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+      Sample& s = samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                          static_cast<std::size_t>(x)];
       if (depth <= s.depth) continue;
-      const Eigen::Vector3f colour = u * piece.colours[0] + v * piece.colours[1] + w * piece.colours[2];
+      const Eigen::Vector3f colour =
+          u * piece.colours[0] + v * piece.colours[1] + w * piece.colours[2];
       s.colour += piece.opacity * (colour - s.colour);
       if (piece.opacity >= 1) s.depth = depth;
     }
   }
 }
 
-void Canvas::mesh(const std::vector<Vector3>& vertices, const Triangles& triangles, const Pose& T, Colour colour, double opacity) {
+void Canvas::mesh(const std::vector<Vector3>& vertices, const Triangles& triangles, const Pose& T,
+                  Colour colour, double opacity) {
   for (const auto& t : triangles) {
-    const auto at = [&](std::size_t k) { return Vector3(T * vertices[static_cast<std::size_t>(t[k])]); };
+    const auto at = [&](std::size_t k) {
+      return Vector3(T * vertices[static_cast<std::size_t>(t[k])]);
+    };
     triangle(at(0), at(1), at(2), colour, opacity);
   }
 }
@@ -139,12 +157,20 @@ void Canvas::mesh(const std::vector<Vector3>& vertices, const Triangles& triangl
 void Canvas::shape(const Shape& shape, const Pose& T, Colour colour, double opacity) {
   std::vector<Vector3> vertices;
   Triangles triangles;
-  if (const auto* s = std::get_if<Sphere>(&shape)) lathe(capsule_profile(s->radius, 0), vertices, triangles);
-  if (const auto* c = std::get_if<Capsule>(&shape)) lathe(capsule_profile(c->radius, c->length / 2), vertices, triangles);
+  if (const auto* s = std::get_if<Sphere>(&shape))
+    lathe(capsule_profile(s->radius, 0), vertices, triangles);
+  if (const auto* c = std::get_if<Capsule>(&shape))
+    lathe(capsule_profile(c->radius, c->length / 2), vertices, triangles);
   if (const auto* c = std::get_if<Cylinder>(&shape))
-    lathe({{0, -c->length / 2}, {c->radius, -c->length / 2}, {c->radius, c->length / 2}, {0, c->length / 2}}, vertices, triangles);
+    lathe({{0, -c->length / 2},
+           {c->radius, -c->length / 2},
+           {c->radius, c->length / 2},
+           {0, c->length / 2}},
+          vertices, triangles);
   if (const auto* b = std::get_if<Box>(&shape)) {
-    for (int i = 0; i < 8; ++i) vertices.emplace_back(0.5 * b->size.cwiseProduct(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+    for (int i = 0; i < 8; ++i)
+      vertices.emplace_back(
+          0.5 * b->size.cwiseProduct(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
     triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                  {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   }
@@ -159,7 +185,8 @@ void Canvas::ball(const Vector3& centre, double radius, Colour colour, double op
   shape(Sphere{radius}, make_pose(centre), colour, opacity);
 }
 
-void Canvas::ellipsoid(const Vector3& centre, const Eigen::Matrix3d& axes, Colour colour, double opacity) {
+void Canvas::ellipsoid(const Vector3& centre, const Eigen::Matrix3d& axes, Colour colour,
+                       double opacity) {
   std::vector<Vector3> vertices;
   Triangles triangles;
   lathe(capsule_profile(1, 0), vertices, triangles);
@@ -172,18 +199,22 @@ void Canvas::stick(const Vector3& a, const Vector3& b, double radius, Colour col
   if (length > 0) shape(Capsule{radius, length}, along(0.5 * (a + b), (b - a) / length), colour);
 }
 
-void Canvas::cone(const Vector3& apex, const Vector3& axis, double length, double radius, Colour colour, double opacity) {
+void Canvas::cone(const Vector3& apex, const Vector3& axis, double length, double radius,
+                  Colour colour, double opacity) {
   std::vector<Vector3> vertices;
   Triangles triangles;
   lathe({{0, 0}, {radius, length}}, vertices, triangles);
   mesh(vertices, triangles, along(apex, axis), colour, opacity);
 }
 
-void Canvas::box_edges(const Eigen::AlignedBox3d& box, const Pose& T, double radius, Colour colour) {
+void Canvas::box_edges(const Eigen::AlignedBox3d& box, const Pose& T, double radius,
+                       Colour colour) {
   for (int i = 0; i < 8; ++i) {
     for (const int bit : {1, 2, 4}) {
       if (i & bit) continue;
-      const auto corner = [&](int k) { return Vector3(T * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))); };
+      const auto corner = [&](int k) {
+        return Vector3(T * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k)));
+      };
       stick(corner(i), corner(i | bit), radius, colour);
     }
   }
@@ -192,18 +223,24 @@ void Canvas::box_edges(const Eigen::AlignedBox3d& box, const Pose& T, double rad
 Picture Canvas::picture() const {
   std::vector<Sample> samples = samples_;
   std::vector<Piece> order = seen_through_;
-  const auto depth = [](const Piece& p) { return p.corners[0].z() + p.corners[1].z() + p.corners[2].z(); };
-  std::stable_sort(order.begin(), order.end(), [&](const Piece& a, const Piece& b) { return depth(a) < depth(b); });
+  const auto depth = [](const Piece& p) {
+    return p.corners[0].z() + p.corners[1].z() + p.corners[2].z();
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Piece& a, const Piece& b) { return depth(a) < depth(b); });
   for (const Piece& p : order) put(p, samples);
   Picture out(width_ / kFine, height_ / kFine, {255, 255, 255});
   for (int y = 0; y < out.height(); ++y) {
     for (int x = 0; x < out.width(); ++x) {
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (int k = 0; k < kFine * kFine; ++k)
-        sum += samples[static_cast<std::size_t>((y * kFine + k / kFine) * width_ + x * kFine + k % kFine)].colour;
+        sum += samples[static_cast<std::size_t>((y * kFine + k / kFine) * width_ + x * kFine +
+                                                k % kFine)]
+                   .colour;
       Colour colour{};
       for (int c = 0; c < 3; ++c)
-        colour[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::clamp(sum[c] / (kFine * kFine), 0.0F, 255.0F));
+        colour[static_cast<std::size_t>(c)] =
+            static_cast<std::uint8_t>(std::clamp(sum[c] / (kFine * kFine), 0.0F, 255.0F));
       out.dot(x, y, colour);
     }
   }

@@ -26,7 +26,8 @@ class Canvas {
   Canvas(int width, int height, const Eye& eye);
 
   /// Lit on both sides. `opacity` below 1: what is behind shines through.
-  void triangle(const Vector3& a, const Vector3& b, const Vector3& c, Colour colour, double opacity = 1);
+  void triangle(const Vector3& a, const Vector3& b, const Vector3& c, Colour colour,
+                double opacity = 1);
   /// Colours of the corners, between them blended.
   void triangle(const std::array<Vector3, 3>& corners, const std::array<Colour, 3>& colours);
   /// Draws a shape at pose `T`; round shapes as polyhedra of 28 sides.
@@ -34,11 +35,13 @@ class Canvas {
   /// Draws a sphere of this radius [m].
   void ball(const Vector3& centre, double radius, Colour colour, double opacity = 1);
   /// Semi-axes: the columns [m].
-  void ellipsoid(const Vector3& centre, const Eigen::Matrix3d& axes, Colour colour, double opacity = 1);
+  void ellipsoid(const Vector3& centre, const Eigen::Matrix3d& axes, Colour colour,
+                 double opacity = 1);
   /// Draws a capsule from `a` to `b`, opaque; nothing when they are equal.
   void stick(const Vector3& a, const Vector3& b, double radius, Colour colour);
   /// `axis`: unit, from the apex; `radius` at its far end.
-  void cone(const Vector3& apex, const Vector3& axis, double length, double radius, Colour colour, double opacity = 1);
+  void cone(const Vector3& apex, const Vector3& axis, double length, double radius, Colour colour,
+            double opacity = 1);
   /// Draws the twelve edges as sticks of this radius [m], at pose `T`.
   void box_edges(const Eigen::AlignedBox3d& box, const Pose& T, double radius, Colour colour);
 
@@ -57,8 +60,8 @@ class Canvas {
   Eigen::Vector3f project(const Vector3& p) const;
   double light(const Vector3& a, const Vector3& b, const Vector3& c) const;
   void put(const Piece& piece, std::vector<Sample>& samples) const;
-  void mesh(const std::vector<Vector3>& vertices, const std::vector<std::array<int, 3>>& triangles, const Pose& T, Colour colour,
-            double opacity);
+  void mesh(const std::vector<Vector3>& vertices, const std::vector<std::array<int, 3>>& triangles,
+            const Pose& T, Colour colour, double opacity);
 
   int width_, height_;
   Eigen::Matrix3d R_eye_world_;

@@ -10,6 +10,7 @@ namespace handsel {
 /// Four maps (safety, visibility, arm comfort, their weighted sum) around the person, as SVG: cells
 /// of `cell` [m] of the vertical plane through the right shoulder along the person's front, from 1
 /// m behind to 2 m before them, from the floor to 2.2 m.
-std::string cost_picture(const Person& person, const CostSettings& settings, double cell, const std::string& title);
+std::string cost_picture(const Person& person, const CostSettings& settings, double cell,
+                         const std::string& title);
 
 }  // namespace handsel

@@ -24,19 +24,23 @@ constexpr double kScale = 300;  // [points a unit]
 struct Hill {
   double x, y, height, width;
 };
-constexpr Hill kHills[] = {{0.0, 0.05, 0.9, 0.3},   {-0.55, 0.45, 0.7, 0.25}, {0.6, -0.45, 0.8, 0.25},
-                           {0.45, 0.75, 0.45, 0.2}, {-0.6, -0.25, 0.4, 0.18}, {0.1, -0.8, 0.5, 0.22}};
+constexpr Hill kHills[] = {{0.0, 0.05, 0.9, 0.3},    {-0.55, 0.45, 0.7, 0.25},
+                           {0.6, -0.45, 0.8, 0.25},  {0.45, 0.75, 0.45, 0.2},
+                           {-0.6, -0.25, 0.4, 0.18}, {0.1, -0.8, 0.5, 0.22}};
 
 double height_at(double x, double y) {
   double sum = 0.02;
   for (const Hill& hill : kHills)
-    sum += hill.height * std::exp(-(std::pow(x - hill.x, 2) + std::pow(y - hill.y, 2)) / (hill.width * hill.width));
+    sum += hill.height * std::exp(-(std::pow(x - hill.x, 2) + std::pow(y - hill.y, 2)) /
+                                  (hill.width * hill.width));
   return std::min(1.0, sum);
 }
 
 RobotModel gantry() {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("handsel_landscape_" + std::to_string(getpid()) + ".urdf");
-  std::ofstream(file) << R"(<robot name="gantry"><link name="floor"/><link name="carriage"/><link name="point"><collision><geometry>
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     ("handsel_landscape_" + std::to_string(getpid()) + ".urdf");
+  std::ofstream(file)
+      << R"(<robot name="gantry"><link name="floor"/><link name="carriage"/><link name="point"><collision><geometry>
 <sphere radius="0.001"/></geometry></collision></link>
 <joint name="x" type="prismatic"><parent link="floor"/><child link="carriage"/><axis xyz="1 0 0"/><limit lower="-0.98" upper="0.98" effort="1" velocity="1"/></joint>
 <joint name="y" type="prismatic"><parent link="carriage"/><child link="point"/><axis xyz="0 1 0"/><limit lower="-0.98" upper="0.98" effort="1" velocity="1"/></joint>
@@ -56,7 +60,8 @@ Costmap landscape() {
   for (int k = 0; k < kLayers; ++k)
     for (int j = 0; j < kCells; ++j)
       for (int i = 0; i < kCells; ++i)
-        map.values.push_back(static_cast<std::uint8_t>(std::lround(254 * height_at(-1 + i * kCell, -1 + j * kCell))));
+        map.values.push_back(static_cast<std::uint8_t>(
+            std::lround(254 * height_at(-1 + i * kCell, -1 + j * kCell))));
   return map;
 }
 
@@ -68,16 +73,20 @@ json points(const std::vector<Vector>& path) {
 
 class Drawing {
  public:
-  Drawing() : picture_(static_cast<int>(2 * kScale), static_cast<int>(2 * kScale), {255, 255, 255}) {
+  Drawing()
+      : picture_(static_cast<int>(2 * kScale), static_cast<int>(2 * kScale), {255, 255, 255}) {
     for (int y = 0; y < picture_.height(); ++y)
       for (int x = 0; x < picture_.width(); ++x) {
         const double cost = height_at(x / kScale - 1, 1 - y / kScale);
-        const auto mix = [cost](int low, int high) { return static_cast<std::uint8_t>(low + cost * (high - low)); };
+        const auto mix = [cost](int low, int high) {
+          return static_cast<std::uint8_t>(low + cost * (high - low));
+        };
         picture_.dot(x, y, {mix(247, 51), mix(251, 42), mix(242, 95)});
       }
   }
   void line(const Vector& a, const Vector& b, int thickness, Colour colour) {
-    picture_.line((a[0] + 1) * kScale, (1 - a[1]) * kScale, (b[0] + 1) * kScale, (1 - b[1]) * kScale, thickness, colour);
+    picture_.line((a[0] + 1) * kScale, (1 - a[1]) * kScale, (b[0] + 1) * kScale,
+                  (1 - b[1]) * kScale, thickness, colour);
   }
   void path(const std::vector<Vector>& path, int thickness, Colour colour) {
     for (std::size_t i = 1; i < path.size(); ++i) line(path[i - 1], path[i], thickness, colour);
@@ -124,7 +133,8 @@ LandscapeResult plan_on_landscape(PlannerKind planner, std::uint64_t seed) {
   path_planner::Hooks hooks;
   hooks.searched = [&](const path_planner::Tree& from_start, const path_planner::Tree* from_goals) {
     result.answer["trees"].push_back(drawing.tree(from_start, {40, 120, 60}));
-    if (from_goals != nullptr) result.answer["trees"].push_back(drawing.tree(*from_goals, {30, 90, 170}));
+    if (from_goals != nullptr)
+      result.answer["trees"].push_back(drawing.tree(*from_goals, {30, 90, 170}));
   };
   path_planner::SearchSpace space(robot, world, cost, problem, settings, hooks);
   path_planner::Found found = path_planner::search(space, problem.goals, planner, true, seed);

@@ -53,7 +53,8 @@ void Picture::line(double x0, double y0, double x1, double y1, int thickness, Co
   const int steps = std::max(1, static_cast<int>(std::ceil(2 * std::hypot(x1 - x0, y1 - y0))));
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
-    const int x = static_cast<int>(std::lround(x0 + t * (x1 - x0))), y = static_cast<int>(std::lround(y0 + t * (y1 - y0)));
+    const int x = static_cast<int>(std::lround(x0 + t * (x1 - x0))),
+              y = static_cast<int>(std::lround(y0 + t * (y1 - y0)));
     for (int dx = -(thickness / 2); dx < (thickness + 1) / 2; ++dx)
       for (int dy = -(thickness / 2); dy < (thickness + 1) / 2; ++dy) dot(x + dx, y + dy, colour);
   }

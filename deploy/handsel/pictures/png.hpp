@@ -13,7 +13,9 @@ using Colour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 class Picture {
  public:
   Picture(int width, int height, Colour fill)
-      : width_(width), height_(height), points_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+      : width_(width),
+        height_(height),
+        points_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
   int width() const { return width_; }    ///< [px]
   int height() const { return height_; }  ///< [px]
   /// Outside the picture nothing happens. x to the right, y down.
@@ -29,7 +31,8 @@ class Picture {
 
  private:
   std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
   }
   int width_, height_;
   std::vector<Colour> points_;

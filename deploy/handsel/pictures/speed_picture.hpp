@@ -19,7 +19,8 @@ struct SpeedCurve {
 };
 
 /// `limits`: of velocity, of the trajectory's axes; `axes`: their robot axes; `rest`: all axes.
-SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axes, const Vector& limits, const Vector& rest,
+SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axes,
+                       const Vector& limits, const Vector& rest,
                        const trajectory_planner::SpeedAlong& people);
 
 /// One panel a curve, as SVG.

@@ -63,7 +63,8 @@ class Recording {
 class LocalRecording {
  public:
   /// As Recorder.
-  LocalRecording(LocalNetwork& network, const std::filesystem::path& file, const mcap::Metadata& metadata);
+  LocalRecording(LocalNetwork& network, const std::filesystem::path& file,
+                 const mcap::Metadata& metadata);
   ~LocalRecording();
   LocalRecording(const LocalRecording&) = delete;
   LocalRecording& operator=(const LocalRecording&) = delete;

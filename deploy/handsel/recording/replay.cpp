@@ -19,14 +19,16 @@ namespace {
 
 /// Reads the whole file, so that nothing is sent of one that is damaged further on.
 void require_sound(const std::filesystem::path& file) {
-  constexpr std::int64_t kMaxLength = 30ll * 24 * 3600 * 1'000'000'000;  // [ns] a month: beyond, the time of a message is wrong
+  constexpr std::int64_t kMaxLength =
+      30ll * 24 * 3600 * 1'000'000'000;  // [ns] a month: beyond, the time of a message is wrong
   mcap::Reader reader(file);
   mcap::Message message;
   std::int64_t begin = -1;
   while (reader.next(message)) {
     if (begin < 0) begin = message.time;
     if (message.time - begin > kMaxLength)
-      throw ConfigError(file.string() + ": a message " + std::to_string((message.time - begin) / 1'000'000'000) +
+      throw ConfigError(file.string() + ": a message " +
+                        std::to_string((message.time - begin) / 1'000'000'000) +
                         " s after the first; a recording has at most 30 days");
   }
 }
@@ -49,19 +51,23 @@ Replay::Replay(Bus& bus, const Settings& settings) : reader_(settings.file), fro
   std::vector<const TopicRow*> wanted;
   for (const std::string& name : settings.topics.empty() ? input_topics() : settings.topics) {
     const TopicRow* row = find_topic(name);
-    if (!row) throw ConfigError("there is no topic \"" + name + "\"; `handsel topic list` names them");
+    if (!row)
+      throw ConfigError("there is no topic \"" + name + "\"; `handsel topic list` names them");
     wanted.push_back(row);
   }
   for (const auto& [id, channel] : reader_.channels()) {
-    const auto row = std::find_if(wanted.begin(), wanted.end(), [&](const TopicRow* r) { return channel.topic == r->topic; });
+    const auto row = std::find_if(wanted.begin(), wanted.end(),
+                                  [&](const TopicRow* r) { return channel.topic == r->topic; });
     if (row == wanted.end()) continue;
     if (channel.encoding != "cdr" || channel.schema != idl_schema(**row))
-      throw ConfigError(settings.file.string() + ": " + channel.topic + " was recorded with another IDL than this version's");
+      throw ConfigError(settings.file.string() + ": " + channel.topic +
+                        " was recorded with another IDL than this version's");
     const MessageType& type = *find_message_type((*row)->type);
     channels_[id] = {&type, bus.advertise_any(type, 0), type.new_wire(), type.new_message()};
     counts_[channel.topic] = {};
   }
-  if (channels_.empty()) throw ConfigError(settings.file.string() + " has none of the topics to replay");
+  if (channels_.empty())
+    throw ConfigError(settings.file.string() + " has none of the topics to replay");
 }
 
 bool Replay::advance() {
@@ -84,10 +90,12 @@ void Replay::send(Stamp began) {
     const Stamp stamp = channel.type->stamp(channel.wire.get());
     const Stamp age = stamp >= 0 && stamp < sample_.time ? sample_.time - stamp : 0;
     channel.type->set_stamp(channel.wire.get(), began + static_cast<Stamp>(1e9 * due()) - age);
-    sent = channel.type->from_wire(channel.wire.get(), channel.message.get(), why) && channel.out->publish(channel.message.get());
+    sent = channel.type->from_wire(channel.wire.get(), channel.message.get(), why) &&
+           channel.out->publish(channel.message.get());
   }
   ++(sent ? count.sent : count.refused);
-  if (!sent && count.refusal.empty()) count.refusal = why.empty() ? "the transport has no room" : why;
+  if (!sent && count.refusal.empty())
+    count.refusal = why.empty() ? "the transport has no room" : why;
 }
 
 }  // namespace handsel

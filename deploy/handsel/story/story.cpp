@@ -24,7 +24,8 @@ Words split(const std::string& line) {
 std::optional<double> parse_number(const std::string& word) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+    return std::nullopt;
   return value;
 }
 
@@ -60,7 +61,8 @@ const std::map<std::string, ConditionRule>& condition_rules() {
 
 class LineParser {
  public:
-  LineParser(StoryStep& step, const std::string& where, Words words) : step_(step), where_(where), words_(std::move(words)) {}
+  LineParser(StoryStep& step, const std::string& where, Words words)
+      : step_(step), where_(where), words_(std::move(words)) {}
 
   void parse() {
     if (word() == "at") {
@@ -88,7 +90,8 @@ class LineParser {
     } else if (verb == "task") {
       step_.kind = StepKind::task;
       take_rest("a kind of task");
-    } else if (verb == "pause" || verb == "resume" || verb == "cancel" || verb == "acknowledge" || verb == "speed") {
+    } else if (verb == "pause" || verb == "resume" || verb == "cancel" || verb == "acknowledge" ||
+               verb == "speed") {
       step_.kind = StepKind::control;
       step_.words = {verb};
       if (verb == "speed") step_.words.push_back(take_number("speed"));
@@ -117,7 +120,8 @@ class LineParser {
       step_.kind = StepKind::stop;
     } else {
       fail("\"" + verb +
-           "\" is no step; a line begins with start, wait, task, pause, resume, cancel, acknowledge, speed, kill, silence, wake, sim, "
+           "\" is no step; a line begins with start, wait, task, pause, resume, cancel, "
+           "acknowledge, speed, kill, silence, wake, sim, "
            "expect, never, listen or stop");
     }
     if (position_ < words_.size()) fail("\"" + word() + "\" is one word too many");
@@ -141,7 +145,8 @@ class LineParser {
   }
   Duration take_duration(const std::string& after) {
     const auto duration = parse_duration(word());
-    if (!duration) fail("\"" + after + "\" needs a time such as 1.2s or 350ms, not \"" + word() + "\"");
+    if (!duration)
+      fail("\"" + after + "\" needs a time such as 1.2s or 350ms, not \"" + word() + "\"");
     take();
     return *duration;
   }
@@ -161,7 +166,9 @@ class LineParser {
       const auto rule = condition_rules().find(phrase);
       if (rule == condition_rules().end()) continue;
       position_ += used;
-      step_.condition = Condition{.kind = rule->second.kind, .subject = rule->second.subject ? take_any("a name") : std::string()};
+      step_.condition =
+          Condition{.kind = rule->second.kind,
+                    .subject = rule->second.subject ? take_any("a name") : std::string()};
       if (rule->second.number) step_.condition->value = *parse_number(take_number(phrase));
       return;
     }
@@ -202,14 +209,18 @@ Story parse_story(const std::string& text, const std::string& name) {
     step.text.erase(0, step.text.find_first_not_of(" \t"));
     const std::string where = name + ":" + std::to_string(number) + ": ";
     LineParser(step, where, std::move(words)).parse();
-    if (story.steps.empty() && step.kind != StepKind::start) throw ConfigError(where + "a story begins with start");
-    if (!story.steps.empty() && step.kind == StepKind::start) throw ConfigError(where + "a story starts once");
+    if (story.steps.empty() && step.kind != StepKind::start)
+      throw ConfigError(where + "a story begins with start");
+    if (!story.steps.empty() && step.kind == StepKind::start)
+      throw ConfigError(where + "a story starts once");
     story.steps.push_back(std::move(step));
   }
   if (story.steps.empty()) throw ConfigError(name + ": the story has no step");
   return story;
 }
 
-Story read_story(const std::filesystem::path& file) { return parse_story(read_text_file(file), file.string()); }
+Story read_story(const std::filesystem::path& file) {
+  return parse_story(read_text_file(file), file.string());
+}
 
 }  // namespace handsel

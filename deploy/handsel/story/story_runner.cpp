@@ -26,20 +26,25 @@ std::string seconds(Duration duration) {
 }
 
 bool does_something(StepKind kind) {
-  return kind != StepKind::wait && kind != StepKind::expect && kind != StepKind::never && kind != StepKind::listen;
+  return kind != StepKind::wait && kind != StepKind::expect && kind != StepKind::never &&
+         kind != StepKind::listen;
 }
 
-/// What also held before the disturbance: it must hold when its line is reached, a moment of it on the way is not enough.
+/// What also held before the disturbance: it must hold when its line is reached, a moment of it on
+/// the way is not enough.
 bool is_calm(const Condition& condition) {
   return condition.kind == ConditionKind::rest || condition.kind == ConditionKind::ready ||
          (condition.kind == ConditionKind::mode && condition.subject == name(Mode::normal));
 }
 
-std::string where(const Story& story, const StoryStep& step) { return story.name + ":" + std::to_string(step.line) + ": "; }
+std::string where(const Story& story, const StoryStep& step) {
+  return story.name + ":" + std::to_string(step.line) + ": ";
+}
 
 }  // namespace
 
-StoryRunner::StoryRunner(Story story, const StoryOptions& options) : story_(std::move(story)), options_(options) {}
+StoryRunner::StoryRunner(Story story, const StoryOptions& options)
+    : story_(std::move(story)), options_(options) {}
 StoryRunner::~StoryRunner() = default;
 
 TimePoint StoryRunner::now() const { return monotonic_now(); }
@@ -51,7 +56,8 @@ bool StoryRunner::run() {
     try {
       perform(i);
     } catch (const Unfulfilled& unfulfilled) {
-      std::fprintf(stderr, "FAILED      %s%s\n            %s\n", where(story_, step).c_str(), step.text.c_str(), unfulfilled.why.c_str());
+      std::fprintf(stderr, "FAILED      %s%s\n            %s\n", where(story_, step).c_str(),
+                   step.text.c_str(), unfulfilled.why.c_str());
       print_timeline();
       return false;
     }
@@ -63,7 +69,8 @@ bool StoryRunner::run() {
 void StoryRunner::perform(std::size_t index) {
   const StoryStep& step = story_.steps[index];
   if (step.at) listen_until(task_time_ + *step.at);
-  if (step.kind != StepKind::start && !system_) throw ConfigError(where(story_, step) + "nothing runs any more");
+  if (step.kind != StepKind::start && !system_)
+    throw ConfigError(where(story_, step) + "nothing runs any more");
   if (does_something(step.kind)) {
     origin_ = now();
     begin_watching(index);
@@ -85,7 +92,8 @@ void StoryRunner::perform(std::size_t index) {
     case StepKind::kill:
       for (std::size_t i = 1; i < step.words.size(); ++i) {
         const auto health = system_->session().snapshot().health.find(step.words[i]);
-        if (health != system_->session().snapshot().health.end()) killed_[step.words[i]] = health->second.sample.incarnation;
+        if (health != system_->session().snapshot().health.end())
+          killed_[step.words[i]] = health->second.sample.incarnation;
         signal_process(step.words[i], step.words[0] == "-15" ? SIGTERM : SIGKILL);
       }
       break;
@@ -114,20 +122,23 @@ void StoryRunner::perform(std::size_t index) {
 void StoryRunner::start(const StoryStep& step) {
   SystemOptions options{.domain = options_.domain, .scenario = step.words[0], .web_port = 0};
   for (std::size_t i = 1; i < step.words.size(); i += 2) {
-    if (i + 1 == step.words.size()) throw ConfigError(where(story_, step) + "\"" + step.words[i] + "\" needs a value");
+    if (i + 1 == step.words.size())
+      throw ConfigError(where(story_, step) + "\"" + step.words[i] + "\" needs a value");
     if (step.words[i] == "seed") {
       options.seed = std::strtoull(step.words[i + 1].c_str(), nullptr, 10);
     } else if (step.words[i] == "robot") {
       options.robot = step.words[i + 1];
     } else {
-      throw ConfigError(where(story_, step) + "\"" + step.words[i] + "\" is neither seed nor robot");
+      throw ConfigError(where(story_, step) + "\"" + step.words[i] +
+                        "\" is neither seed nor robot");
     }
   }
   if (options_.seed) options.seed = options_.seed;
   seed_ = options.seed;
   system_ = std::make_unique<System>(options);
   sim_ = system_->session().bus().advertise<SimControl>();
-  system_->session().observer().on_sample([this](const Snapshot& snapshot, TimePoint at) { on_snapshot(snapshot, at); });
+  system_->session().observer().on_sample(
+      [this](const Snapshot& snapshot, TimePoint at) { on_snapshot(snapshot, at); });
 }
 
 void StoryRunner::send_task(const StoryStep& step) {
@@ -135,7 +146,8 @@ void StoryRunner::send_task(const StoryStep& step) {
   task.set_kind(step.words[0] == "goto" ? "go_to" : step.words[0]);
   std::size_t i = 1;
   const bool of_a_place = task.kind() == "go_to" || task.kind() == "clear";
-  if (i < step.words.size()) (of_a_place ? task.set_surface(step.words[i]) : task.set_object(step.words[i])), ++i;
+  if (i < step.words.size())
+    (of_a_place ? task.set_surface(step.words[i]) : task.set_object(step.words[i])), ++i;
   for (; i + 1 < step.words.size(); i += 2) {
     if (step.words[i] == "to" || step.words[i] == "from") task.set_human(step.words[i + 1]);
     if (step.words[i] == "on") task.set_surface(step.words[i + 1]);
@@ -166,7 +178,8 @@ void StoryRunner::send_control(const StoryStep& step) {
   if (step.words.size() > 1) goal.value = std::atof(step.words[1].c_str()) / 100.0;
   if (!system_->session().send(goal)) throw Unfulfilled{"the supervisor does not listen"};
   if (goal.kind == TaskKind::cancel) return;  // the task that ends is the answer
-  // What a person asks for counts from its answer on: only then would it survive the death of the supervisor.
+  // What a person asks for counts from its answer on: only then would it survive the death of the
+  // supervisor.
   const auto& tasks = system_->session().snapshot().tasks;
   const auto answered = [&] {
     wake_due();
@@ -178,9 +191,11 @@ void StoryRunner::send_control(const StoryStep& step) {
 }
 
 void StoryRunner::send_sim(const StoryStep& step) {
-  const auto action = std::find(std::begin(kSimActionNames), std::end(kSimActionNames), step.words[0]);
+  const auto action =
+      std::find(std::begin(kSimActionNames), std::end(kSimActionNames), step.words[0]);
   if (action == std::end(kSimActionNames))
-    throw ConfigError(where(story_, step) + "\"" + step.words[0] + "\" is no action of the simulator");
+    throw ConfigError(where(story_, step) + "\"" + step.words[0] +
+                      "\" is no action of the simulator");
   SimControl control{.action = static_cast<SimAction>(action - std::begin(kSimActionNames))};
   for (std::size_t i = 1; i < step.words.size(); ++i) {
     char* end = nullptr;
@@ -197,8 +212,10 @@ void StoryRunner::send_sim(const StoryStep& step) {
 
 void StoryRunner::signal_process(const std::string& process, int signal) {
   const pid_t pid = system_->launcher().pid(process);
-  if (pid <= 0) throw ConfigError("the story names the process \"" + process + "\", which does not run");
-  if (signal == SIGCONT) std::erase_if(to_wake_, [&](const auto& entry) { return entry.second == process; });
+  if (pid <= 0)
+    throw ConfigError("the story names the process \"" + process + "\", which does not run");
+  if (signal == SIGCONT)
+    std::erase_if(to_wake_, [&](const auto& entry) { return entry.second == process; });
   ::kill(pid, signal);
 }
 
@@ -209,18 +226,20 @@ std::string StoryRunner::evidence(const Condition& condition) const {
       return ": " + std::to_string(ground_truth.limit_violations) + " set-points broke a limit";
     case ConditionKind::no_ssm_violations:
       return ": for " + std::to_string(ground_truth.ssm_violations) +
-             " ms the robot came nearer faster than the distance allowed, least distance " + std::to_string(ground_truth.min_separation) +
-             " m";
+             " ms the robot came nearer faster than the distance allowed, least distance " +
+             std::to_string(ground_truth.min_separation) + " m";
     default:
       return {};
   }
 }
 
 void StoryRunner::await(const StoryStep& step) {
-  const auto watch = std::find_if(watches_.begin(), watches_.end(), [&](const Watch& w) { return w.step == &step; });
+  const auto watch = std::find_if(watches_.begin(), watches_.end(),
+                                  [&](const Watch& w) { return w.step == &step; });
   const TimePoint deadline = origin_ + step.limit;
   if (step.limit == Duration::zero()) {
-    if (!holds(*step.condition, system_->session().snapshot(), now())) throw Unfulfilled{"it does not hold" + evidence(*step.condition)};
+    if (!holds(*step.condition, system_->session().snapshot(), now()))
+      throw Unfulfilled{"it does not hold" + evidence(*step.condition)};
     watch->first = now();
   } else {
     if (step.kind == StepKind::wait) watch->held = false;
@@ -231,14 +250,17 @@ void StoryRunner::await(const StoryStep& step) {
       return watch->held || now() > deadline + from_seconds(0.03);
     });
     if (!watch->held) throw Unfulfilled{"it did not hold within " + seconds(step.limit)};
-    if (watch->first > deadline) throw Unfulfilled{"it took " + seconds(watch->first - origin_) + " instead of " + seconds(step.limit)};
+    if (watch->first > deadline)
+      throw Unfulfilled{"it took " + seconds(watch->first - origin_) + " instead of " +
+                        seconds(step.limit)};
   }
-  std::fprintf(stderr, "%8.3f s  %s (after %s)\n", to_seconds(now() - story_begin_), step.text.c_str(),
-               seconds(watch->first - origin_).c_str());
+  std::fprintf(stderr, "%8.3f s  %s (after %s)\n", to_seconds(now() - story_begin_),
+               step.text.c_str(), seconds(watch->first - origin_).c_str());
 }
 
 void StoryRunner::refute(const StoryStep& step) {
-  const auto watch = std::find_if(watches_.begin(), watches_.end(), [&](const Watch& w) { return w.step == &step; });
+  const auto watch = std::find_if(watches_.begin(), watches_.end(),
+                                  [&](const Watch& w) { return w.step == &step; });
   const TimePoint deadline = origin_ + step.limit;
   system_->wait(std::max(deadline - now(), Duration::zero()), [&] {
     on_snapshot(system_->session().snapshot(), now());
@@ -246,7 +268,8 @@ void StoryRunner::refute(const StoryStep& step) {
     remind();
     return watch->held || now() > deadline;
   });
-  if (watch->held && watch->first <= deadline) throw Unfulfilled{"it happened after " + seconds(watch->first - origin_)};
+  if (watch->held && watch->first <= deadline)
+    throw Unfulfilled{"it happened after " + seconds(watch->first - origin_)};
   std::fprintf(stderr, "%8.3f s  %s\n", to_seconds(now() - story_begin_), step.text.c_str());
 }
 
@@ -256,15 +279,18 @@ void StoryRunner::stop() {
   const TimePoint begin = now();
   sim_.reset();
   system_.reset();
-  if (now() - begin > from_seconds(2.0)) throw Unfulfilled{"stopping took " + seconds(now() - begin)};
+  if (now() - begin > from_seconds(2.0))
+    throw Unfulfilled{"stopping took " + seconds(now() - begin)};
   for (const pid_t pid : pids) {
-    if (pid > 0 && ::kill(pid, 0) == 0) throw Unfulfilled{"process " + std::to_string(pid) + " is still there"};
+    if (pid > 0 && ::kill(pid, 0) == 0)
+      throw Unfulfilled{"process " + std::to_string(pid) + " is still there"};
   }
 }
 
 void StoryRunner::begin_watching(std::size_t index) {
   watches_.clear();
-  for (std::size_t i = index + 1; i < story_.steps.size() && !does_something(story_.steps[i].kind); ++i) {
+  for (std::size_t i = index + 1; i < story_.steps.size() && !does_something(story_.steps[i].kind);
+       ++i) {
     if (story_.steps[i].condition) watches_.push_back({.step = &story_.steps[i]});
   }
 }
@@ -280,7 +306,8 @@ void StoryRunner::on_snapshot(const Snapshot& snapshot, TimePoint at) {
 
 bool StoryRunner::task_is(const std::string& word, const Snapshot& snapshot) const {
   const auto task = snapshot.tasks.find(task_id_);
-  return task != snapshot.tasks.end() && (word == "done" ? "succeeded" : word) == name(task->second.state);
+  return task != snapshot.tasks.end() &&
+         (word == "done" ? "succeeded" : word) == name(task->second.state);
 }
 
 bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, TimePoint at) const {
@@ -297,9 +324,12 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
       for (const Mode mode : {Mode::slow, Mode::hold, Mode::stop, Mode::fault}) {
         if (subject == name(mode)) return execution.mode >= mode;
       }
-      throw ConfigError("\"" + subject + "\" is no mode; there are normal, slow, hold, stop and fault");
+      throw ConfigError("\"" + subject +
+                        "\" is no mode; there are normal, slow, hold, stop and fault");
     case ConditionKind::cause:
-      return fresh(snapshot.execution) && (", " + cause_names(execution.causes) + ", ").find(", " + subject + ", ") != std::string::npos;
+      return fresh(snapshot.execution) &&
+             (", " + cause_names(execution.causes) + ", ").find(", " + subject + ", ") !=
+                 std::string::npos;
     case ConditionKind::phase:
       return fresh(snapshot.action) && phase_text(snapshot.action.sample) == subject;
     case ConditionKind::carrier:
@@ -314,21 +344,26 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
       return fresh(snapshot.ground_truth) && !ground_truth.robot_moving;
     case ConditionKind::back: {
       const auto health = snapshot.health.find(subject);
-      if (health == snapshot.health.end() || !fresh(health->second) || health->second.sample.state != HealthState::ok) return false;
+      if (health == snapshot.health.end() || !fresh(health->second) ||
+          health->second.sample.state != HealthState::ok)
+        return false;
       const auto killed = killed_.find(subject);
       return killed == killed_.end() || killed->second != health->second.sample.incarnation;
     }
     case ConditionKind::degraded: {
       const auto health = snapshot.health.find(subject);
-      return health != snapshot.health.end() && fresh(health->second) && health->second.sample.state == HealthState::degraded;
+      return health != snapshot.health.end() && fresh(health->second) &&
+             health->second.sample.state == HealthState::degraded;
     }
     case ConditionKind::status_names: {
       const SystemStatus status = make_status(snapshot, at);
-      return std::any_of(status.troubles.begin(), status.troubles.end(),
-                         [&](const std::string& t) { return t.find(subject) != std::string::npos; });
+      return std::any_of(status.troubles.begin(), status.troubles.end(), [&](const std::string& t) {
+        return t.find(subject) != std::string::npos;
+      });
     }
     case ConditionKind::speed_below:
-      return fresh(snapshot.active) && std::abs(snapshot.active.sample.speed_factor) < condition.value;
+      return fresh(snapshot.active) &&
+             std::abs(snapshot.active.sample.speed_factor) < condition.value;
     case ConditionKind::no_limit_violations:
       return snapshot.ground_truth.ever && ground_truth.limit_violations == 0;
     case ConditionKind::no_ssm_violations:
@@ -344,7 +379,8 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
 }
 
 void StoryRunner::wake_due() {
-  for (auto due = to_wake_.begin(); due != to_wake_.end() && due->first <= now(); due = to_wake_.erase(due)) {
+  for (auto due = to_wake_.begin(); due != to_wake_.end() && due->first <= now();
+       due = to_wake_.erase(due)) {
     ::kill(system_->launcher().pid(due->second), SIGCONT);
   }
 }
@@ -359,8 +395,8 @@ void StoryRunner::listen_until(TimePoint until) {
 }
 
 void StoryRunner::print_timeline() const {
-  std::fprintf(stderr, "timeline of %s (seed %llu, domain %d):\n", story_.name.c_str(), static_cast<unsigned long long>(seed_),
-               options_.domain);
+  std::fprintf(stderr, "timeline of %s (seed %llu, domain %d):\n", story_.name.c_str(),
+               static_cast<unsigned long long>(seed_), options_.domain);
   if (!system_) return;
   for (const TimelineEvent& event : system_->session().observer().timeline()) {
     std::fprintf(stderr, "%8.3f s  %s\n", to_seconds(event.at - story_begin_), event.text.c_str());

@@ -23,7 +23,9 @@ namespace {
 constexpr std::size_t kKeptRuns = 20;
 
 std::string describe_exit(int status) {
-  if (WIFSIGNALED(status)) return "was ended by signal " + std::to_string(WTERMSIG(status)) + " (" + strsignal(WTERMSIG(status)) + ")";
+  if (WIFSIGNALED(status))
+    return "was ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
+           strsignal(WTERMSIG(status)) + ")";
   return "ended with exit code " + std::to_string(WEXITSTATUS(status));
 }
 
@@ -53,8 +55,11 @@ struct Launcher::Child {
 Launcher::Launcher(LauncherOptions options) : options_(std::move(options)) {
   std::error_code error;
   std::filesystem::create_directories(options_.log_directory, error);
-  if (error) throw MissingError("cannot make the log directory " + options_.log_directory.string() + ": " + error.message());
-  for (const ProcessSpec& spec : options_.processes) children_.push_back({.spec = spec, .backoff = Backoff(options_.backoff)});
+  if (error)
+    throw MissingError("cannot make the log directory " + options_.log_directory.string() + ": " +
+                       error.message());
+  for (const ProcessSpec& spec : options_.processes)
+    children_.push_back({.spec = spec, .backoff = Backoff(options_.backoff)});
   wake_fd_ = eventfd(0, EFD_CLOEXEC);
   thread_ = std::thread([this] { watch(); });
 }
@@ -71,7 +76,8 @@ void Launcher::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-// The parent-death signal follows the thread that forked: this thread starts every child and lives as long as they do.
+// The parent-death signal follows the thread that forked: this thread starts every child and lives
+// as long as they do.
 void Launcher::watch() {
   {
     std::lock_guard lock(mutex_);
@@ -113,7 +119,8 @@ void Launcher::start_due() {
 
 void Launcher::start(Child& child) {
   std::vector<char*> arguments{const_cast<char*>(child.spec.binary.c_str())};
-  for (const std::string& argument : child.spec.arguments) arguments.push_back(const_cast<char*>(argument.c_str()));
+  for (const std::string& argument : child.spec.arguments)
+    arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
   const std::string log = (options_.log_directory / (child.spec.name + ".log")).string();
   const pid_t launcher = getpid();
@@ -164,13 +171,15 @@ void Launcher::handle_exit(Child& child, int status) {
   if (code != 0) {
     const std::string said = last_line(options_.log_directory / (child.spec.name + ".log"));
     if (!ready_ && (code == 2 || code == 3))
-      return fail(child, child.spec.name + ": " + (said.empty() ? describe_exit(status) : said), code);
+      return fail(child, child.spec.name + ": " + (said.empty() ? describe_exit(status) : said),
+                  code);
     if (!said.empty()) child.why += " (" + said + ")";
   }
   child.due = now + wait;
   char when[32];
   std::snprintf(when, sizeof when, "%.1f s", to_seconds(wait));
-  say(child.spec.name + " " + child.why + "; restart " + std::to_string(child.starts) + " in " + when);
+  say(child.spec.name + " " + child.why + "; restart " + std::to_string(child.starts) + " in " +
+      when);
 }
 
 void Launcher::replace(const std::string& name, pid_t pid, const std::string& why) {
@@ -193,7 +202,8 @@ void Launcher::stop_children() {
   const TimePoint deadline = monotonic_now() + options_.stop_timeout;
   for (Child& child : children_) {
     if (child.pid < 0) continue;
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
     pollfd fd{child.pid_fd, POLLIN, 0};
     if (poll(&fd, 1, static_cast<int>(std::max<long>(left, 0))) == 0) {
       kill(child.pid, SIGKILL);
@@ -211,16 +221,20 @@ void Launcher::say(const std::string& sentence) const {
 
 std::vector<ProcessStatus> Launcher::processes() const {
   std::lock_guard lock(mutex_);
-  const auto wait_of = [](const Child& child) { return child.due ? std::max(Duration{}, *child.due - monotonic_now()) : Duration{}; };
+  const auto wait_of = [](const Child& child) {
+    return child.due ? std::max(Duration{}, *child.due - monotonic_now()) : Duration{};
+  };
   std::vector<ProcessStatus> result;
   for (const Child& child : children_)
-    result.push_back({child.spec.name, child.pid, std::max(child.starts - 1, 0), child.since, child.why, wait_of(child)});
+    result.push_back({child.spec.name, child.pid, std::max(child.starts - 1, 0), child.since,
+                      child.why, wait_of(child)});
   return result;
 }
 
 pid_t Launcher::pid(const std::string& name) const {
   std::lock_guard lock(mutex_);
-  const auto child = std::find_if(children_.begin(), children_.end(), [&](const Child& c) { return c.spec.name == name; });
+  const auto child = std::find_if(children_.begin(), children_.end(),
+                                  [&](const Child& c) { return c.spec.name == name; });
   return child == children_.end() ? -1 : child->pid;
 }
 
@@ -241,13 +255,15 @@ std::filesystem::path new_run_directory(int domain) {
   char when[32];
   const std::time_t now = std::time(nullptr);
   std::strftime(when, sizeof when, "%Y%m%d-%H%M%S", std::localtime(&now));
-  return root / (std::string(when) + "-domain" + std::to_string(domain) + "-" + std::to_string(getpid()));
+  return root /
+         (std::string(when) + "-domain" + std::to_string(domain) + "-" + std::to_string(getpid()));
 }
 
 namespace {
 
 std::filesystem::path lock_file(int domain) {
-  return std::filesystem::temp_directory_path() / ("handsel-domain-" + std::to_string(domain) + ".lock");
+  return std::filesystem::temp_directory_path() /
+         ("handsel-domain-" + std::to_string(domain) + ".lock");
 }
 
 }  // namespace

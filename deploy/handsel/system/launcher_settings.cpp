@@ -8,7 +8,8 @@ namespace handsel {
 LauncherSettings load_launcher_settings(const std::filesystem::path& file) {
   SettingsText text;
   const settings::LauncherSettings in = settings::read_launcher_settings(file, &text);
-  if (in.max_backoff < in.first_backoff) text.refuse("max_backoff", "must be at least first_backoff");
+  if (in.max_backoff < in.first_backoff)
+    text.refuse("max_backoff", "must be at least first_backoff");
   LauncherSettings out;
   out.liveness.hung_after = from_seconds(in.hung_after);
   out.liveness.silent_job_after = from_seconds(in.silent_job_after);

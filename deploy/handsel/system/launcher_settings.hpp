@@ -12,8 +12,8 @@ struct LauncherSettings {
   BackoffSettings backoff;    ///< between a death and the next start
 };
 
-/// Throws ConfigError "file:line:key: ..." for a value that is not a number or out of range. What the
-/// file leaves out has its default value.
+/// Throws ConfigError "file:line:key: ..." for a value that is not a number or out of range. What
+/// the file leaves out has its default value.
 LauncherSettings load_launcher_settings(const std::filesystem::path& file);
 
 }  // namespace handsel

@@ -29,13 +29,16 @@ Life Liveness::assess(const LifeSigns& signs) {
   else if (!stopped_since_)
     stopped_since_ = signs.now;
   const bool stopped = stopped_since_ && signs.now - *stopped_since_ >= settings_.hung_after;
-  const bool kept = signs.state == 't' || signs.state == 'D';  // to kill what a debugger or a device keeps is wrong, or does nothing
+  const bool kept =
+      signs.state == 't' ||
+      signs.state == 'D';  // to kill what a debugger or a device keeps is wrong, or does nothing
   const Duration silence = signs.now - last_.now;
-  const Duration idle = silence - growth(last_.own_delay, signs.own_delay) - growth(last_.main_delay, signs.main_delay);
-  job_hung_ =
-      beaten_ && job_since_ && !kept &&
-      signs.now - job_since_->now - growth(job_since_->own_delay, signs.own_delay) - growth(job_since_->total_delay, signs.total_delay) >
-          settings_.silent_job_after;
+  const Duration idle = silence - growth(last_.own_delay, signs.own_delay) -
+                        growth(last_.main_delay, signs.main_delay);
+  job_hung_ = beaten_ && job_since_ && !kept &&
+              signs.now - job_since_->now - growth(job_since_->own_delay, signs.own_delay) -
+                      growth(job_since_->total_delay, signs.total_delay) >
+                  settings_.silent_job_after;
   const Duration timeout = beaten_ ? settings_.hung_after : settings_.start_timeout;
   if (stopped || job_hung_ || (idle > timeout && !kept && signs.state != 'T')) return Life::hung;
   if (!beaten_) return Life::starting;

@@ -39,7 +39,8 @@ struct LifeSigns {
 class Liveness {
  public:
   /// The process was started at `signs.now`.
-  Liveness(const LivenessSettings& settings, const LifeSigns& signs) : settings_(settings), last_(signs) {}
+  Liveness(const LivenessSettings& settings, const LifeSigns& signs)
+      : settings_(settings), last_(signs) {}
 
   /// A heartbeat arrived; `job_silent`: it says that a job gives no sign of life.
   void beat(TimePoint at, bool job_silent);

@@ -39,9 +39,11 @@ RunningProcess describe(pid_t pid) {
   }
   out.name = program;
   std::istringstream arguments(content(folder / "cmdline"));
-  for (std::string argument; std::getline(arguments, argument, '\0');) out.arguments.push_back(argument);
+  for (std::string argument; std::getline(arguments, argument, '\0');)
+    out.arguments.push_back(argument);
   const std::string stat = content(folder / "stat");
-  if (const auto at = stat.rfind(") "); at != std::string::npos && at + 2 < stat.size()) out.state = stat[at + 2];
+  if (const auto at = stat.rfind(") "); at != std::string::npos && at + 2 < stat.size())
+    out.state = stat[at + 2];
   return out;
 }
 
@@ -58,7 +60,8 @@ std::set<std::string> inodes_of(const std::string& table, int port) {
       const std::vector<std::string> row{std::istream_iterator<std::string>(words), {}};
       if (row.size() < 10 || row[1].find(':') == std::string::npos) continue;
       if (table == "tcp" && row[3] != kListening) continue;
-      if (std::strtol(row[1].substr(row[1].find(':') + 1).c_str(), nullptr, 16) == port) inodes.insert(row[9]);
+      if (std::strtol(row[1].substr(row[1].find(':') + 1).c_str(), nullptr, 16) == port)
+        inodes.insert(row[9]);
     }
   }
   return inodes;
@@ -77,9 +80,11 @@ std::string port_holder(const std::string& table, int port) {
   if (inodes.empty()) return {};
   for (const pid_t pid : all_pids()) {
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator("/proc/" + std::to_string(pid) + "/fd", error)) {
+    for (const auto& entry :
+         fs::directory_iterator("/proc/" + std::to_string(pid) + "/fd", error)) {
       const std::string target = fs::read_symlink(entry.path(), error);
-      if (target.rfind("socket:[", 0) != 0 || !inodes.contains(target.substr(8, target.size() - 9))) continue;
+      if (target.rfind("socket:[", 0) != 0 || !inodes.contains(target.substr(8, target.size() - 9)))
+        continue;
       const std::string name = describe(pid).name;
       return (name.empty() ? "a process" : name) + " (pid " + std::to_string(pid) + ")";
     }

@@ -14,7 +14,7 @@ struct RunningProcess {
   std::string name;                    ///< file name of its program, without " (deleted)"
   std::vector<std::string> arguments;  ///< with argv[0]
   char state{'?'};                     ///< as in /proc/<pid>/stat: R, S, T (stopped), Z ...
-  bool replaced{false};                ///< its program file is no longer the one it was started from
+  bool replaced{false};  ///< its program file is no longer the one it was started from
 };
 
 /// Returns every process whose entry in /proc is readable.

@@ -8,14 +8,17 @@ namespace {
 constexpr std::size_t kMaxTimeline = 20000;
 constexpr std::size_t kMaxTasks = 4096, kMaxComponents = 64;
 
-std::string with_reason(std::string text, const std::string& reason) { return reason.empty() ? text : text + ": " + reason; }
+std::string with_reason(std::string text, const std::string& reason) {
+  return reason.empty() ? text : text + ": " + reason;
+}
 
 }  // namespace
 
 std::string cause_names(std::uint32_t causes) {
   std::string names;
   for (std::uint8_t value = 1; value < std::size(kCauseNames); ++value) {
-    if (causes & (1u << value)) names += (names.empty() ? "" : ", ") + std::string(name(static_cast<Cause>(value)));
+    if (causes & (1u << value))
+      names += (names.empty() ? "" : ", ") + std::string(name(static_cast<Cause>(value)));
   }
   return names;
 }
@@ -35,19 +38,24 @@ Observer::Observer(Bus& bus) {
     seen.arrival = at;
   };
   watch<ComponentHealth>(bus, [this, keep](const ComponentHealth& health, TimePoint at) {
-    if (snapshot_.health.size() >= kMaxComponents && !snapshot_.health.contains(health.component)) return;
+    if (snapshot_.health.size() >= kMaxComponents && !snapshot_.health.contains(health.component))
+      return;
     auto& seen = snapshot_.health[health.component];
     const bool is_new = !seen.ever || seen.sample.incarnation != health.incarnation;
     if (is_new || seen.sample.state != health.state || seen.sample.reason != health.reason) {
-      note(at, with_reason(health.component + " " + (is_new && seen.ever && health.state != HealthState::stopping ? "back, " : "") +
-                               name(health.state),
-                           health.reason));
+      note(at,
+           with_reason(
+               health.component + " " +
+                   (is_new && seen.ever && health.state != HealthState::stopping ? "back, " : "") +
+                   name(health.state),
+               health.reason));
     }
     keep(seen, health, at);
   });
   watch<TaskStatus>(bus, [this, keep](const TaskStatus& task, TimePoint at) {
     const auto& seen = snapshot_.task;
-    if (!seen.ever || seen.sample.id != task.id || seen.sample.state != task.state || seen.sample.step != task.step) {
+    if (!seen.ever || seen.sample.id != task.id || seen.sample.state != task.state ||
+        seen.sample.step != task.step) {
       const std::string step = task.step < task.plan.size() ? ", step " + task.plan[task.step] : "";
       note(at, with_reason("task " + std::string(name(task.state)) + step, task.reason));
     }
@@ -57,31 +65,41 @@ Observer::Observer(Bus& bus) {
   });
   watch<ActionStatus>(bus, [this, keep](const ActionStatus& action, TimePoint at) {
     const auto& seen = snapshot_.action;
-    if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase || seen.sample.state != action.state) {
+    if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase ||
+        seen.sample.state != action.state) {
       const std::string phase = action.phase == ActionPhase::none ? "" : " " + phase_text(action);
-      if (action.state != ActionState::idle) note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
+      if (action.state != ActionState::idle)
+        note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
     }
     if (!action.human.empty()) snapshot_.partner = action.human;
     keep(snapshot_.action, action, at);
   });
   watch<ExecutionStatus>(bus, [this, keep](const ExecutionStatus& execution, TimePoint at) {
     const auto& seen = snapshot_.execution;
-    if (!seen.ever || seen.sample.mode != execution.mode || seen.sample.causes != execution.causes) {
+    if (!seen.ever || seen.sample.mode != execution.mode ||
+        seen.sample.causes != execution.causes) {
       const std::string causes = cause_names(execution.causes);
-      note(at, "mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " (" + causes + ")"));
+      note(at, "mode " + std::string(name(execution.mode)) +
+                   (causes.empty() ? "" : " (" + causes + ")"));
     }
     keep(snapshot_.execution, execution, at);
   });
   watch<SafetyState>(bus, [this, keep](const SafetyState& safety, TimePoint at) {
     const auto& seen = snapshot_.safety;
     if (!seen.ever || seen.sample.reason != safety.reason)
-      if (seen.ever || !safety.reason.empty()) note(at, safety.reason.empty() ? "released by a person" : "held: " + safety.reason);
+      if (seen.ever || !safety.reason.empty())
+        note(at, safety.reason.empty() ? "released by a person" : "held: " + safety.reason);
     keep(snapshot_.safety, safety, at);
   });
-  watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) { keep(snapshot_.advice, advice, at); });
-  watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) { keep(snapshot_.attention, state, at); });
-  watch<TrajectoryForecast>(bus,
-                            [this, keep](const TrajectoryForecast& forecast, TimePoint at) { keep(snapshot_.forecast, forecast, at); });
+  watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) {
+    keep(snapshot_.advice, advice, at);
+  });
+  watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) {
+    keep(snapshot_.attention, state, at);
+  });
+  watch<TrajectoryForecast>(bus, [this, keep](const TrajectoryForecast& forecast, TimePoint at) {
+    keep(snapshot_.forecast, forecast, at);
+  });
   watch<ActiveTrajectory>(bus, [this](const ActiveTrajectory& active, TimePoint at) {
     snapshot_.active.ever = true;
     snapshot_.active.arrival = at;
@@ -92,12 +110,16 @@ Observer::Observer(Bus& bus) {
   watch<GroundTruth>(bus, [this, keep](const GroundTruth& ground_truth, TimePoint at) {
     const auto& seen = snapshot_.ground_truth;
     if (!seen.ever || seen.sample.carrier != ground_truth.carrier)
-      note(at, ground_truth.object + " carried by " + (ground_truth.carrier.empty() ? "nobody" : ground_truth.carrier));
+      note(at, ground_truth.object + " carried by " +
+                   (ground_truth.carrier.empty() ? "nobody" : ground_truth.carrier));
     if (ground_truth.hold == "constraint" && !(seen.ever && seen.sample.hold == ground_truth.hold))
       note(at, ground_truth.object + " held by the grasp constraint more than by contact");
-    if (ground_truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
-    if (ground_truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, ground_truth.object + " dropped");
-    if (ground_truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");
+    if (ground_truth.handover_done && !(seen.ever && seen.sample.handover_done))
+      note(at, "handover done");
+    if (ground_truth.dropped && !(seen.ever && seen.sample.dropped))
+      note(at, ground_truth.object + " dropped");
+    if (ground_truth.limit_violations && !(seen.ever && seen.sample.limit_violations))
+      note(at, "a set-point broke a limit");
     keep(snapshot_.ground_truth, ground_truth, at);
   });
 }

@@ -28,14 +28,14 @@ struct Snapshot {
   std::map<std::uint64_t, TaskStatus> tasks;            ///< by task id
   Seen<TaskStatus> task;                                ///< newest of any id
   Seen<ActionStatus> action;                            ///< of the manipulation planner
-  std::string partner;                                  ///< the person the newest action that concerned one was about
-  Seen<ExecutionStatus> execution;                      ///< of the trajectory controller
-  Seen<SafetyState> safety;                             ///< of the supervisor
-  Seen<AttentionAdvice> advice;                         ///< speed factor and gaze that attention advises
-  Seen<AttentionState> attention;                       ///< behaviours and their clocks
-  Seen<TrajectoryForecast> forecast;                    ///< of the running trajectory
-  Seen<ActiveTrajectory> active;                        ///< without the trajectory itself
-  Seen<GroundTruth> ground_truth;                       ///< of the simulator; never seen on a real robot
+  std::string partner;                ///< the person the newest action that concerned one was about
+  Seen<ExecutionStatus> execution;    ///< of the trajectory controller
+  Seen<SafetyState> safety;           ///< of the supervisor
+  Seen<AttentionAdvice> advice;       ///< speed factor and gaze that attention advises
+  Seen<AttentionState> attention;     ///< behaviours and their clocks
+  Seen<TrajectoryForecast> forecast;  ///< of the running trajectory
+  Seen<ActiveTrajectory> active;      ///< without the trajectory itself
+  Seen<GroundTruth> ground_truth;     ///< of the simulator; never seen on a real robot
 };
 
 /// A change worth reporting, e.g. "mode hold".
@@ -59,9 +59,13 @@ class Observer {
   /// Returns the newest samples; changes when the bus delivers.
   const Snapshot& snapshot() const { return snapshot_; }
   /// Called after every sample, with the time it came.
-  void on_sample(std::function<void(const Snapshot&, TimePoint)> callback) { on_sample_ = std::move(callback); }
+  void on_sample(std::function<void(const Snapshot&, TimePoint)> callback) {
+    on_sample_ = std::move(callback);
+  }
   /// Called with every event of the timeline as it happens.
-  void on_event(std::function<void(const TimelineEvent&)> callback) { on_event_ = std::move(callback); }
+  void on_event(std::function<void(const TimelineEvent&)> callback) {
+    on_event_ = std::move(callback);
+  }
   /// Adds an event of the listener's own, e.g. what a story did.
   void note(TimePoint at, const std::string& text);
   /// In order of time, at most 20 000.

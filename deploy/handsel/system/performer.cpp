@@ -9,10 +9,12 @@ namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr Duration kResend = std::chrono::seconds(1);
-constexpr Duration kOraclePatience = std::chrono::seconds(5);  // the oracle wants the person to carry it alone for 1 s
+constexpr Duration kOraclePatience =
+    std::chrono::seconds(5);  // the oracle wants the person to carry it alone for 1 s
 constexpr double kDefaultTimeout = 60.0;
-constexpr std::array kKinds = {TaskKind::give, TaskKind::receive, TaskKind::pick, TaskKind::place, TaskKind::clear,
-                               TaskKind::tidy, TaskKind::regrasp, TaskKind::lift, TaskKind::go_to};
+constexpr std::array kKinds = {TaskKind::give,    TaskKind::receive, TaskKind::pick,
+                               TaskKind::place,   TaskKind::clear,   TaskKind::tidy,
+                               TaskKind::regrasp, TaskKind::lift,    TaskKind::go_to};
 
 }  // namespace
 
@@ -20,7 +22,8 @@ std::string describe(const TaskGoal& goal) {
   std::string text = name(goal.kind);
   if (!goal.object.empty()) text += " " + goal.object;
   if (!goal.surface.empty()) text += " " + goal.surface;
-  if (!goal.human.empty()) text += (goal.kind == TaskKind::receive ? " from " : " to ") + goal.human;
+  if (!goal.human.empty())
+    text += (goal.kind == TaskKind::receive ? " from " : " to ") + goal.human;
   if (!goal.onto.empty()) text += " onto " + goal.onto;
   return text;
 }
@@ -28,27 +31,41 @@ std::string describe(const TaskGoal& goal) {
 TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id) {
   for (const TaskKind kind : kKinds) {
     if (task.kind() == name(kind))
-      return {.id = id, .kind = kind, .object = task.object(), .human = task.human(), .surface = task.surface()};
+      return {.id = id,
+              .kind = kind,
+              .object = task.object(),
+              .human = task.human(),
+              .surface = task.surface()};
   }
-  throw ConfigError("a task of the scenario has the kind \"" + task.kind() +
-                    "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift or go_to");
+  throw ConfigError(
+      "a task of the scenario has the kind \"" + task.kind() +
+      "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift or go_to");
 }
 
 std::vector<TaskGoal> scenario_goals(const config::Scenario& scenario) {
-  if (scenario.tasks().empty()) throw ConfigError("the scenario " + scenario.name() + " has no tasks to perform");
+  if (scenario.tasks().empty())
+    throw ConfigError("the scenario " + scenario.name() + " has no tasks to perform");
   std::vector<TaskGoal> goals;
-  for (const config::TaskDescription& task : scenario.tasks()) goals.push_back(make_goal(task, goals.size() + 1));
+  for (const config::TaskDescription& task : scenario.tasks())
+    goals.push_back(make_goal(task, goals.size() + 1));
   return goals;
 }
 
 bool is_over(TaskState state) {
-  return state == TaskState::succeeded || state == TaskState::failed || state == TaskState::cancelled || state == TaskState::refused;
+  return state == TaskState::succeeded || state == TaskState::failed ||
+         state == TaskState::cancelled || state == TaskState::refused;
 }
 
-Performer::Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout, std::function<bool()> ready)
-    : bus_(bus), observer_(observer), publisher_(bus.advertise<TaskGoal>()), ready_(std::move(ready)) {
+Performer::Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout,
+                     std::function<bool()> ready)
+    : bus_(bus),
+      observer_(observer),
+      publisher_(bus.advertise<TaskGoal>()),
+      ready_(std::move(ready)) {
   goals_ = scenario_goals(scenario);
-  timeout_ = from_seconds(timeout > 0 ? timeout : scenario.timeout() > 0 ? scenario.timeout() : kDefaultTimeout);
+  timeout_ = from_seconds(timeout > 0              ? timeout
+                          : scenario.timeout() > 0 ? scenario.timeout()
+                                                   : kDefaultTimeout);
   bus.every(kTick, [this](TimePoint now) { tick(now); });
 }
 
@@ -77,7 +94,8 @@ void Performer::tick(TimePoint now) {
   }
   if (phase_ != Phase::finished && now - begin_ > timeout_) {
     outcomes_.back().timed_out = true;
-    outcomes_.back().reason = "not done after " + std::to_string(static_cast<int>(to_seconds(timeout_))) + " s";
+    outcomes_.back().reason =
+        "not done after " + std::to_string(static_cast<int>(to_seconds(timeout_))) + " s";
     end_ = now;
     outcomes_.back().duration = to_seconds(now - task_begin_);
     phase_ = Phase::finished;
@@ -85,7 +103,8 @@ void Performer::tick(TimePoint now) {
 }
 
 void Performer::begin_task(TimePoint now) {
-  outcomes_.push_back({.task = describe(goals_[current_]), .state = "sent", .started = to_seconds(now - begin_)});
+  outcomes_.push_back(
+      {.task = describe(goals_[current_]), .state = "sent", .started = to_seconds(now - begin_)});
   task_begin_ = now;
   last_sent_ = now;
   publisher_->publish(goals_[current_]);
@@ -95,15 +114,18 @@ void Performer::begin_task(TimePoint now) {
 void Performer::note_step(const TaskStatus& status, TimePoint now) {
   std::vector<StepOutcome>& steps = outcomes_.back().steps;
   const double at = to_seconds(now - begin_);
-  const std::string step = status.step < status.plan.size() ? status.plan[status.step] : std::string();
+  const std::string step =
+      status.step < status.plan.size() ? status.plan[status.step] : std::string();
   if (!steps.empty()) steps.back().duration = at - steps.back().started;
-  if (!step.empty() && !is_over(status.state) && (steps.empty() || steps.back().step != step)) steps.push_back({step, at, 0.0});
+  if (!step.empty() && !is_over(status.state) && (steps.empty() || steps.back().step != step))
+    steps.push_back({step, at, 0.0});
 }
 
 void Performer::follow(TimePoint now) {
   const auto& tasks = observer_.snapshot().tasks;
   const auto found = tasks.find(goals_[current_].id);
-  // Until a supervisor answers; and one that was started anew knows nothing of the task, and takes it up where the world is.
+  // Until a supervisor answers; and one that was started anew knows nothing of the task, and takes
+  // it up where the world is.
   const Seen<TaskStatus>& newest = observer_.snapshot().task;
   const bool silent = found == tasks.end() || now - newest.arrival >= kTaskSilence;
   if (silent && now - last_sent_ >= kResend) {
@@ -115,7 +137,8 @@ void Performer::follow(TimePoint now) {
   note_step(status, now);
   TaskOutcome& outcome = outcomes_.back();
   const Seen<GroundTruth>& ground_truth = observer_.snapshot().ground_truth;
-  if (outcome.first_motion < 0 && ground_truth.arrival > task_begin_ && ground_truth.sample.robot_moving)
+  if (outcome.first_motion < 0 && ground_truth.arrival > task_begin_ &&
+      ground_truth.sample.robot_moving)
     outcome.first_motion = to_seconds(ground_truth.arrival - task_begin_);
   outcome.state = name(status.state);
   outcome.reason = status.reason;
@@ -136,20 +159,23 @@ void Performer::verify(TimePoint now) {
     return conclude(now);
   }
   const Seen<GroundTruth>& ground_truth = observer_.snapshot().ground_truth;
-  const bool oracle_says =
-      ground_truth.ever && (goal.object.empty() || ground_truth.sample.object == goal.object) && ground_truth.sample.handover_done;
+  const bool oracle_says = ground_truth.ever &&
+                           (goal.object.empty() || ground_truth.sample.object == goal.object) &&
+                           ground_truth.sample.handover_done;
   if (oracle_says) {
     outcome.success = true;
     return conclude(now);
   }
   if (supervisor_says && now - verify_begin_ < kOraclePatience) return;
   if (supervisor_says) {
-    outcome.reason = !ground_truth.ever            ? "no word from the simulator's oracle"
-                     : ground_truth.sample.dropped ? goal.object + " was dropped"
-                     : ground_truth.sample.object != goal.object
-                         ? "the simulator's oracle watches " + ground_truth.sample.object + ", not " + goal.object
-                         : "the simulator's oracle saw no handover: " + goal.object + " is with " +
-                               (ground_truth.sample.carrier.empty() ? "nobody" : ground_truth.sample.carrier);
+    outcome.reason =
+        !ground_truth.ever            ? "no word from the simulator's oracle"
+        : ground_truth.sample.dropped ? goal.object + " was dropped"
+        : ground_truth.sample.object != goal.object
+            ? "the simulator's oracle watches " + ground_truth.sample.object + ", not " +
+                  goal.object
+            : "the simulator's oracle saw no handover: " + goal.object + " is with " +
+                  (ground_truth.sample.carrier.empty() ? "nobody" : ground_truth.sample.carrier);
   }
   conclude(now);
 }

@@ -38,8 +38,8 @@ struct TaskOutcome {
   bool timed_out{};  ///< it was not done within the time of all tasks
   /// As the supervisor said last; reason also when the oracle disagrees.
   std::string state, reason;
-  double started{}, duration{};    ///< [s]
-  double first_motion{-1};         ///< after the goal was given the robot moved first [s]; negative: never
+  double started{}, duration{};  ///< [s]
+  double first_motion{-1};  ///< after the goal was given the robot moved first [s]; negative: never
   std::vector<StepOutcome> steps;  ///< those that began, in order
   Refusals refusals;               ///< as the supervisor reported last
 };
@@ -47,7 +47,8 @@ struct TaskOutcome {
 class Performer {
  public:
   /// Begins as soon as `ready` holds. Throws as scenario_goals().
-  Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout, std::function<bool()> ready);
+  Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout,
+            std::function<bool()> ready);
 
   /// Returns true after the last task, a failed one, the timeout or abort().
   bool finished() const { return phase_ == Phase::finished; }

@@ -31,7 +31,8 @@ Duration ThreadDelay::update(pid_t pid) {
   for (; !error && entry != end; entry.increment(error)) {
     const pid_t thread = std::atoi(entry->path().filename().c_str());
     const Duration delay = now[thread] = run_delay(entry->path() / "schedstat");
-    if (const auto before = before_.find(thread); before != before_.end()) longest = std::max(longest, delay - before->second);
+    if (const auto before = before_.find(thread); before != before_.end())
+      longest = std::max(longest, delay - before->second);
   }
   before_ = std::move(now);
   return total_ += longest;

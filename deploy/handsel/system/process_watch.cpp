@@ -24,14 +24,19 @@ std::string seconds(Duration time) {
 }  // namespace
 
 ProcessWatch::ProcessWatch(Bus& bus, Launcher& launcher, const LivenessSettings& settings)
-    : launcher_(launcher), settings_(settings), out_(bus.advertise<ComponentHealth>()), last_check_(monotonic_now()) {
-  bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt&) { on_health(health); });
+    : launcher_(launcher),
+      settings_(settings),
+      out_(bus.advertise<ComponentHealth>()),
+      last_check_(monotonic_now()) {
+  bus.subscribe<ComponentHealth>(
+      [this](const ComponentHealth& health, const Receipt&) { on_health(health); });
   bus.every(kCheckPeriod, [this](TimePoint) { check(); });
 }
 
 void ProcessWatch::on_health(const ComponentHealth& health) {
   const auto watched = watched_.find(health.component);
-  if (watched == watched_.end() || static_cast<std::uint32_t>(watched->second.pid) != health.pid) return;
+  if (watched == watched_.end() || static_cast<std::uint32_t>(watched->second.pid) != health.pid)
+    return;
   Watched& process = watched->second;
   process.last_beat = monotonic_now();
   process.job_silent = health.job_silent;
@@ -50,7 +55,8 @@ bool ProcessWatch::majority_is_silent(TimePoint now) const {
   return expected > 1 && 2 * beating < expected;
 }
 
-/// Adds the time in which heartbeats waited because this process had no processor, or received none.
+/// Adds the time in which heartbeats waited because this process had no processor, or received
+/// none.
 void ProcessWatch::measure_own_delay(TimePoint now) {
   const Duration passed = now - last_check_, threads = own_threads_.update(getpid());
   const Duration late = std::max({Duration{}, passed - kCheckPeriod, threads - own_threads_delay_});
@@ -74,7 +80,10 @@ void ProcessWatch::check() {
 }
 
 void ProcessWatch::assess(const ProcessStatus& process, TimePoint now) {
-  LifeSigns signs{.now = now, .state = process_state(process.pid), .main_delay = main_thread_delay(process.pid), .own_delay = own_delay_};
+  LifeSigns signs{.now = now,
+                  .state = process_state(process.pid),
+                  .main_delay = main_thread_delay(process.pid),
+                  .own_delay = own_delay_};
   const auto known = watched_.find(process.name);
   if (known == watched_.end() || known->second.pid != process.pid) {
     watched_.insert_or_assign(process.name, Watched{process.pid, Liveness(settings_, signs)});
@@ -85,10 +94,12 @@ void ProcessWatch::assess(const ProcessStatus& process, TimePoint now) {
   if (watched.job_silent) watched.total_delay = watched.threads.update(process.pid);
   signs.total_delay = watched.total_delay;
   if (watched.liveness.assess(signs) != Life::hung) return;
-  const std::string why = watched.liveness.job_hung()
-                              ? "a job has given no sign of life for more than " + seconds(settings_.silent_job_after)
-                          : signs.state == 'T' ? "stopped and without heartbeat for more than " + seconds(settings_.hung_after)
-                                               : "without heartbeat for more than " + seconds(settings_.hung_after);
+  const std::string why =
+      watched.liveness.job_hung()
+          ? "a job has given no sign of life for more than " + seconds(settings_.silent_job_after)
+      : signs.state == 'T'
+          ? "stopped and without heartbeat for more than " + seconds(settings_.hung_after)
+          : "without heartbeat for more than " + seconds(settings_.hung_after);
   launcher_.replace(process.name, process.pid, "was hung, " + why);
 }
 
@@ -97,7 +108,8 @@ void ProcessWatch::speak_for(const ProcessStatus& process) {
   ComponentHealth health;
   health.component = process.name;
   health.state = HealthState::stopping;
-  health.reason = "restart " + std::to_string(process.restarts + 1) + " in " + seconds(process.wait) + "; it " + process.why;
+  health.reason = "restart " + std::to_string(process.restarts + 1) + " in " +
+                  seconds(process.wait) + "; it " + process.why;
   if (health.reason.size() > kLongest) health.reason.resize(kLongest);
   health.uptime = 0.0;
   out_->publish(health);

@@ -15,7 +15,9 @@
 namespace handsel {
 
 // The safety lane: observation, occupied volume, guard, set-points, robot side.
-bool is_realtime(std::string_view process) { return process == "sim" || process == "spark" || process == "trajectory_controller"; }
+bool is_realtime(std::string_view process) {
+  return process == "sim" || process == "spark" || process == "trajectory_controller";
+}
 
 namespace {
 
@@ -32,15 +34,17 @@ void require_processes(const std::vector<std::string>& names) {
   }
 }
 
-/// Returns whether the simulator gives the pace unless the environment says otherwise: not where a source from outside, whose time does
-/// not stand still, is read.
+/// Returns whether the simulator gives the pace unless the environment says otherwise: not where a
+/// source from outside, whose time does not stand still, is read.
 bool is_paced_by_simulator(const SystemOptions& options) {
   if (std::getenv("HANDSEL_SIM_TIME") != nullptr) return false;  // the processes read it themselves
   if (!options.whole() || options.ros2) return false;
   config::Scenario scenario;
   load_text_proto(scenario_file(options.scenario), scenario);
   return std::none_of(scenario.people().begin(), scenario.people().end(),
-                      [](const config::PersonDescription& person) { return person.behaviour() == config::EXTERNAL; });
+                      [](const config::PersonDescription& person) {
+                        return person.behaviour() == config::EXTERNAL;
+                      });
 }
 
 }  // namespace
@@ -60,12 +64,15 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   for (const std::string& process : processes) {
     const std::filesystem::path binary = folder / ("handsel_" + process);
     if (!std::filesystem::exists(binary))
-      throw MissingError("the process " + binary.string() + " is not there; build it with ./run --build-only");
+      throw MissingError("the process " + binary.string() +
+                         " is not there; build it with ./run --build-only");
     ProcessSpec spec{process,
                      binary,
-                     {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
+                     {"--domain", std::to_string(options.domain), "--scenario", options.scenario,
+                      "--seed", std::to_string(options.seed)}};
     spec.arguments.insert(spec.arguments.end(), {"--robot", robot});
-    if (process == "supervisor") spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
+    if (process == "supervisor")
+      spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
     if (sim_time) spec.arguments.emplace_back("--sim-time");
     specs.push_back(std::move(spec));
@@ -75,11 +82,14 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
 }
 
 std::filesystem::path state_folder(const SystemOptions& options) {
-  const bool here = !has(options.without, "supervisor") && (options.only.empty() || has(options.only, "supervisor"));
+  const bool here = !has(options.without, "supervisor") &&
+                    (options.only.empty() || has(options.only, "supervisor"));
   return here ? domain_state_directory(options.domain) : std::filesystem::path{};
 }
 
-std::string robot_of(const SystemOptions& options) { return options.robot.empty() ? scenario_robot(options.scenario) : options.robot; }
+std::string robot_of(const SystemOptions& options) {
+  return options.robot.empty() ? scenario_robot(options.scenario) : options.robot;
+}
 
 void check_system(const SystemOptions& options) {
   config::Scenario scenario;
@@ -89,7 +99,9 @@ void check_system(const SystemOptions& options) {
   for (const auto& [joint, position] : scenario.start()) {
     bool known = false;
     for (const Axis& axis : model.axes()) known = known || axis.name == joint;
-    if (!known) throw ConfigError(file.string() + ": start names the joint \"" + joint + "\", which " + model.name() + " does not have");
+    if (!known)
+      throw ConfigError(file.string() + ": start names the joint \"" + joint + "\", which " +
+                        model.name() + " does not have");
   }
   std::set<std::string> models;
   for (const config::ObjectPlacement& object : scenario.objects()) models.insert(object.model());

@@ -12,9 +12,10 @@ namespace handsel {
 
 /// Every process of the running system: the boxes of the architecture and the simulator. The only
 /// list of them.
-inline constexpr std::array kProcesses = {"sim",        "spark",        "costmap",       "collision_checker",  "trajectory_controller",
-                                          "attention",  "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner",
-                                          "supervisor", "bridge"};
+inline constexpr std::array kProcesses = {
+    "sim",        "spark",        "costmap",       "collision_checker",  "trajectory_controller",
+    "attention",  "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner",
+    "supervisor", "bridge"};
 
 /// A process to start and keep alive.
 struct ProcessSpec {
@@ -25,13 +26,13 @@ struct ProcessSpec {
 
 /// What the whole system is started with.
 struct SystemOptions {
-  int domain{0};                             ///< DDS domain, 0..230
-  std::string robot;                         ///< empty: the scenario's
-  std::string scenario{"give_mug"};          ///< name or file
-  std::uint64_t seed{1};                     ///< of the simulation
-  bool ros2{false};                          ///< with the process that connects to ROS 2
-  int web_port{-1};                          ///< of the bridge; 0: any free one; -1: as its settings say
-  std::string record;                        ///< file to record into; empty: none
+  int domain{0};                     ///< DDS domain, 0..230
+  std::string robot;                 ///< empty: the scenario's
+  std::string scenario{"give_mug"};  ///< name or file
+  std::uint64_t seed{1};             ///< of the simulation
+  bool ros2{false};                  ///< with the process that connects to ROS 2
+  int web_port{-1};                  ///< of the bridge; 0: any free one; -1: as its settings say
+  std::string record;                ///< file to record into; empty: none
   std::map<std::string, std::string> notes;  ///< of a study, for the record's metadata
   /// Of kProcesses, when the others run on another host; both empty: all.
   std::vector<std::string> only, without;

@@ -35,7 +35,8 @@ Session::Session(int domain)
       observer_(bus_),
       goals_(bus_.advertise<TaskGoal>()),
       next_task_(std::random_device{}()) {
-  bus_.every(from_seconds(0.02), [](TimePoint) {});  // so that conditions are asked again when nothing arrives
+  bus_.every(from_seconds(0.02),
+             [](TimePoint) {});  // so that conditions are asked again when nothing arrives
 }
 
 bool Session::wait(Duration limit, const std::function<bool()>& done) {
@@ -46,8 +47,8 @@ bool Session::wait(Duration limit, const std::function<bool()>& done) {
 
 void Session::require_system() {
   if (!wait(from_seconds(1.0), [this] { return !snapshot().health.empty(); })) {
-    throw MissingError("no Handsel system runs on DDS domain " + std::to_string(domain_) + "; start one with `handsel up --domain " +
-                       std::to_string(domain_) + "`");
+    throw MissingError("no Handsel system runs on DDS domain " + std::to_string(domain_) +
+                       "; start one with `handsel up --domain " + std::to_string(domain_) + "`");
   }
 }
 

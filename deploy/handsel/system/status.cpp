@@ -16,8 +16,11 @@ ProcessLine line_of(const std::string& component, const Snapshot& snapshot, Time
   const auto found = snapshot.health.find(component);
   if (found == snapshot.health.end()) return line;
   const ComponentHealth& health = found->second.sample;
-  const bool not_running = health.state == HealthState::stopping && health.pid == 0;  // its launcher speaks for it
-  line.state = now - found->second.arrival > kSilent ? "silent" : not_running ? "restarting" : name(health.state);
+  const bool not_running =
+      health.state == HealthState::stopping && health.pid == 0;  // its launcher speaks for it
+  line.state = now - found->second.arrival > kSilent ? "silent"
+               : not_running                         ? "restarting"
+                                                     : name(health.state);
   line.reason = health.reason;
   line.memory_mb = health.memory_mb;
   line.cpu = health.cpu;
@@ -29,7 +32,8 @@ ProcessLine line_of(const std::string& component, const Snapshot& snapshot, Time
     line.rejected += topic.rejected;
     line.refused += topic.refused;
     if (!topic.second_writer.empty())
-      line.second_writers += (line.second_writers.empty() ? "" : ", ") + topic.topic + ": " + topic.second_writer;
+      line.second_writers +=
+          (line.second_writers.empty() ? "" : ", ") + topic.topic + ": " + topic.second_writer;
   }
   return line;
 }
@@ -62,22 +66,28 @@ SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
       status.left_out.push_back(component + ": " + one.name + ": " + std::to_string(one.count));
   for (const ProcessLine& line : status.processes) {
     if (line.state == "ok") continue;
-    status.troubles.push_back(line.component + " is " + line.state + (line.reason.empty() ? "" : ": " + line.reason));
+    status.troubles.push_back(line.component + " is " + line.state +
+                              (line.reason.empty() ? "" : ": " + line.reason));
   }
   const ExecutionStatus& execution = snapshot.execution.sample;
   if (snapshot.execution.ever && (execution.mode != Mode::normal || execution.causes != 0)) {
     const std::string causes = cause_names(execution.causes);
-    status.troubles.push_back("mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " because of " + causes) +
+    status.troubles.push_back("mode " + std::string(name(execution.mode)) +
+                              (causes.empty() ? "" : " because of " + causes) +
                               (execution.reason.empty() ? "" : ": " + execution.reason));
   }
   if (snapshot.safety.ever) {
     const SafetyState& safety = snapshot.safety.sample;
     if (!safety.reason.empty()) status.troubles.push_back("held: " + safety.reason);
     if (safety.override_factor < 1.0)
-      status.troubles.push_back(format("speed override %.0f %%; next: handsel speed 100", 100.0 * safety.override_factor));
+      status.troubles.push_back(format("speed override %.0f %%; next: handsel speed 100",
+                                       100.0 * safety.override_factor));
     for (const Person& person : safety.lost)
       status.troubles.push_back(
-          person.id + format(" has been out of sight for %.0f s; next, when gone: handsel task clear-person ", person.age) + person.id);
+          person.id +
+          format(" has been out of sight for %.0f s; next, when gone: handsel task clear-person ",
+                 person.age) +
+          person.id);
   }
   return status;
 }
@@ -99,11 +109,14 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
                          {"pid", line.pid}});
   }
   for (const BehaviourState& behaviour : snapshot.attention.sample.behaviours) {
-    clocks[name(behaviour.behaviour)] = {
-        {"period_s", behaviour.period}, {"released", behaviour.released}, {"speed_factor", behaviour.speed_factor}};
+    clocks[name(behaviour.behaviour)] = {{"period_s", behaviour.period},
+                                         {"released", behaviour.released},
+                                         {"speed_factor", behaviour.speed_factor}};
   }
-  nlohmann::json result{
-      {"processes", std::move(processes)}, {"troubles", status.troubles}, {"left_out", status.left_out}, {"clocks", std::move(clocks)}};
+  nlohmann::json result{{"processes", std::move(processes)},
+                        {"troubles", status.troubles},
+                        {"left_out", status.left_out},
+                        {"clocks", std::move(clocks)}};
   if (snapshot.task.ever) {
     const TaskStatus& task = snapshot.task.sample;
     result["task"] = {{"id", task.id},     {"kind", name(task.kind)}, {"state", name(task.state)},
@@ -122,7 +135,8 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
   if (snapshot.safety.ever) {
     const SafetyState& safety = snapshot.safety.sample;
     nlohmann::json lost = nlohmann::json::array();
-    for (const Person& person : safety.lost) lost.push_back({{"id", person.id}, {"age_s", person.age}});
+    for (const Person& person : safety.lost)
+      lost.push_back({{"id", person.id}, {"age_s", person.age}});
     result["safety"] = {{"revision", safety.revision},
                         {"paused", safety.paused},
                         {"fault", safety.fault},
@@ -136,12 +150,13 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
 }
 
 std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePoint) {
-  std::string text =
-      format("%-22s %-10s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz", "misses", "rejected", "memory", "cpu", "pid");
+  std::string text = format("%-22s %-10s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz",
+                            "misses", "rejected", "memory", "cpu", "pid");
   for (const ProcessLine& line : status.processes) {
-    text += format("%-22s %-10s %8.0f %7llu %8llu %5.0f MB %4.0f %% %7u", line.component.c_str(), line.state.c_str(), line.rate,
-                   static_cast<unsigned long long>(line.deadline_misses), static_cast<unsigned long long>(line.rejected), line.memory_mb,
-                   100.0 * line.cpu, line.pid);
+    text += format(
+        "%-22s %-10s %8.0f %7llu %8llu %5.0f MB %4.0f %% %7u", line.component.c_str(),
+        line.state.c_str(), line.rate, static_cast<unsigned long long>(line.deadline_misses),
+        static_cast<unsigned long long>(line.rejected), line.memory_mb, 100.0 * line.cpu, line.pid);
     text += line.reason.empty() ? "\n" : "  " + line.reason + "\n";
   }
   if (snapshot.task.ever) {
@@ -155,16 +170,21 @@ std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePo
   if (snapshot.execution.ever) {
     const ExecutionStatus& execution = snapshot.execution.sample;
     const std::string causes = cause_names(execution.causes);
-    text += "mode        " + std::string(name(execution.mode)) + (causes.empty() ? "" : " because of " + causes) + "\n";
-    text += format("trajectory  %llu, %.0f %% done\n", static_cast<unsigned long long>(execution.trajectory), 100.0 * execution.progress);
-    text += format("control     %llu cycles, %llu late\n", static_cast<unsigned long long>(execution.cycles),
+    text += "mode        " + std::string(name(execution.mode)) +
+            (causes.empty() ? "" : " because of " + causes) + "\n";
+    text +=
+        format("trajectory  %llu, %.0f %% done\n",
+               static_cast<unsigned long long>(execution.trajectory), 100.0 * execution.progress);
+    text += format("control     %llu cycles, %llu late\n",
+                   static_cast<unsigned long long>(execution.cycles),
                    static_cast<unsigned long long>(execution.late_cycles));
   }
   if (snapshot.advice.ever)
-    text += format("advice      speed factor %.2f %s\n", snapshot.advice.sample.speed_factor, snapshot.advice.sample.reason.c_str());
+    text += format("advice      speed factor %.2f %s\n", snapshot.advice.sample.speed_factor,
+                   snapshot.advice.sample.reason.c_str());
   for (const BehaviourState& behaviour : snapshot.attention.sample.behaviours) {
-    text +=
-        format("clock       %-8s every %.3f s%s\n", name(behaviour.behaviour), behaviour.period, behaviour.released ? ", released" : "");
+    text += format("clock       %-8s every %.3f s%s\n", name(behaviour.behaviour), behaviour.period,
+                   behaviour.released ? ", released" : "");
   }
   for (const std::string& one : status.left_out) text += "left out    " + one + "\n";
   for (const std::string& trouble : status.troubles) text += "! " + trouble + "\n";

@@ -17,13 +17,13 @@ struct ProcessLine {
   /// health ever), restarting (does not run; `reason` says how it ended, how often that was so and
   /// when it is started again).
   std::string state;
-  std::string reason;                           ///< of the state, as the component reports; may be empty
-  double rate{};                                ///< samples received, all topics [Hz]
+  std::string reason;  ///< of the state, as the component reports; may be empty
+  double rate{};       ///< samples received, all topics [Hz]
   std::uint64_t deadline_misses{}, rejected{};  ///< sums over all topics
-  std::uint64_t refused{};                      ///< samples of second writers, all topics with one writer
-  std::string second_writers;                   ///< "TOPIC: NAME" of each there is now, separated by commas
-  double memory_mb{}, cpu{}, uptime{};          ///< [MB], ratio of one core, [s]
-  std::uint32_t pid{};                          ///< 0: it does not run, or nothing is known of it
+  std::uint64_t refused{};              ///< samples of second writers, all topics with one writer
+  std::string second_writers;           ///< "TOPIC: NAME" of each there is now, separated by commas
+  double memory_mb{}, cpu{}, uptime{};  ///< [MB], ratio of one core, [s]
+  std::uint32_t pid{};                  ///< 0: it does not run, or nothing is known of it
 };
 
 struct SystemStatus {

@@ -19,15 +19,20 @@ constexpr Duration kStarvedCheck = std::chrono::milliseconds(200);
 SystemOptions checked(SystemOptions options) {
   check_system(options);
   system_processes(options);
-  if (options.web_port >= 0) setenv("HANDSEL_WEB_PORT", std::to_string(options.web_port).c_str(), 1);
+  if (options.web_port >= 0)
+    setenv("HANDSEL_WEB_PORT", std::to_string(options.web_port).c_str(), 1);
   return options;
 }
 
-LauncherOptions launcher_options(const SystemOptions& options, const std::filesystem::path& log_directory,
+LauncherOptions launcher_options(const SystemOptions& options,
+                                 const std::filesystem::path& log_directory,
                                  const LauncherSettings& settings) {
   return {.processes = system_processes(options),
           .log_directory = log_directory,
-          .on_event = [](const std::string& sentence) { std::fprintf(stderr, "handsel: %s\n", sentence.c_str()); },
+          .on_event =
+              [](const std::string& sentence) {
+                std::fprintf(stderr, "handsel: %s\n", sentence.c_str());
+              },
           .backoff = settings.backoff};
 }
 
@@ -53,7 +58,8 @@ std::string why_not_ready(const Snapshot& snapshot, const std::string& process) 
   const auto found = snapshot.health.find(process);
   if (found == snapshot.health.end()) return "nothing received yet";
   const ComponentHealth& health = found->second.sample;
-  const bool enough = health.state == HealthState::ok || (process == "bridge" && health.state == HealthState::degraded);
+  const bool enough = health.state == HealthState::ok ||
+                      (process == "bridge" && health.state == HealthState::degraded);
   return enough ? "" : health.reason.empty() ? "starting" : health.reason;
 }
 
@@ -107,7 +113,8 @@ std::optional<Duration> System::wait_ready(Duration limit) {
     }
     return missing;
   };
-  // Time in which a process waited for a processor does not count: of two systems on one processor each starts more slowly.
+  // Time in which a process waited for a processor does not count: of two systems on one processor
+  // each starts more slowly.
   std::map<std::string, ThreadDelay> delays;
   const auto starved = [&] {
     Duration longest{};
@@ -116,11 +123,13 @@ std::optional<Duration> System::wait_ready(Duration limit) {
     return longest;
   };
   bool ready = false;
-  for (Duration left = limit; !ready && left > Duration::zero() && !interrupted(); left = limit + starved() - (monotonic_now() - begin))
+  for (Duration left = limit; !ready && left > Duration::zero() && !interrupted();
+       left = limit + starved() - (monotonic_now() - begin))
     ready = wait(std::min(left, kStarvedCheck), [&] { return lacking().empty(); });
   if (!ready) {
     if (interrupted()) return std::nullopt;
-    throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
+    throw MissingError("the system is not ready after " +
+                       std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
                        join(lacking()) + "; logs are in " + log_directory_.string());
   }
   launcher_.set_ready();

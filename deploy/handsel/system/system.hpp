@@ -29,8 +29,8 @@ class System {
   /// before any process starts.
   explicit System(const SystemOptions& options);
 
-  Session& session() { return session_; }                    ///< of this process, on the domain of the system
-  Launcher& launcher() { return launcher_; }                 ///< of the processes started here
+  Session& session() { return session_; }     ///< of this process, on the domain of the system
+  Launcher& launcher() { return launcher_; }  ///< of the processes started here
   const SystemOptions& options() const { return options_; }  ///< as given to the constructor
   /// Of this run, one <process>.log each.
   const std::filesystem::path& log_directory() const { return log_directory_; }

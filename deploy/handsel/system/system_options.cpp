@@ -14,24 +14,31 @@ namespace handsel {
 
 void add_domain_option(CLI::App& command, int& domain) {
   domain = default_domain();
-  command.add_option("--domain", domain, "DDS domain (default: HANDSEL_DOMAIN, else 0)")->check(CLI::Range(0, 230));
+  command.add_option("--domain", domain, "DDS domain (default: HANDSEL_DOMAIN, else 0)")
+      ->check(CLI::Range(0, 230));
 }
 
 void add_system_options(CLI::App& command, SystemOptions& options) {
   add_domain_option(command, options.domain);
-  command.add_option("--robot", options.robot, "robot description: name or file (default: the scenario's)");
-  command.add_option("--scenario", options.scenario, "scenario: name or file")->capture_default_str();
+  command.add_option("--robot", options.robot,
+                     "robot description: name or file (default: the scenario's)");
+  command.add_option("--scenario", options.scenario, "scenario: name or file")
+      ->capture_default_str();
   command.add_option("--seed", options.seed, "of every random choice")->capture_default_str();
-  command.add_option("--port", options.web_port, "of the page; 0: any free one (default: as in the bridge's settings)")
+  command
+      .add_option("--port", options.web_port,
+                  "of the page; 0: any free one (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
-  command.add_option("--record", options.record, "write everything that is said into this MCAP file");
+  command.add_option("--record", options.record,
+                     "write everything that is said into this MCAP file");
   command.add_flag("--ros2", options.ros2, "with the connection to ROS 2 (docs/ros2.md)");
   add_no_weld_option(command);
 }
 
 void add_no_weld_option(CLI::App& command) {
   command.add_flag_callback(
-      "--no-weld", [] { setenv("HANDSEL_NO_WELD", "1", 1); }, "contact alone holds what the robot grasps: no grasp constraint helps");
+      "--no-weld", [] { setenv("HANDSEL_NO_WELD", "1", 1); },
+      "contact alone holds what the robot grasps: no grasp constraint helps");
 }
 
 void announce_page(System& system, bool headless) {
@@ -40,7 +47,8 @@ void announce_page(System& system, bool headless) {
     const Snapshot& now = system.session().snapshot();
     const auto bridge = now.health.find("bridge");
     const bool said = bridge != now.health.end() && !bridge->second.sample.reason.empty();
-    std::fprintf(stderr, "no page: %s\n", said ? bridge->second.sample.reason.c_str() : "the bridge has not opened it");
+    std::fprintf(stderr, "no page: %s\n",
+                 said ? bridge->second.sample.reason.c_str() : "the bridge has not opened it");
     return;
   }
   std::fprintf(stderr, "watch it at %s\n", address.c_str());
@@ -49,7 +57,8 @@ void announce_page(System& system, bool headless) {
   std::string opener = "xdg-open", argument = address;
   char* arguments[] = {opener.data(), argument.data(), nullptr};
   pid_t pid = -1;
-  if (posix_spawnp(&pid, opener.c_str(), nullptr, nullptr, arguments, environ) == 0) waitpid(pid, nullptr, 0);
+  if (posix_spawnp(&pid, opener.c_str(), nullptr, nullptr, arguments, environ) == 0)
+    waitpid(pid, nullptr, 0);
 }
 
 }  // namespace handsel

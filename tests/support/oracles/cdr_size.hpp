@@ -9,7 +9,8 @@
 
 namespace handsel::test {
 
-/// Bytes of the CDR form of a sample of the IDL struct; 0 when a bound in the description is above the one of the IDL.
+/// Bytes of the CDR form of a sample of the IDL struct; 0 when a bound in the description is above
+/// the one of the IDL.
 inline std::size_t cdr_size(const MessageType& type, const void* wire) {
   static CdrCodec codec;
   return codec.encode(type, wire).size();

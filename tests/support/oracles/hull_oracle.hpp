@@ -15,7 +15,8 @@ extern "C" {
 
 namespace handsel::test {
 
-/// Signed distance of the origin to the hull: positive inside; NaN when Qhull finds the set flat. "Qt" exact, "QJ" joggled.
+/// Signed distance of the origin to the hull: positive inside; NaN when Qhull finds the set flat.
+/// "Qt" exact, "QJ" joggled.
 inline double hull_oracle(const WrenchMatrix& w, const char* options = "Qt") {
   std::vector<double> points(w.data(), w.data() + w.size());
   qhT qh_storage;
@@ -24,8 +25,8 @@ inline double hull_oracle(const WrenchMatrix& w, const char* options = "Qt") {
   qh_zero(qh, nullptr);
   std::string command = std::string("qhull ") + options;
   static FILE* silent = std::fopen("/dev/null", "w");
-  const int failed =
-      qh_new_qhull(qh, static_cast<int>(w.rows()), static_cast<int>(w.cols()), points.data(), 0, command.data(), silent, silent);
+  const int failed = qh_new_qhull(qh, static_cast<int>(w.rows()), static_cast<int>(w.cols()),
+                                  points.data(), 0, command.data(), silent, silent);
   double least = std::numeric_limits<double>::quiet_NaN();
   if (!failed) {
     least = std::numeric_limits<double>::infinity();

@@ -11,7 +11,8 @@ namespace handsel::test {
 inline double quantile_ms(std::vector<double> times, double share) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());
-  return 1e3 * times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
+  return 1e3 * times[std::min(times.size() - 1,
+                              static_cast<std::size_t>(share * static_cast<double>(times.size())))];
 }
 
 }  // namespace handsel::test

@@ -19,10 +19,13 @@ struct RuckigPeer::Inside {
   bool busy{};
 };
 
-RuckigPeer::RuckigPeer(const std::vector<PeerProblem>& problems, double period) : inside_(std::make_unique<Inside>(period)) {
+RuckigPeer::RuckigPeer(const std::vector<PeerProblem>& problems, double period)
+    : inside_(std::make_unique<Inside>(period)) {
   for (const PeerProblem& p : problems) {
     Input& input = inside_->inputs.emplace_back();
-    const auto put = [](const double(&x)[kPeerAxes], auto& out) { std::copy(std::begin(x), std::end(x), out.begin()); };
+    const auto put = [](const double(&x)[kPeerAxes], auto& out) {
+      std::copy(std::begin(x), std::end(x), out.begin());
+    };
     put(p.from[0], input.current_position);
     put(p.from[1], input.current_velocity);
     put(p.from[2], input.current_acceleration);
@@ -38,13 +41,15 @@ RuckigPeer::RuckigPeer(const std::vector<PeerProblem>& problems, double period) 
 RuckigPeer::~RuckigPeer() = default;
 
 bool RuckigPeer::solve(std::size_t problem) noexcept {
-  const ruckig::Result result = inside_->generator.calculate(inside_->inputs[problem], inside_->trajectory);
+  const ruckig::Result result =
+      inside_->generator.calculate(inside_->inputs[problem], inside_->trajectory);
   return result == ruckig::Result::Working || result == ruckig::Result::Finished;
 }
 
 double RuckigPeer::duration() const noexcept { return inside_->trajectory.get_duration(); }
 
-void RuckigPeer::evaluate(double t, double* position, double* velocity, double* acceleration) noexcept {
+void RuckigPeer::evaluate(double t, double* position, double* velocity,
+                          double* acceleration) noexcept {
   Numbers x, v, a;
   inside_->trajectory.at_time(t, x, v, a);
   std::copy(x.begin(), x.end(), position);
@@ -54,7 +59,8 @@ void RuckigPeer::evaluate(double t, double* position, double* velocity, double* 
 
 void RuckigPeer::tick(std::size_t problem) noexcept {
   if (!inside_->busy) inside_->running = inside_->inputs[problem];
-  inside_->busy = inside_->generator.update(inside_->running, inside_->output) == ruckig::Result::Working;
+  inside_->busy =
+      inside_->generator.update(inside_->running, inside_->output) == ruckig::Result::Working;
   inside_->output.pass_to_input(inside_->running);
 }
 

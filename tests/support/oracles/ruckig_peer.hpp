@@ -1,5 +1,5 @@
-// Ruckig on the same problems, for comparison; only where it is built (HANDSEL_RUCKIG). Free of Eigen: the unit behind it is compiled for
-// this very processor.
+// Ruckig on the same problems, for comparison; only where it is built (HANDSEL_RUCKIG). Free of
+// Eigen: the unit behind it is compiled for this very processor.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// An independent, slow minimum-time solver for one axis: scans every family of bang-bang profiles for every root, assumes nothing about
-// monotony or the sign of the motion. For tests only.
+// An independent, slow minimum-time solver for one axis: scans every family of bang-bang profiles
+// for every root, assumes nothing about monotony or the sign of the motion. For tests only.
 #pragma once
 
 #include <algorithm>
@@ -42,13 +42,17 @@ inline bool rising(double v, double a, double peak, double A, double J, std::vec
   return true;
 }
 
-/// Durations at which the displacement wanted is the largest or the least possible, ascending: the least duration first, then the ends of
-/// what is blocked. Those that a coarse grid steps over in pairs are missing.
-inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& to, const AxisLimits& l, int grid = 600) {
+/// Durations at which the displacement wanted is the largest or the least possible, ascending: the
+/// least duration first, then the ends of what is blocked. Those that a coarse grid steps over in
+/// pairs are missing.
+inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& to,
+                                       const AxisLimits& l, int grid = 600) {
   std::vector<double> all;
   for (const double side : {1.0, -1.0}) {
-    const double v0 = side * from.velocity, a0 = side * from.acceleration, vf = side * to.velocity, af = side * to.acceleration;
-    const double D = side * (to.position - from.position), V = l.velocity, A = l.acceleration, J = l.jerk;
+    const double v0 = side * from.velocity, a0 = side * from.acceleration, vf = side * to.velocity,
+                 af = side * to.acceleration;
+    const double D = side * (to.position - from.position), V = l.velocity, A = l.acceleration,
+                 J = l.jerk;
     // With a zero crossing at peak velocity p.
     const auto peak_profile = [&](double p, SlowProfile& out) {
       std::vector<Segment> up, down;
@@ -113,7 +117,8 @@ inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& t
         have = true;
       }
     };
-    const double lowest = std::max(v0 + a0 * std::abs(a0) / (2 * J), vf - af * std::abs(af) / (2 * J));
+    const double lowest =
+        std::max(v0 + a0 * std::abs(a0) / (2 * J), vf - af * std::abs(af) / (2 * J));
     scan(peak_profile, std::min(lowest, V), V);
     if (af > 0) scan([&](double b, SlowProfile& o) { return flat_profile(b, false, o); }, 0, af);
     if (a0 < 0) scan([&](double b, SlowProfile& o) { return flat_profile(b, true, o); }, a0, 0);
@@ -129,15 +134,18 @@ inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& t
   return out;
 }
 
-inline double slow_min_time(const AxisState& from, const AxisState& to, const AxisLimits& l, int grid = 600) {
+inline double slow_min_time(const AxisState& from, const AxisState& to, const AxisLimits& l,
+                            int grid = 600) {
   const std::vector<double> bounds = slow_bounds(from, to, l, grid);
   return bounds.empty() ? std::numeric_limits<double>::infinity() : bounds[0];
 }
 
-/// From outside the limits to their border: what is beyond the acceleration limit comes back at full jerk; what is beyond the velocity
-/// limit, or cannot help getting there, decelerates to a depth, holds it and comes up so far that it does not head beyond the other limit
-/// when it is back. The deepest depth that leaves time to hold is searched by halving. Returns the time taken; negative where the state is
-/// beyond one limit and heads beyond the other, which this does not know.
+/// From outside the limits to their border: what is beyond the acceleration limit comes back at
+/// full jerk; what is beyond the velocity limit, or cannot help getting there, decelerates to a
+/// depth, holds it and comes up so far that it does not head beyond the other limit when it is
+/// back. The deepest depth that leaves time to hold is searched by halving. Returns the time taken;
+/// negative where the state is beyond one limit and heads beyond the other, which this does not
+/// know.
 inline double slow_way_inside(AxisState& s, const AxisLimits& l) {
   const double V = l.velocity, A = l.acceleration, J = l.jerk;
   double time = 0;
@@ -150,7 +158,9 @@ inline double slow_way_inside(AxisState& s, const AxisLimits& l) {
     go((std::abs(s.acceleration) - A) / J, -side * J);
     s.acceleration = side * A;
   }
-  const auto heading = [&] { return s.velocity + s.acceleration * std::abs(s.acceleration) / (2 * J); };
+  const auto heading = [&] {
+    return s.velocity + s.acceleration * std::abs(s.acceleration) / (2 * J);
+  };
   const bool above = s.velocity > V || (s.acceleration > 0 && heading() > V),
              below = s.velocity < -V || (s.acceleration < 0 && heading() < -V);
   if (above && below) return -1;
@@ -159,7 +169,8 @@ inline double slow_way_inside(AxisState& s, const AxisLimits& l) {
   const double steepest = std::sqrt(4 * J * V);
   const auto hold = [&](double depth) {
     const double risen = std::min(depth, steepest);
-    return (v + (a * a - depth * depth) / (2 * J) - V - (depth * depth - risen * risen) / (2 * J)) / depth;
+    return (v + (a * a - depth * depth) / (2 * J) - V - (depth * depth - risen * risen) / (2 * J)) /
+           depth;
   };
   double lo = std::max(0.0, -a), hi = A;
   if (hold(hi) < 0) {

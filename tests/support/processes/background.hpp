@@ -22,7 +22,8 @@ class Background {
  public:
   explicit Background(std::vector<std::string> arguments) {
     static int count = 0;
-    log_ = std::filesystem::temp_directory_path() / ("handsel-background-" + std::to_string(getpid()) + "-" + std::to_string(++count));
+    log_ = std::filesystem::temp_directory_path() /
+           ("handsel-background-" + std::to_string(getpid()) + "-" + std::to_string(++count));
     out_ = log_.string() + "-out";
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -33,7 +34,8 @@ class Background {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       const sched_param ordinary{};
       sched_setscheduler(0, SCHED_OTHER, &ordinary);  // whatever the test itself runs under
-      if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen(out_.c_str(), "w", stdout)) _exit(127);
+      if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen(out_.c_str(), "w", stdout))
+        _exit(127);
       execv(argv[0], argv.data());
       _exit(127);
     }

@@ -1,4 +1,5 @@
-// A running system, real processes over DDS, with something to do at all times: a mug is picked up and put down again.
+// A running system, real processes over DDS, with something to do at all times: a mug is picked up
+// and put down again.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,14 +30,16 @@ inline std::string environment(const char* variable) {
 /// A running system with something to do at all times: a mug is picked up and put down again.
 class BusySystem {
  public:
-  explicit BusySystem(int domain) : system_({.domain = domain, .scenario = "give_mug", .seed = 11, .web_port = 0}) {
+  explicit BusySystem(int domain)
+      : system_({.domain = domain, .scenario = "give_mug", .seed = 11, .web_port = 0}) {
     const RobotModel robot = RobotModel::load(robot_description(robot_of(system_.options())));
     arm_ = robot.require_group("arm").axes;
     const KinematicLimits &comfort = robot.comfort_limits(), &stop = robot.stop_limits();
     for (const int axis : arm_)
       longest_stop_ =
-          std::max(longest_stop_,
-                   measure_stop(comfort.velocity[axis], comfort.acceleration[axis], stop.acceleration[axis], stop.jerk[axis]).duration);
+          std::max(longest_stop_, measure_stop(comfort.velocity[axis], comfort.acceleration[axis],
+                                               stop.acceleration[axis], stop.jerk[axis])
+                                      .duration);
     Bus& bus = system_.session().bus();
     sim_ = bus.advertise<SimControl>();
     system_.session().observer().on_event([this](const TimelineEvent& event) {
@@ -61,8 +64,8 @@ class BusySystem {
     const auto found = now().health.find(process);
     return found != now().health.end() && found->second.sample.state == HealthState::ok;
   }
-  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too, and what they press on moves the arm for
-  /// as long as they do.
+  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too,
+  /// and what they press on moves the arm for as long as they do.
   bool travels() {
     const ActionPhase phase = now().action.sample.phase;
     const bool approaches = phase == ActionPhase::approach;
@@ -87,7 +90,8 @@ class BusySystem {
   }
   /// The task given last.
   std::uint64_t task() const { return goal_.id; }
-  /// Longest jerk-limited stop of an axis of the arm, from its comfort velocity and acceleration [s].
+  /// Longest jerk-limited stop of an axis of the arm, from its comfort velocity and acceleration
+  /// [s].
   double longest_stop() const { return longest_stop_; }
   bool answered() {
     const auto found = now().tasks.find(said_);
@@ -119,14 +123,16 @@ class BusySystem {
     const GroundTruth& ground_truth = now().ground_truth.sample;
     const Vector3 at = ground_truth.T_world_object.translation();
     char text[160];
-    std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n", ground_truth.object.c_str(), at.x(), at.y(), at.z(),
+    std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n",
+                  ground_truth.object.c_str(), at.x(), at.y(), at.z(),
                   ground_truth.carrier.c_str());
     out += text;
     out += "  execution: " + now().execution.sample.reason + "; external torque [Nm]";
     for (const int axis : arm_)
       if (axis < torque_.size()) out += " " + std::to_string(torque_[axis]);
     out += "\n";
-    for (const TimelineEvent& event : events_) out += "  " + std::to_string(to_seconds(event.at - marked_at_)) + " s  " + event.text + "\n";
+    for (const TimelineEvent& event : events_)
+      out += "  " + std::to_string(to_seconds(event.at - marked_at_)) + " s  " + event.text + "\n";
     return out;
   }
   /// Largest speed factor in force since mark().
@@ -142,17 +148,21 @@ class BusySystem {
         if (deviation_ < step && std::abs(off) >= step) note_motion(state, axis, off);
       deviation_ = std::max(deviation_, std::abs(off));
     }
-    if (now().active.ever) fastest_ = std::max(fastest_, std::abs(now().active.sample.speed_factor));
+    if (now().active.ever)
+      fastest_ = std::max(fastest_, std::abs(now().active.sample.speed_factor));
   }
   /// Writes into the timeline that an axis has moved though nothing should.
   void note_motion(const RobotState& state, int axis, double off) {
     const auto i = static_cast<Eigen::Index>(axis);
     std::string text = "axis " + std::to_string(axis) + " has moved by " + std::to_string(off);
-    const double by = state.reference.position.size() > i ? state.reference.position[i] - marked_reference_[i] : 0.0;
+    const double by = state.reference.position.size() > i
+                          ? state.reference.position[i] - marked_reference_[i]
+                          : 0.0;
     text += " rad, its reference by " + std::to_string(by) + " rad " + state.refusal;
     events_.push_back({monotonic_now(), text});
   }
-  /// Gives the next task when the last one is over; a supervisor that was started anew is asked again.
+  /// Gives the next task when the last one is over; a supervisor that was started anew is asked
+  /// again.
   void keep_busy() {
     Session& session = system_.session();
     const TimePoint time = session.bus().now();
@@ -163,7 +173,9 @@ class BusySystem {
     if (goal_.id != 0 && !over && !silent && status != now().tasks.end()) return;
     if (goal_.id == 0 || over) {
       const bool holds = now().ground_truth.sample.carrier == "robot";
-      goal_ = {.id = session.new_task_id(), .kind = holds ? TaskKind::place : TaskKind::pick, .object = "mug"};
+      goal_ = {.id = session.new_task_id(),
+               .kind = holds ? TaskKind::place : TaskKind::pick,
+               .object = "mug"};
       if (holds) goal_.surface = "table";
     }
     session.publish(goal_);

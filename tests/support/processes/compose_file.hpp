@@ -1,4 +1,5 @@
-// Reads deploy/docker-compose.yml, which is written in one style: services are indented by two, what they have by four.
+// Reads deploy/docker-compose.yml, which is written in one style: services are indented by two,
+// what they have by four.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +34,8 @@ inline std::map<std::string, std::string> compose_services(const std::string& co
 }
 
 /// The words of a service's command, variables replaced by `values`, else by their defaults.
-inline std::vector<std::string> compose_command(const std::string& service, const std::map<std::string, std::string>& values = {}) {
+inline std::vector<std::string> compose_command(
+    const std::string& service, const std::map<std::string, std::string>& values = {}) {
   std::smatch match;
   std::vector<std::string> words;
   if (!std::regex_search(service, match, std::regex("\n    command: \\[(.*)\\]"))) return words;

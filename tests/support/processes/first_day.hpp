@@ -1,5 +1,6 @@
-// A real robot's first day: a driver process before a scripted fake of its maker's controller, the controller process, and everybody else
-// who speaks to them, over DDS. Nothing waits for time: every step waits for what must be seen.
+// A real robot's first day: a driver process before a scripted fake of its maker's controller, the
+// controller process, and everybody else who speaks to them, over DDS. Nothing waits for time:
+// every step waits for what must be seen.
 #pragma once
 
 #include <algorithm>
@@ -44,17 +45,25 @@ class FirstDay {
         robot_(RobotModel::load(robot_description(plan.robot))),
         arm_(robot_.require_group("arm")),
         capsules_(robot_capsules(robot_)),
-        bus_({.component = "first_day spark supervisor manipulation_planner", .domain = plan.domain, .realtime = true, .health = false}) {
+        bus_({.component = "first_day spark supervisor manipulation_planner",
+              .domain = plan.domain,
+              .realtime = true,
+              .health = false}) {
     place_wall();
-    for (const auto& file : std::filesystem::directory_iterator(resource("config"))) std::filesystem::copy(file, folder_.path());
+    for (const auto& file : std::filesystem::directory_iterator(resource("config")))
+      std::filesystem::copy(file, folder_.path());
     std::ofstream(folder_.path() / "trajectory_controller.txtpb", std::ios::app)
-        << "walls { nx: " << -toward_wall_.x() << " ny: " << -toward_wall_.y() << " nz: " << -toward_wall_.z() << " offset: " << -wall_
-        << " }\n";
+        << "walls { nx: " << -toward_wall_.x() << " ny: " << -toward_wall_.y()
+        << " nz: " << -toward_wall_.z() << " offset: " << -wall_ << " }\n";
     port_ = drivers::UdpPort(0).port();
-    const std::string common = "common { port: " + std::to_string(port_) + " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
-                               " max_setpoint_gap: 0.02 min_stop: 0.5 wire_jitter: 0.02 fade_fraction: 0.1 }\n";
+    const std::string common =
+        "common { port: " + std::to_string(port_) +
+        " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
+        " max_setpoint_gap: 0.02 min_stop: 0.5 wire_jitter: 0.02 fade_fraction: 0.1 }\n";
     folder_.write("position_arm.txtpb", common + "cycle: 0.005\n");
-    folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_ratio: 0.95 lost_cycles: 20\n" + plan.gripper);
+    folder_.write(
+        "reflex_arm.txtpb",
+        common + "joint_deceleration: 3 limit_ratio: 0.95 lost_cycles: 20\n" + plan.gripper);
     go_.epoch = go_.state_revision = 1;
     go_.allowed = true;
     people_.covered = true;
@@ -69,17 +78,23 @@ class FirstDay {
   void play(const std::string& script) {
     fake_.reset();
     go_.override_factor = 1.0;
-    wait([&] { return states_ == 0 || (robot_state_.mode != DriveMode::enabled && status_.mode >= Mode::hold); });
-    fake_ = std::make_unique<Background>(std::vector<std::string>{plan_.binaries + "/handsel_fake_arm", plan_.arm, "--robot", plan_.robot,
-                                                                  "--port", std::to_string(port_), "--realtime", "--script",
-                                                                  folder_.write("script.txt", script).string()});
+    wait([&] {
+      return states_ == 0 ||
+             (robot_state_.mode != DriveMode::enabled && status_.mode >= Mode::hold);
+    });
+    fake_ = std::make_unique<Background>(
+        std::vector<std::string>{plan_.binaries + "/handsel_fake_arm", plan_.arm, "--robot",
+                                 plan_.robot, "--port", std::to_string(port_), "--realtime",
+                                 "--script", folder_.write("script.txt", script).string()});
   }
   /// Ends it; what it says of what it was told.
   std::string account() {
     fake_->interrupt();
     return fake_->printed();
   }
-  bool happened(const std::string& event) const { return fake_->printed().find(event) != std::string::npos; }
+  bool happened(const std::string& event) const {
+    return fake_->printed().find(event) != std::string::npos;
+  }
 
   template <class Done>
   bool wait(const Done& done, double seconds = 10.0) {
@@ -96,7 +111,8 @@ class FirstDay {
     });
     return all && states_ >= until;
   }
-  /// Permissions, also a person's where the driver waits for one, until nothing holds the robot back.
+  /// Permissions, also a person's where the driver waits for one, until nothing holds the robot
+  /// back.
   bool ready() {
     return wait(
         [&] {
@@ -131,9 +147,9 @@ class FirstDay {
     c.id = ++id_;
     c.epoch = status_.epoch;
     c.axes.assign(arm_.axes.begin(), arm_.axes.end());
-    c.trajectory =
-        solve(rest_state(gathered(active_.position)), rest_state(goal), {gathered(l.velocity), gathered(l.acceleration), gathered(l.jerk)})
-            .trajectory;
+    c.trajectory = solve(rest_state(gathered(active_.position)), rest_state(goal),
+                         {gathered(l.velocity), gathered(l.acceleration), gathered(l.jerk)})
+                       .trajectory;
     command_out_->publish(c);
     return c.trajectory;
   }
@@ -155,9 +171,15 @@ class FirstDay {
     hand_out_->publish(c);
   }
   bool standing() const { return active_.trajectory == 0 && active_.velocity.isZero(0.0); }
-  bool arrived() const { return status_.trajectory == id_ && status_.motion == MotionState::finished; }
-  bool hand_done(HandState state) const { return status_.hand_command == hand_id_ && status_.hand == state; }
-  bool has(Cause cause) const { return (status_.causes & (1U << static_cast<unsigned>(cause))) != 0; }
+  bool arrived() const {
+    return status_.trajectory == id_ && status_.motion == MotionState::finished;
+  }
+  bool hand_done(HandState state) const {
+    return status_.hand_command == hand_id_ && status_.hand == state;
+  }
+  bool has(Cause cause) const {
+    return (status_.causes & (1U << static_cast<unsigned>(cause))) != 0;
+  }
   double angle() const { return angle_of(robot_state_); }  ///< measured, from the rest posture
   double speed() const { return gathered(robot_state_.velocity).cwiseAbs().maxCoeff(); }
   double wall_room() const { return wall_ - reach(robot_state_.position); }
@@ -169,9 +191,11 @@ class FirstDay {
   const std::string& trouble() const { return trouble_; }  ///< of the driver, from its health
   TimePoint now() const { return bus_.now(); }
   std::string where() const {
-    return std::string(name(status_.mode)) + ", " + status_.reason + "; drive " + std::to_string(static_cast<int>(robot_state_.mode)) +
-           ", " + trouble_ + "; at " + std::to_string(angle()) + " rad; fake: " + (fake_ ? fake_->printed() : "") +
-           "; driver: " + driver_->said() + controller_->said() + "; before that, newest last:" + history_;
+    return std::string(name(status_.mode)) + ", " + status_.reason + "; drive " +
+           std::to_string(static_cast<int>(robot_state_.mode)) + ", " + trouble_ + "; at " +
+           std::to_string(angle()) + " rad; fake: " + (fake_ ? fake_->printed() : "") +
+           "; driver: " + driver_->said() + controller_->said() +
+           "; before that, newest last:" + history_;
   }
 
  private:
@@ -186,9 +210,9 @@ class FirstDay {
     if (history_.size() > kLong) history_.erase(0, history_.find('\n', history_.size() - kLong));
   }
   std::unique_ptr<Background> start(const std::string& process) {
-    return std::make_unique<Background>(std::vector<std::string>{plan_.binaries + "/" + process, "--robot", plan_.robot, "--config",
-                                                                 folder_.path().string(), "--domain", std::to_string(plan_.domain),
-                                                                 "--realtime"});
+    return std::make_unique<Background>(std::vector<std::string>{
+        plan_.binaries + "/" + process, "--robot", plan_.robot, "--config", folder_.path().string(),
+        "--domain", std::to_string(plan_.domain), "--realtime"});
   }
   /// How far the links that the axis moves reach toward the wall.
   double reach(const Vector& position) const {
@@ -198,7 +222,8 @@ class FirstDay {
     for (const LinkCapsule& c : capsules_) {
       if (!moved_[static_cast<std::size_t>(c.link)]) continue;
       const Pose& T = links[static_cast<std::size_t>(c.link)];
-      furthest = std::max({furthest, toward_wall_.dot(T * c.a) + c.radius, toward_wall_.dot(T * c.b) + c.radius});
+      furthest = std::max(
+          {furthest, toward_wall_.dot(T * c.a) + c.radius, toward_wall_.dot(T * c.b) + c.radius});
     }
     return furthest;
   }
@@ -210,7 +235,8 @@ class FirstDay {
     robot_.forward(rest, at_rest);
     robot_.forward(far, at_far);
     moved_.resize(at_rest.size());
-    for (std::size_t i = 0; i < at_rest.size(); ++i) moved_[i] = !at_rest[i].isApprox(at_far[i], 1e-9);
+    for (std::size_t i = 0; i < at_rest.size(); ++i)
+      moved_[i] = !at_rest[i].isApprox(at_far[i], 1e-9);
     const auto tip = static_cast<std::size_t>(arm_.tip);
     toward_wall_ = (at_far[tip].translation() - at_rest[tip].translation()).normalized();
     wall_ = reach(rest) + 0.6 * (reach(far) - reach(rest));
@@ -223,17 +249,20 @@ class FirstDay {
     command_out_ = bus_.advertise<TrajectoryCommand>();
     hand_out_ = bus_.advertise<HandCommand>();
     bus_.subscribe<RobotState>([this](const RobotState& m, const Receipt&) {
-      if (m.mode != robot_state_.mode) remember("drive " + std::to_string(static_cast<int>(m.mode)));
+      if (m.mode != robot_state_.mode)
+        remember("drive " + std::to_string(static_cast<int>(m.mode)));
       robot_state_ = m;
       ++states_;
       fastest = std::max(fastest, speed());
       if (states_ % 5 == 0) min_room = std::min(min_room, wall_room());
     });
     bus_.subscribe<ExecutionStatus>([this](const ExecutionStatus& m, const Receipt&) {
-      if (m.mode != status_.mode || m.causes != status_.causes) remember(std::string(name(m.mode)) + " " + m.reason);
+      if (m.mode != status_.mode || m.causes != status_.causes)
+        remember(std::string(name(m.mode)) + " " + m.reason);
       status_ = m;
     });
-    bus_.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& m, const Receipt&) { active_ = m; });
+    bus_.subscribe<ActiveTrajectory>(
+        [this](const ActiveTrajectory& m, const Receipt&) { active_ = m; });
     bus_.subscribe<ComponentHealth>([this](const ComponentHealth& m, const Receipt&) {
       if (m.component != "driver") return;
       if (m.reason != trouble_) remember("driver says: " + m.reason);

@@ -1,4 +1,5 @@
-// A plain HTTP client on a socket, for tests: sends bytes as given, reads until the other side is done or a text has come.
+// A plain HTTP client on a socket, for tests: sends bytes as given, reads until the other side is
+// done or a text has come.
 #pragma once
 
 #include <arpa/inet.h>
@@ -13,7 +14,8 @@ namespace handsel::test {
 
 class HttpClient {
  public:
-  explicit HttpClient(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), port_(port) {
+  explicit HttpClient(std::uint16_t port)
+      : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), port_(port) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
@@ -25,9 +27,13 @@ class HttpClient {
   HttpClient& operator=(const HttpClient&) = delete;
 
   bool connected() const { return connected_; }
-  void send(const std::string& bytes) { [[maybe_unused]] const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL); }
+  void send(const std::string& bytes) {
+    [[maybe_unused]] const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
   /// A request with the right Host; asks for the connection to be closed, so that read() ends.
-  void request(const std::string& method, const std::string& target) { request(method, target, "127.0.0.1:" + std::to_string(port_)); }
+  void request(const std::string& method, const std::string& target) {
+    request(method, target, "127.0.0.1:" + std::to_string(port_));
+  }
   void request(const std::string& method, const std::string& target, const std::string& host) {
     send(method + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n");
   }

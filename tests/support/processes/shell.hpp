@@ -19,11 +19,13 @@ struct Outcome {
 };
 
 inline Outcome shell(const std::string& command) {
-  const std::filesystem::path errors = std::filesystem::temp_directory_path() / ("handsel-err-" + std::to_string(getpid()));
+  const std::filesystem::path errors =
+      std::filesystem::temp_directory_path() / ("handsel-err-" + std::to_string(getpid()));
   Outcome outcome;
   std::FILE* pipe = popen(("{ " + command + "; } 2>" + errors.string()).c_str(), "r");
   char bytes[4096];
-  for (std::size_t n; (n = std::fread(bytes, 1, sizeof bytes, pipe)) > 0;) outcome.out.append(bytes, n);
+  for (std::size_t n; (n = std::fread(bytes, 1, sizeof bytes, pipe)) > 0;)
+    outcome.out.append(bytes, n);
   const int status = pclose(pipe);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   std::ostringstream text;

@@ -1,5 +1,6 @@
-// Real-time stories on a machine that is not ours alone: a hypervisor may take all its processors away for tens of milliseconds, which no
-// priority helps against. A story that fails while that happened says nothing of the product and is told again.
+// Real-time stories on a machine that is not ours alone: a hypervisor may take all its processors
+// away for tens of milliseconds, which no priority helps against. A story that fails while that
+// happened says nothing of the product and is told again.
 #pragma once
 
 #include <gtest/gtest-spi.h>
@@ -19,11 +20,13 @@
 
 namespace handsel::test {
 
-/// Time that the machine took away: a thread on each processor, more urgent than anything under test, is to wake every half millisecond.
+/// Time that the machine took away: a thread on each processor, more urgent than anything under
+/// test, is to wake every half millisecond.
 class StallWatch {
  public:
   StallWatch() {
-    for (unsigned cpu = 0; cpu < std::thread::hardware_concurrency(); ++cpu) threads_.emplace_back([this, cpu] { watch(cpu); });
+    for (unsigned cpu = 0; cpu < std::thread::hardware_concurrency(); ++cpu)
+      threads_.emplace_back([this, cpu] { watch(cpu); });
   }
   ~StallWatch() {
     end_ = true;
@@ -37,7 +40,9 @@ class StallWatch {
     for (const Stall& last : stalls_) {
       double lost = 0.0;
       for (const Stall& one : stalls_)
-        if (one.cpu == last.cpu && one.over <= last.over && one.over > last.over - std::chrono::milliseconds(20)) lost += one.length;
+        if (one.cpu == last.cpu && one.over <= last.over &&
+            one.over > last.over - std::chrono::milliseconds(20))
+          lost += one.length;
       worst = std::max(worst, lost);
     }
     return worst;
@@ -80,8 +85,8 @@ class StallWatch {
   std::vector<std::thread> threads_;
 };
 
-/// Tells `story`, whose failures count if the machine was there throughout, and those of the last of so many tellings in any case; `afresh`
-/// comes before each but the first.
+/// Tells `story`, whose failures count if the machine was there throughout, and those of the last
+/// of so many tellings in any case; `afresh` comes before each but the first.
 template <class Story, class Afresh>
 void in_real_time(const Story& story, const Afresh& afresh) {
   constexpr double kTolerated = 0.004;  // [s]
@@ -90,15 +95,18 @@ void in_real_time(const Story& story, const Afresh& afresh) {
     testing::TestPartResultArray results;
     double lost = 0.0;
     {
-      const testing::ScopedFakeTestPartResultReporter kept(testing::ScopedFakeTestPartResultReporter::INTERCEPT_ALL_THREADS, &results);
+      const testing::ScopedFakeTestPartResultReporter kept(
+          testing::ScopedFakeTestPartResultReporter::INTERCEPT_ALL_THREADS, &results);
       const StallWatch watch;
       story();
       lost = watch.worst();
     }
     bool failed = false;
-    for (int i = 0; i < results.size(); ++i) failed = failed || results.GetTestPartResult(i).failed();
+    for (int i = 0; i < results.size(); ++i)
+      failed = failed || results.GetTestPartResult(i).failed();
     if (failed && lost > kTolerated && telling < kTellings) {
-      std::printf("void: the machine took %.1f of 20 ms away; %s\n", 1e3 * lost, results.GetTestPartResult(0).message());
+      std::printf("void: the machine took %.1f of 20 ms away; %s\n", 1e3 * lost,
+                  results.GetTestPartResult(0).message());
       std::fflush(stdout);
       afresh();
       continue;

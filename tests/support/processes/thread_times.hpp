@@ -27,11 +27,13 @@ class Times {
   /// What that share of them is at most [ms]; 0 without any.
   double at(double share) {
     std::sort(all_.begin(), all_.end());
-    return all_.empty() ? 0.0 : all_[static_cast<std::size_t>(share * static_cast<double>(all_.size() - 1))] * 1e3;
+    return all_.empty()
+               ? 0.0
+               : all_[static_cast<std::size_t>(share * static_cast<double>(all_.size() - 1))] * 1e3;
   }
   void print(const char* what) {
-    std::printf("%-24s %4zu cases  median %7.2f  p95 %7.2f  p99 %7.2f  largest %7.2f ms\n", what, all_.size(), at(0.5), at(0.95), at(0.99),
-                at(1));
+    std::printf("%-24s %4zu cases  median %7.2f  p95 %7.2f  p99 %7.2f  largest %7.2f ms\n", what,
+                all_.size(), at(0.5), at(0.95), at(0.99), at(1));
   }
 
  private:

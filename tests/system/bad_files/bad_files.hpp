@@ -1,4 +1,5 @@
-// A table of bad files: what is in each, the command that reads the file, and how the command must refuse it.
+// A table of bad files: what is in each, the command that reads the file, and how the command must
+// refuse it.
 #pragma once
 
 #include <string>
@@ -6,9 +7,11 @@
 
 namespace handsel::test {
 
-/// One bad file. In `command`, {} stands for the file and {folder} for its folder, which is the row's own.
+/// One bad file. In `command`, {} stands for the file and {folder} for its folder, which is the
+/// row's own.
 struct BadFile {
-  std::string name;     ///< of the row, and of the file: "mesh/cut.ply"; the part before / is the parser
+  std::string
+      name;  ///< of the row, and of the file: "mesh/cut.ply"; the part before / is the parser
   std::string content;  ///< of the file
   std::string command;  ///< "grasp placements --object {}"; begins with handsel_ for a component
   std::string says;     ///< part of the sentence on stderr, or, of JSON Lines, in the answer
@@ -27,7 +30,8 @@ void add_scenarios(BadFiles& table);
 void add_recordings(BadFiles& table);
 void add_lines(BadFiles& table);
 
-/// `text` with the first `from` replaced; ends the test program when there is none, so that a row never is good by mistake.
+/// `text` with the first `from` replaced; ends the test program when there is none, so that a row
+/// never is good by mistake.
 std::string with(std::string text, const std::string& from, const std::string& to);
 /// The content of a file of the source tree.
 std::string source_file(const std::string& path);

@@ -1,4 +1,5 @@
-// Bad settings of each component, and what lies beside them: task domain, calibration, profiles of people, the transport's own XML.
+// Bad settings of each component, and what lies beside them: task domain, calibration, profiles of
+// people, the transport's own XML.
 #include "tests/system/bad_files/bad_files.hpp"
 
 namespace handsel::test {
@@ -26,14 +27,18 @@ class Settings {
   /// One key with a value that is refused, and what is said; "is ..." stands for "<key>: is ...".
   Settings& key(const std::string& name, const std::string& value, const std::string& says) {
     const std::string sentence = says.rfind("is ", 0) == 0 ? name + ": " + says : says;
-    return add(name + "_" + std::to_string(++rows_), changed(file_, name + ":", name + ": " + value), sentence);
+    return add(name + "_" + std::to_string(++rows_),
+               changed(file_, name + ":", name + ": " + value), sentence);
   }
-  Settings& text(const std::string& row, const std::string& content, const std::string& says) { return add(row, content, says); }
+  Settings& text(const std::string& row, const std::string& content, const std::string& says) {
+    return add(row, content, says);
+  }
   Settings& missing() {
-    table_.push_back({component_ + "_missing/" + file_, "",
-                      "env sh -c 'cp {source}/deploy/config/*.txtpb {folder}; rm {}; exec handsel_" + component_ +
-                          " --standby --scenario give_mug --domain {domain} --config {folder}'",
-                      file_, 3, "", BadFile::Kind::missing});
+    table_.push_back(
+        {component_ + "_missing/" + file_, "",
+         "env sh -c 'cp {source}/deploy/config/*.txtpb {folder}; rm {}; exec handsel_" +
+             component_ + " --standby --scenario give_mug --domain {domain} --config {folder}'",
+         file_, 3, "", BadFile::Kind::missing});
     return *this;
   }
 
@@ -86,8 +91,12 @@ void add_components(BadFiles& table) {
   Settings(table, "collision_checker", "collision_checker.txtpb")
       .key("period", "0", "is 0, must be")
       .key("horizon", "nan", "is nan, must be");
-  Settings(table, "costmap", "costmap.txtpb").key("resolution", "1e-400", "is 0, must be").key("repeat", "0.6", "is 0.6, must be");
-  Settings(table, "costmap", "cost.txtpb").key("safety_radius", "inf", "is inf, must be").key("w_safety", "-1", "is -1, must be");
+  Settings(table, "costmap", "costmap.txtpb")
+      .key("resolution", "1e-400", "is 0, must be")
+      .key("repeat", "0.6", "is 0.6, must be");
+  Settings(table, "costmap", "cost.txtpb")
+      .key("safety_radius", "inf", "is inf, must be")
+      .key("w_safety", "-1", "is -1, must be");
   Settings(table, "trajectory_planner", "trajectory_planner.txtpb")
       .key("corner_step", "nan", "is nan, must be")
       .key("allowed_excess", "1", "is 1, must be");
@@ -103,50 +112,73 @@ void add_components(BadFiles& table) {
       .key("step", "1", "is 1, must be")
       .key("position_noise", "nan", "is nan, must be")
       .key("solver_iterations", "2000000000", "is 2e+09, must be");
-  Settings(table, "ros2_lane", "ros2_lane.txtpb").key("people_rate", "nan", "is nan, must be").key("tf_rate", "900", "is 900, must be");
+  Settings(table, "ros2_lane", "ros2_lane.txtpb")
+      .key("people_rate", "nan", "is nan, must be")
+      .key("tf_rate", "900", "is 900, must be");
   Settings(table, "position_arm", "position_arm.txtpb").key("cycle", "nan", "is nan, must be");
-  Settings(table, "reflex_arm", "reflex_arm.txtpb").key("joint_deceleration", "inf", "is inf, must be");
+  Settings(table, "reflex_arm", "reflex_arm.txtpb")
+      .key("joint_deceleration", "inf", "is inf, must be");
 }
 
 void add_companions(BadFiles& table) {
   Settings(table, "spark", "calibration.txtpb")
       .text("days_nan", "valid_days: nan\n", "calibration.txtpb:1:valid_days: is nan")
       .text("no_camera", "sources { source: \"a\" speaks_in: CAMERA }\n", "T_world_camera")
-      .text("source_twice", "sources { source: \"a\" }\nsources { source: \"a\" }\n", "is there twice")
+      .text("source_twice", "sources { source: \"a\" }\nsources { source: \"a\" }\n",
+            "is there twice")
       .text("no_name", "sources { }\n", "a source has no name")
-      .text("quaternion_zero", "sources { source: \"a\" speaks_in: CAMERA T_world_camera { orientation { w: 0 } } }\n", "norm 0")
-      .text("mirrored", "robots { robot: \"jido\" T_world_base { rotation: [-1, 0, 0, 0, 1, 0, 0, 0, 1] } }\n", "mirrors")
+      .text("quaternion_zero",
+            "sources { source: \"a\" speaks_in: CAMERA T_world_camera { orientation { w: 0 } } }\n",
+            "norm 0")
+      .text("mirrored",
+            "robots { robot: \"jido\" T_world_base { rotation: [-1, 0, 0, 0, 1, 0, 0, 0, 1] } }\n",
+            "mirrors")
       .text("no_date", "robots { robot: \"jido\" measured: \"2026-02-30\" }\n", "no date")
-      .text("far", "robots { robot: \"jido\" T_world_base { position { x: 1e5 } } }\n", "x: is 100000");
+      .text("far", "robots { robot: \"jido\" T_world_base { position { x: 1e5 } } }\n",
+            "x: is 100000");
   Settings(table, "spark", "people.txtpb")
       .text("height_nan", "people { id: \"a\" height: nan }\n", "people.txtpb:1:height: is nan")
       .text("person_twice", "people { id: \"a\" }\npeople { id: \"a\" }\n", "two profiles")
       .text("giant", "people { id: \"a\" height: 17 }\n", "is 17, must be a number in [0, 2.5]");
   Settings(table, "supervisor", "tasks.txtpb")
       .text("tasks_binary", std::string("\1\2\3", 3), "tasks.txtpb:1")
-      .text("cost_nan", "tasks { name: \"t\" methods { cost: nan } }\n", "tasks.txtpb:1:cost: is nan")
+      .text("cost_nan", "tasks { name: \"t\" methods { cost: nan } }\n",
+            "tasks.txtpb:1:cost: is nan")
       .text("no_methods", "tasks { name: \"t\" }\n", "has no methods")
-      .text("task_twice", "tasks { name: \"t\" methods { name: \"m\" } }\ntasks { name: \"t\" methods { name: \"m\" } }\n",
+      .text("task_twice",
+            "tasks { name: \"t\" methods { name: \"m\" } }\ntasks { name: \"t\" methods { name: "
+            "\"m\" } }\n",
             "is there already")
-      .text("no_predicate", "tasks { name: \"t\" methods { name: \"m\" when { is: \"flies ?x\" } } }\n", "is no predicate")
-      .text("endless", "tasks { name: \"t\" methods { name: \"m\" steps { task: \"u\" } } }\n", "neither a task nor an action")
-      .text("both", "tasks { name: \"t\" methods { name: \"m\" steps { task: \"t\" all { } } } }\n", "either a task or all")
+      .text("no_predicate",
+            "tasks { name: \"t\" methods { name: \"m\" when { is: \"flies ?x\" } } }\n",
+            "is no predicate")
+      .text("endless", "tasks { name: \"t\" methods { name: \"m\" steps { task: \"u\" } } }\n",
+            "neither a task nor an action")
+      .text("both", "tasks { name: \"t\" methods { name: \"m\" steps { task: \"t\" all { } } } }\n",
+            "either a task or all")
       .missing();
 }
 
 void add_transport(BadFiles& table) {
-  const std::string watch = "env CYCLONEDDS_URI=file://{} handsel topic hz robot_state --seconds 0.1 --domain {domain}";
-  const auto xml = [&](const std::string& name, const std::string& content, const std::string& says) {
+  const std::string watch =
+      "env CYCLONEDDS_URI=file://{} handsel topic hz robot_state --seconds 0.1 --domain {domain}";
+  const auto xml = [&](const std::string& name, const std::string& content,
+                       const std::string& says) {
     table.push_back({"dds/" + name + ".xml", content, watch, says});
   };
   xml("empty", "", "is no XML");
   xml("binary", std::string("\0\1\377", 3), "is no XML");
   xml("deep", std::string(3000, '<'), "is no XML");
-  xml("unknown", "<CycloneDDS><Domain><Speed>1</Speed></Domain></CycloneDDS>", "the DDS configuration cannot be used");
-  xml("size_nan", "<CycloneDDS><Domain><Internal><MaxSampleSize>nan</MaxSampleSize></Internal></Domain></CycloneDDS>",
+  xml("unknown", "<CycloneDDS><Domain><Speed>1</Speed></Domain></CycloneDDS>",
       "the DDS configuration cannot be used");
-  table.push_back({"dds/missing.xml", "", watch, "missing.xml is not there", 3, "", BadFile::Kind::missing});
-  table.push_back({"dds/folder.xml", "", watch, "folder.xml is not there", 3, "", BadFile::Kind::folder});
+  xml("size_nan",
+      "<CycloneDDS><Domain><Internal><MaxSampleSize>nan</MaxSampleSize></Internal></Domain></"
+      "CycloneDDS>",
+      "the DDS configuration cannot be used");
+  table.push_back(
+      {"dds/missing.xml", "", watch, "missing.xml is not there", 3, "", BadFile::Kind::missing});
+  table.push_back(
+      {"dds/folder.xml", "", watch, "folder.xml is not there", 3, "", BadFile::Kind::folder});
 }
 
 }  // namespace

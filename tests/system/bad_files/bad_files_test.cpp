@@ -1,5 +1,6 @@
-// Every file a user can name is read with checks: no bad one crashes a command, hangs it or is half taken. Each row runs the command as
-// shipped. HANDSEL_BIN names another folder of binaries, e.g. build/asan/bin; HANDSEL_BAD_FILES a part of the names of the rows to run.
+// Every file a user can name is read with checks: no bad one crashes a command, hangs it or is half
+// taken. Each row runs the command as shipped. HANDSEL_BIN names another folder of binaries, e.g.
+// build/asan/bin; HANDSEL_BAD_FILES a part of the names of the rows to run.
 #include "tests/system/bad_files/bad_files.hpp"
 
 #include <fcntl.h>
@@ -49,9 +50,9 @@ std::string source_file(const std::string& path) {
 
 namespace {
 
-constexpr double kMaxTime = 2.0;               // [s] of processor, so that a busy machine does not count
+constexpr double kMaxTime = 2.0;  // [s] of processor, so that a busy machine does not count
 constexpr std::chrono::seconds kPatience{40};  // until a command that waits for something is killed
-constexpr int kAtOnce = 4;                     // most commands wait for the transport, not for a core
+constexpr int kAtOnce = 4;  // most commands wait for the transport, not for a core
 constexpr const char* kDomain = "227";
 
 struct Ended {
@@ -80,7 +81,9 @@ Ended wait_for(pid_t child) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   ended.processor_time = seconds(used.ru_utime) + seconds(used.ru_stime);
   if (WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);
@@ -96,20 +99,24 @@ std::string binaries() {
 Ended run(const BadFile& row, const fs::path& folder) {
   const fs::path file = folder / fs::path(row.name).filename();
   if (row.kind == BadFile::Kind::folder) fs::create_directories(file);
-  if (row.kind == BadFile::Kind::file || row.kind == BadFile::Kind::unreadable) std::ofstream(file, std::ios::binary) << row.content;
+  if (row.kind == BadFile::Kind::file || row.kind == BadFile::Kind::unreadable)
+    std::ofstream(file, std::ios::binary) << row.content;
   if (row.kind == BadFile::Kind::unreadable) fs::permissions(file, fs::perms::none);
   std::ofstream(folder / "stdin", std::ios::binary) << row.input;
   std::string command = row.command;
   const auto put = [&](const std::string& key, const std::string& value) {
-    for (std::size_t at = 0; (at = command.find(key, at)) != std::string::npos; at += value.size()) command.replace(at, key.size(), value);
+    for (std::size_t at = 0; (at = command.find(key, at)) != std::string::npos; at += value.size())
+      command.replace(at, key.size(), value);
   };
   put("{folder}", folder.string());
   put("{source}", HANDSEL_SOURCE_DIR);
   put("{}", file.string());
   put("{domain}", kDomain);
-  const std::string program = command.rfind("handsel_", 0) == 0 || command.rfind("env ", 0) == 0 ? "" : "handsel ";
-  const std::string line = "PATH=" + binaries() + ":$PATH; exec " + program + command + " <" + (folder / "stdin").string() + " >" +
-                           (folder / "stdout").string() + " 2>" + (folder / "stderr").string();
+  const std::string program =
+      command.rfind("handsel_", 0) == 0 || command.rfind("env ", 0) == 0 ? "" : "handsel ";
+  const std::string line = "PATH=" + binaries() + ":$PATH; exec " + program + command + " <" +
+                           (folder / "stdin").string() + " >" + (folder / "stdout").string() +
+                           " 2>" + (folder / "stderr").string();
   const pid_t child = fork();
   if (child == 0) {
     setpgid(0, 0);
@@ -129,14 +136,19 @@ std::string complaint(const BadFile& row, const Ended& ended) {
   const std::string& said = row.input.empty() ? ended.err : ended.out + ended.err;
   if (ended.killed) what << "hung; ";
   if (ended.signal != 0) what << "signal " << ended.signal << "; ";
-  if (ended.exit_code != row.exit_code) what << "exit code " << ended.exit_code << " instead of " << row.exit_code << "; ";
+  if (ended.exit_code != row.exit_code)
+    what << "exit code " << ended.exit_code << " instead of " << row.exit_code << "; ";
   if (said.find(row.says) == std::string::npos) what << "does not say \"" << row.says << "\"; ";
-  if (row.input.empty() && std::count(ended.err.begin(), ended.err.end(), '\n') != 1) what << "does not say one sentence; ";
+  if (row.input.empty() && std::count(ended.err.begin(), ended.err.end(), '\n') != 1)
+    what << "does not say one sentence; ";
   if (ended.err.size() > 1000) what << "says " << ended.err.size() << " bytes; ";
-  if (said.find("runtime error:") != std::string::npos || said.find("Sanitizer") != std::string::npos) what << "sanitizer; ";
+  if (said.find("runtime error:") != std::string::npos ||
+      said.find("Sanitizer") != std::string::npos)
+    what << "sanitizer; ";
   if (ended.processor_time > kMaxTime) what << "took " << ended.processor_time << " s; ";
   std::string text = what.str();
-  if (!text.empty()) text += "stdout: " + ended.out.substr(0, 300) + " stderr: " + ended.err.substr(0, 3000);
+  if (!text.empty())
+    text += "stdout: " + ended.out.substr(0, 300) + " stderr: " + ended.err.substr(0, 3000);
   return text;
 }
 
@@ -148,7 +160,10 @@ BadFiles table() {
   add_scenarios(all);
   add_recordings(all);
   add_lines(all);
-  if (geteuid() == 0) std::erase_if(all, [](const BadFile& row) { return row.kind == BadFile::Kind::unreadable; });  // root reads it
+  if (geteuid() == 0)
+    std::erase_if(all, [](const BadFile& row) {
+      return row.kind == BadFile::Kind::unreadable;
+    });  // root reads it
   return all;
 }
 

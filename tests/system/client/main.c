@@ -1,4 +1,5 @@
-/* A program outside the build: opens both ends of every topic, then publishes a person until its input ends. */
+/* A program outside the build: opens both ends of every topic, then publishes a person until its
+ * input ends. */
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,11 +22,14 @@ int main(void) {
     dds_delete_qos(qos);
     if (handsel_find_topic("human_observation") == &topics[i]) writer = ours;
   }
-  if (handsel_find_topic("nonsense") != NULL || handsel_topic_qos("nonsense") != NULL || access(PERCEPTION_IDL, R_OK) != 0) return 1;
+  if (handsel_find_topic("nonsense") != NULL || handsel_topic_qos("nonsense") != NULL ||
+      access(PERCEPTION_IDL, R_OK) != 0)
+    return 1;
   printf("%zu topics\n", count);
   fflush(stdout);
 
-  struct handsel_ObservedJoint head = {.name = "head", .position = {2.0, 0.5, 1.7}, .confidence = 1.0};
+  struct handsel_ObservedJoint head = {
+      .name = "head", .position = {2.0, 0.5, 1.7}, .confidence = 1.0};
   struct handsel_ObservedPerson person = {.body = "b1"};
   person.joints._buffer = &head;
   person.joints._length = person.joints._maximum = 1;

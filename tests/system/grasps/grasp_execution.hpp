@@ -1,4 +1,5 @@
-// One planned grasp carried out in the emulated world: straight approach, the controller's hand closing, lift, tilt, shake.
+// One planned grasp carried out in the emulated world: straight approach, the controller's hand
+// closing, lift, tilt, shake.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -44,8 +45,9 @@ struct Outcome {
   double turn{};        ///< likewise [rad]
   double pressure{};    ///< normal force of the hand after closing [N]
   double constraint{};  ///< share of the time in which the constraint held
-  std::string hold;     ///< what held it after the lift, as the ground truth says: "contact" or "constraint"
-  double real_time{};   ///< simulated seconds per second of the processor, object in hand
+  std::string
+      hold;  ///< what held it after the lift, as the ground truth says: "contact" or "constraint"
+  double real_time{};  ///< simulated seconds per second of the processor, object in hand
   bool held() const { return lost.empty(); }
 };
 
@@ -54,7 +56,8 @@ enum class Handling { lift, lift_tilt_shake };
 /// One grasp from the stand-off to the lift.
 class Execution {
  public:
-  Execution(const RobotModel& robot, const std::string& model, double x, double y, double yaw, const Grasp& grasp,
+  Execution(const RobotModel& robot, const std::string& model, double x, double y, double yaw,
+            const Grasp& grasp,
             const sim::SimSettings& settings = sim::load_settings(kDeploy / "config"))
       : robot_(robot),
         arm_(robot.require_group("arm")),
@@ -82,7 +85,8 @@ class Execution {
     const std::clock_t began = std::clock();
     const double from = world_.time();
     stage_ = "lift";
-    Pose T = robot_.link_pose(RobotModel::with(command_.position, arm_, grasp_.arm_joints), robot_.tool_link());
+    Pose T = robot_.link_pose(RobotModel::with(command_.position, arm_, grasp_.arm_joints),
+                              robot_.tool_link());
     T.translation().z() += 0.12;
     if (!go(T, 2.0)) {
       out_.lost = "no way up";
@@ -100,7 +104,8 @@ class Execution {
       stage_ = "shake";
       for (int axis = 0; axis < 3; ++axis) shake(Vector3::Unit(axis));
     }
-    out_.real_time = (world_.time() - from) / (static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
+    out_.real_time =
+        (world_.time() - from) / (static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
     out_.constraint = world_.constraint_fraction();
     return out_;
   }
@@ -112,7 +117,8 @@ class Execution {
     v->set_z(to.z());
   }
 
-  /// Returns the settings with a robot side that follows whatever it is sent: the paths here are interpolated, without accelerations.
+  /// Returns the settings with a robot side that follows whatever it is sent: the paths here are
+  /// interpolated, without accelerations.
   static sim::SimSettings unchecked(sim::SimSettings settings) {
     settings.robot_side.period = 0.0;
     return settings;
@@ -137,12 +143,14 @@ class Execution {
     task->set_kind("pick");
     task->set_object("it");
     const Vector q = opened(grasp_.approach_joints);
-    for (int i = 0; i < robot_.dof(); ++i) (*s.mutable_start())[robot_.axes()[static_cast<std::size_t>(i)].name] = q[i];
+    for (int i = 0; i < robot_.dof(); ++i)
+      (*s.mutable_start())[robot_.axes()[static_cast<std::size_t>(i)].name] = q[i];
     return s;
   }
 
   Vector opened(const Vector& arm_q) const {
-    return RobotModel::with(RobotModel::with(robot_.rest_configuration(), arm_, arm_q), hand_, grasp_.pregrasp_joints);
+    return RobotModel::with(RobotModel::with(robot_.rest_configuration(), arm_, arm_q), hand_,
+                            grasp_.pregrasp_joints);
   }
 
   void tick() {
@@ -171,7 +179,10 @@ class Execution {
     if (!world_.robot_grips()) out_.lost = stage_;
   }
 
-  Pose in_tool() const { return robot_.link_pose(state_.position, robot_.tool_link()).inverse() * world_.T_world_object("it"); }
+  Pose in_tool() const {
+    return robot_.link_pose(state_.position, robot_.tool_link()).inverse() *
+           world_.T_world_object("it");
+  }
 
   bool go(const Pose& T, double duration) {
     const auto q = robot_.inverse(arm_, T, command_.position);
@@ -179,15 +190,18 @@ class Execution {
     return q.has_value();
   }
 
-  /// By 90 degrees about a horizontal axis through the object, clear of the table; of the ways there the shortest for the arm.
+  /// By 90 degrees about a horizontal axis through the object, clear of the table; of the ways
+  /// there the shortest for the arm.
   bool tilt(const Pose& T_world_tool) {
     std::optional<Vector> best;
     double least = 2.5;
     for (const double height : {0.0, 0.1, 0.2}) {
       for (int k = 0; k < 8; ++k) {
         const Vector3 axis(std::cos(k * M_PI / 4), std::sin(k * M_PI / 4), 0);
-        const Pose about = Eigen::Translation3d(world_.T_world_object("it").translation()) * Eigen::AngleAxisd(M_PI / 2, axis) *
-                           Eigen::Translation3d(-world_.T_world_object("it").translation()) * T_world_tool;
+        const Pose about = Eigen::Translation3d(world_.T_world_object("it").translation()) *
+                           Eigen::AngleAxisd(M_PI / 2, axis) *
+                           Eigen::Translation3d(-world_.T_world_object("it").translation()) *
+                           T_world_tool;
         for (const double inward : {0.0, 0.1, 0.2}) {
           Pose T = about;
           T.translation() += Vector3(-inward, inward, 0.1 + height);
@@ -208,7 +222,8 @@ class Execution {
     const Pose T = robot_.link_pose(q, robot_.tool_link());
     for (int axis = 0; axis < 3; ++axis) {
       for (const double way : {kShake, -kShake}) {
-        if (!robot_.inverse(arm_, Eigen::Translation3d(way * Vector3::Unit(axis)) * T, q)) return false;
+        if (!robot_.inverse(arm_, Eigen::Translation3d(way * Vector3::Unit(axis)) * T, q))
+          return false;
       }
     }
     return true;
@@ -219,8 +234,10 @@ class Execution {
     constexpr double kRate = 2 * M_PI * 2.0;
     const Vector middle = RobotModel::part(command_.position, arm_);
     const Pose T = robot_.link_pose(command_.position, robot_.tool_link());
-    const auto there = robot_.inverse(arm_, Eigen::Translation3d(kShake * along) * T, command_.position);
-    const auto back = robot_.inverse(arm_, Eigen::Translation3d(-kShake * along) * T, command_.position);
+    const auto there =
+        robot_.inverse(arm_, Eigen::Translation3d(kShake * along) * T, command_.position);
+    const auto back =
+        robot_.inverse(arm_, Eigen::Translation3d(-kShake * along) * T, command_.position);
     if (!there || !back) {
       if (out_.held()) out_.lost = "no way to shake";
       return;
@@ -228,7 +245,8 @@ class Execution {
     const Vector way = (*there - *back) / 2;
     const auto put = [&](double share, double speed) {
       for (std::size_t i = 0; i < arm_.axes.size(); ++i) {
-        command_.position[arm_.axes[i]] = middle[static_cast<Eigen::Index>(i)] + share * way[static_cast<Eigen::Index>(i)];
+        command_.position[arm_.axes[i]] =
+            middle[static_cast<Eigen::Index>(i)] + share * way[static_cast<Eigen::Index>(i)];
         command_.velocity[arm_.axes[i]] = speed * way[static_cast<Eigen::Index>(i)];
       }
       tick();
@@ -248,7 +266,8 @@ class Execution {
     const Vector from = RobotModel::part(command_.position, arm_);
     const int steps = static_cast<int>(duration / kDt);
     for (int k = 1; k <= steps; ++k) {
-      const double u = static_cast<double>(k) / steps, share = u * u * u * (10 - 15 * u + 6 * u * u);
+      const double u = static_cast<double>(k) / steps,
+                   share = u * u * u * (10 - 15 * u + 6 * u * u);
       const double speed = 30 * u * u * (1 - u) * (1 - u) / duration;
       for (std::size_t i = 0; i < arm_.axes.size(); ++i) {
         const auto e = static_cast<Eigen::Index>(i);

@@ -1,9 +1,11 @@
-// Does the quality of a listed grasp say whether it holds? The Schunk hand alone, in the emulated world's physics, by contact only: grasps
-// of every decile of quality are closed on the object, lifted, tilted and shaken.
+// Does the quality of a listed grasp say whether it holds? The Schunk hand alone, in the emulated
+// world's physics, by contact only: grasps of every decile of quality are closed on the object,
+// lifted, tilted and shaken.
 //
-// The hand stands still but for a lift of 12 cm; what the world does to the object is told in the hand's frame: no weight while it closes
-// (nothing supports the object, it only resists being pushed about, as on a table), then its weight downward, then tilted by 90 degrees to
-// each side, then shaken by 3.2 m/s^2 along each axis. HANDSEL_RUNS: grasps of each decile.
+// The hand stands still but for a lift of 12 cm; what the world does to the object is told in the
+// hand's frame: no weight while it closes (nothing supports the object, it only resists being
+// pushed about, as on a table), then its weight downward, then tilted by 90 degrees to each side,
+// then shaken by 3.2 m/s^2 along each axis. HANDSEL_RUNS: grasps of each decile.
 #include <gtest/gtest.h>
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -41,29 +43,34 @@ RobotModel hand_on_a_slide(const std::vector<Axis>& hand_axes) {
   std::ifstream in(kDeploy / "hands/sah/sah.urdf");
   std::string urdf{std::istreambuf_iterator<char>(in), {}};
   const std::string head = "<robot name=\"sah\">";
-  urdf.insert(urdf.find(head) + head.size(),
-              R"(<link name="base"><inertial><mass value="10"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  urdf.insert(
+      urdf.find(head) + head.size(),
+      R"(<link name="base"><inertial><mass value="10"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="slide" type="prismatic"><parent link="base"/><child link="palm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="2" effort="1000"/></joint>)");
   folder.write("rig.urdf", urdf);
   std::string names;
   for (const Axis& a : hand_axes) names += (names.empty() ? "\"" : ", \"") + a.name + "\"";
   const auto limits = [&](const std::string& kind, double factor) {
     std::ostringstream out;
-    out << kind << " { joints: [" << names << "] velocity: " << 2.85 * factor << " acceleration: " << 14.2 * factor
-        << " jerk: " << 107 * factor << " }\n"
-        << kind << " { joints: \"slide\" velocity: " << factor << " acceleration: " << 20 * factor << " jerk: " << 200 * factor << " }\n";
+    out << kind << " { joints: [" << names << "] velocity: " << 2.85 * factor
+        << " acceleration: " << 14.2 * factor << " jerk: " << 107 * factor << " }\n"
+        << kind << " { joints: \"slide\" velocity: " << factor << " acceleration: " << 20 * factor
+        << " jerk: " << 200 * factor << " }\n";
     return out.str();
   };
   return RobotModel::load(folder.write("rig.txtpb",
-                                       "name: \"rig\"\nurdf: \"rig.urdf\"\ngroups { name: \"arm\" joints: \"slide\" tip_link: \"palm\" }\n"
+                                       "name: \"rig\"\nurdf: \"rig.urdf\"\ngroups { name: \"arm\" "
+                                       "joints: \"slide\" tip_link: \"palm\" }\n"
                                        "groups { name: \"hand\" joints: [" +
-                                           names + "] }\ntool_link: \"palm\"\n" + limits("comfort", 1) + limits("guard", 1.5) +
+                                           names + "] }\ntool_link: \"palm\"\n" +
+                                           limits("comfort", 1) + limits("guard", 1.5) +
                                            limits("stop", 1)));
 }
 
 class Rig {
  public:
-  Rig(const RobotModel& robot, const ObjectModel& object, const Grasp& grasp, const sim::SimSettings& settings)
+  Rig(const RobotModel& robot, const ObjectModel& object, const Grasp& grasp,
+      const sim::SimSettings& settings)
       : robot_(robot),
         hand_(robot.require_group("hand")),
         grasp_(grasp),
@@ -76,16 +83,19 @@ class Rig {
     dynamics_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
     q_ = RobotModel::with(Vector::Zero(robot.dof()), hand_, grasp.pregrasp_joints);
     const Pose base = make_pose(Vector3(0, 0, 1));
-    body_ = std::make_unique<sim::RobotBody>(robot, base, q_, settings.servo, settings.pad,
-                                             sim::BodyWorld{dynamics_, shapes_, sim::kRobot, sim::kObject});
+    body_ = std::make_unique<sim::RobotBody>(
+        robot, base, q_, settings.servo, settings.pad,
+        sim::BodyWorld{dynamics_, shapes_, sim::kRobot, sim::kObject});
     for (int i = 0; i < body_->bodies(); ++i) {
       if (body_->collider(i) == nullptr) continue;
       sim::own(*body_->collider(i), sim::Owner::robot, i);
       body_->collider(i)->setContactProcessingThreshold(0.001);
     }
-    contact_ = std::make_unique<sim::RobotGrasp>(robot.tool_link(), *body_, settings.touch_force, settings.grasp_time, settings.lose_time);
-    object_ = std::make_unique<sim::ObjectBody>(sim::StartObject{"it", object.name, &object, base * grasp.T_object_hand.inverse()}, 0,
-                                                shapes_, dynamics_);
+    contact_ = std::make_unique<sim::RobotGrasp>(robot.tool_link(), *body_, settings.touch_force,
+                                                 settings.grasp_time, settings.lose_time);
+    object_ = std::make_unique<sim::ObjectBody>(
+        sim::StartObject{"it", object.name, &object, base * grasp.T_object_hand.inverse()}, 0,
+        shapes_, dynamics_);
     body_->read();
     object_->read();
     state_.position = q_;
@@ -108,7 +118,8 @@ class Rig {
     }
     if (fallen()) return "lift";
     Vector3 down(0, 0, -kG);
-    for (const Vector3& way : {Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0), Vector3(0, 0, -1)}) {
+    for (const Vector3& way : {Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 1, 0),
+                               Vector3(0, -1, 0), Vector3(0, 0, -1)}) {
       const Vector3 from = down;
       for (double t = 0; t < 0.4; t += kDt) {
         down = kG * (from + std::min(1.0, t / 0.2) * (kG * way - from)).normalized();
@@ -117,15 +128,20 @@ class Rig {
       if (fallen()) return "tilt";
     }
     for (int axis = 0; axis < 3; ++axis) {
-      for (double t = 0; t < 0.75; t += kDt) tick(down + 3.2 * std::sin(2 * M_PI * 4 * t) * Vector3::Unit(axis));
+      for (double t = 0; t < 0.75; t += kDt)
+        tick(down + 3.2 * std::sin(2 * M_PI * 4 * t) * Vector3::Unit(axis));
       if (fallen()) return "shake";
     }
     return "";
   }
 
  private:
-  Pose in_hand() const { return body_->T_world_link(robot_.tool_link()).inverse() * object_->T_world_object(); }
-  bool fallen() const { return !(((T_hand_object_.inverse() * in_hand()).translation()).norm() < kFallen); }
+  Pose in_hand() const {
+    return body_->T_world_link(robot_.tool_link()).inverse() * object_->T_world_object();
+  }
+  bool fallen() const {
+    return !(((T_hand_object_.inverse() * in_hand()).translation()).norm() < kFallen);
+  }
 
   bool close() {
     fingers_ = test::fingers_of(robot_, hand_, q_);
@@ -135,7 +151,8 @@ class Rig {
     closing.position = grasp_.hand_joints;
     closing.effort = grasp_.hand_effort;
     EXPECT_EQ(fingers_->accept(closing), "");
-    for (int k = 0; k < 3000 && (k < 50 || fingers_->state() == HandState::moving); ++k) tick(Vector3::Zero());
+    for (int k = 0; k < 3000 && (k < 50 || fingers_->state() == HandState::moving); ++k)
+      tick(Vector3::Zero());
     for (int k = 0; k < 200; ++k) tick(Vector3::Zero());
     return contact_->pressure(touches_, 0) > 0.5;
   }
@@ -172,7 +189,8 @@ class Rig {
     object_->read();
     sim::gather(dispatcher_, kDt, 0.001, touches_);
     contact_->update(touches_, 0, object_->state().T_world_body.translation(), kDt);
-    measured_.update(touches_, *body_, *contact_, body_->T_world_link(robot_.tool_link()), {}, Vector3::Zero());
+    measured_.update(touches_, *body_, *contact_, body_->T_world_link(robot_.tool_link()), {},
+                     Vector3::Zero());
     state_.position = body_->position();
     state_.velocity = body_->velocity();
     state_.effort = body_->effort();
@@ -224,14 +242,17 @@ double auc(const std::vector<Tried>& tried, double Tried::*figure) {
 
 TEST(GraspQuality, separates_what_holds_from_what_falls) {
   const int of_each = test::runs(10);
-  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto hand_geometry =
+      std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const RobotModel robot = hand_on_a_slide(hand_geometry->hand.model().axes());
   const sim::SimSettings settings = sim::load_settings(kDeploy / "config");
   GraspCache book(hand_geometry, {}, GraspStore(""));
   std::vector<Tried> all;
-  std::printf("%-8s %6s %5s  %s\n", "object", "grasps", "held", "held of each decile of quality, the worst first");
+  std::printf("%-8s %6s %5s  %s\n", "object", "grasps", "held",
+              "held of each decile of quality, the worst first");
   for (const char* name : {"mug", "bottle", "box", "can", "ball"}) {
-    const ObjectModel object = ObjectModel::load(kDeploy / "objects" / name / (std::string(name) + ".txtpb"));
+    const ObjectModel object =
+        ObjectModel::load(kDeploy / "objects" / name / (std::string(name) + ".txtpb"));
     const auto page = book.page(object);
     const std::size_t n = page->list.grasps.size();
     ASSERT_GE(n, 50U) << name;
@@ -242,7 +263,9 @@ TEST(GraspQuality, separates_what_holds_from_what_falls) {
       for (int k = 0; k < of_each; ++k) {
         // The list begins with the best.
         const std::size_t rank =
-            n - 1 - static_cast<std::size_t>((static_cast<double>(decile) + (k + 0.5) / of_each) * static_cast<double>(n) / 10);
+            n - 1 -
+            static_cast<std::size_t>((static_cast<double>(decile) + (k + 0.5) / of_each) *
+                                     static_cast<double>(n) / 10);
         const Grasp& g = page->list.grasps[rank].grasp;
         const std::string lost = Rig(robot, object, g, settings).run();
         of_object.push_back({g.quality, g.epsilon, g.margin, lost.empty()});
@@ -250,16 +273,18 @@ TEST(GraspQuality, separates_what_holds_from_what_falls) {
       }
       row += std::to_string(held) + " ";
     }
-    const auto held = std::count_if(of_object.begin(), of_object.end(), [](const Tried& t) { return t.held; });
-    std::printf("%-8s %6zu %5ld  %s  AUC of quality %.3f, epsilon %.3f, margin of the squeeze %.3f\n", name, of_object.size(),
-                static_cast<long>(held), row.c_str(), auc(of_object, &Tried::quality), auc(of_object, &Tried::epsilon),
-                auc(of_object, &Tried::margin));
+    const auto held =
+        std::count_if(of_object.begin(), of_object.end(), [](const Tried& t) { return t.held; });
+    std::printf(
+        "%-8s %6zu %5ld  %s  AUC of quality %.3f, epsilon %.3f, margin of the squeeze %.3f\n", name,
+        of_object.size(), static_cast<long>(held), row.c_str(), auc(of_object, &Tried::quality),
+        auc(of_object, &Tried::epsilon), auc(of_object, &Tried::margin));
     std::fflush(stdout);
     all.insert(all.end(), of_object.begin(), of_object.end());
   }
   const double whole = auc(all, &Tried::quality);
-  std::printf("all: AUC of quality %.3f, epsilon %.3f, margin of the squeeze %.3f\n", whole, auc(all, &Tried::epsilon),
-              auc(all, &Tried::margin));
+  std::printf("all: AUC of quality %.3f, epsilon %.3f, margin of the squeeze %.3f\n", whole,
+              auc(all, &Tried::epsilon), auc(all, &Tried::margin));
   EXPECT_GE(whole, 0.7);
 }
 

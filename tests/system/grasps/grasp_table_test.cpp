@@ -13,13 +13,15 @@ namespace {
 
 TEST(GraspTable, every_object_made_by_others_has_grasps_by_every_hand) {
   const char* data = std::getenv("HANDSEL_DATA");
-  const std::filesystem::path folder = data == nullptr ? "" : std::filesystem::path(data) / "objects";
+  const std::filesystem::path folder =
+      data == nullptr ? "" : std::filesystem::path(data) / "objects";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "HANDSEL_DATA names no folder with objects";
   std::vector<std::string> meshes;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string name = entry.path().stem().string();
     // Convex parts and a mesh for collision are forms of objects that are there themselves.
-    if (entry.path().extension() == ".obj" && name.find("_vhacd") == std::string::npos && name != "mug_col")
+    if (entry.path().extension() == ".obj" && name.find("_vhacd") == std::string::npos &&
+        name != "mug_col")
       meshes.push_back(entry.path().string());
   }
   std::sort(meshes.begin(), meshes.end());

@@ -1,5 +1,6 @@
-// Double grasps and regrasp sequences of the robot with two arms on three objects: what each step says is checked by forward kinematics and
-// FCL, and that nothing shorter would do by trying every grasp.
+// Double grasps and regrasp sequences of the robot with two arms on three objects: what each step
+// says is checked by forward kinematics and FCL, and that nothing shorter would do by trying every
+// grasp.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -20,14 +21,18 @@ std::vector<std::string> objects() {
   return {"bottle"};
 }
 
-const HandOnObject& hand(int arm, const std::string& object) { return hand_on_object(arm == 0 ? "sah" : "sah_left", object, 60, 144); }
+const HandOnObject& hand(int arm, const std::string& object) {
+  return hand_on_object(arm == 0 ? "sah" : "sah_left", object, 60, 144);
+}
 
-void expect_hand_on(int arm, std::size_t grasp, const std::string& object, const Vector& q, const Pose& T_world_object) {
+void expect_hand_on(int arm, std::size_t grasp, const std::string& object, const Vector& q,
+                    const Pose& T_world_object) {
   const Grasp& g = hand(arm, object).list.grasps[grasp].grasp;
   const RegraspArm side = duo().arms(object)[static_cast<std::size_t>(arm)];
   const Pose T = duo().robot.link_pose(q, side.arm.palm), wanted = T_world_object * g.T_object_hand;
   EXPECT_LT((T.translation() - wanted.translation()).norm(), 1e-4);
-  EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(T.linear().transpose() * wanted.linear())).angle(), 1e-3);
+  EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(T.linear().transpose() * wanted.linear())).angle(),
+            1e-3);
   EXPECT_LT((RobotModel::part(q, *side.arm.fingers) - g.hand_joints).cwiseAbs().maxCoeff(), 1e-12);
 }
 
@@ -41,7 +46,8 @@ double object_distance(const std::string& object, const Vector& q, const Pose& T
   for (std::size_t l = 0; l < T.size(); ++l) {
     if (!judged(duo().robot.links()[l].name)) continue;
     for (const PlacedShape& s : duo().robot.links()[l].collision)
-      least = std::min(least, shape_distance(s.shape, T[l] * s.T_parent_shape, mesh, T_world_object).distance);
+      least = std::min(
+          least, shape_distance(s.shape, T[l] * s.T_parent_shape, mesh, T_world_object).distance);
   }
   return least;
 }
@@ -65,10 +71,13 @@ void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectS
     }
     const CollisionVerdict v = world.check(s.q);
     EXPECT_TRUE(v.free) << v.first << " touches " << v.second;
-    EXPECT_GT(object_distance(object, s.q, s.T_world_object, [](const std::string& link) { return !is_finger_or_palm(link); }), 0);
+    EXPECT_GT(object_distance(object, s.q, s.T_world_object,
+                              [](const std::string& link) { return !is_finger_or_palm(link); }),
+              0);
     if (s.kind == RegraspStepKind::pick) {
       EXPECT_EQ(state.arm, -1);
-      EXPECT_LT((state.T_world_object.matrix() - s.T_world_object.matrix()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT((state.T_world_object.matrix() - s.T_world_object.matrix()).cwiseAbs().maxCoeff(),
+                1e-12);
     } else {
       EXPECT_EQ(state.arm, s.from);
       EXPECT_EQ(state.grasp, s.grasp_from);
@@ -80,12 +89,15 @@ void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectS
     }
     expect_hand_on(s.to, s.grasp_to, object, s.q, s.T_world_object);
     // The hand that comes is opened, clear of the object, and gets there without touching anything.
-    EXPECT_GT(
-        object_distance(object, s.before, s.T_world_object,
-                        [&](const std::string& link) { return is_finger_or_palm(link) && (link.starts_with("left_") == (s.to == 1)); }),
-        0.001);
-    Vector there = RobotModel::with(s.q, *duo().arms(object)[static_cast<std::size_t>(s.to)].arm.fingers,
-                                    hand(s.to, object).list.grasps[s.grasp_to].grasp.pregrasp_joints);
+    EXPECT_GT(object_distance(object, s.before, s.T_world_object,
+                              [&](const std::string& link) {
+                                return is_finger_or_palm(link) &&
+                                       (link.starts_with("left_") == (s.to == 1));
+                              }),
+              0.001);
+    Vector there =
+        RobotModel::with(s.q, *duo().arms(object)[static_cast<std::size_t>(s.to)].arm.fingers,
+                         hand(s.to, object).list.grasps[s.grasp_to].grasp.pregrasp_joints);
     for (int n = 0; n <= 4; ++n) {
       const CollisionVerdict way = world.check(s.before + n / 4.0 * (there - s.before));
       EXPECT_TRUE(way.free) << n << "/4 of the way: " << way.first << " touches " << way.second;
@@ -105,12 +117,15 @@ void print(const RegraspPlan& plan, const std::string& object, const char* what)
               static_cast<unsigned long long>(plan.double_grasps));
 }
 
-/// Whether some grasp of an arm, reached at both places by inverse kinematics alone, would do without passing.
+/// Whether some grasp of an arm, reached at both places by inverse kinematics alone, would do
+/// without passing.
 bool one_hand_reaches_both(int arm, const std::string& object, const Pose& a, const Pose& b) {
   const RegraspArm side = duo().arms(object)[static_cast<std::size_t>(arm)];
   return std::any_of(side.list->grasps.begin(), side.list->grasps.end(), [&](const ListedGrasp& g) {
-    return duo().robot.inverse(*side.arm.arm, a * g.grasp.T_object_hand, duo().robot.rest_configuration()) &&
-           duo().robot.inverse(*side.arm.arm, b * g.grasp.T_object_hand, duo().robot.rest_configuration());
+    return duo().robot.inverse(*side.arm.arm, a * g.grasp.T_object_hand,
+                               duo().robot.rest_configuration()) &&
+           duo().robot.inverse(*side.arm.arm, b * g.grasp.T_object_hand,
+                               duo().robot.rest_configuration());
   });
 }
 
@@ -143,10 +158,14 @@ TEST(Regrasp, from_one_side_of_the_table_to_the_other_the_object_changes_hands_o
     ASSERT_TRUE(plan.solved) << object << ": " << plan.reason;
     print(plan, object, "across the table");
     EXPECT_GT(plan.double_grasps, 20U);
-    for (int arm = 0; arm < 2; ++arm) EXPECT_FALSE(one_hand_reaches_both(arm, object, task.start.T_world_object, task.goal.T_world_object));
+    for (int arm = 0; arm < 2; ++arm)
+      EXPECT_FALSE(
+          one_hand_reaches_both(arm, object, task.start.T_world_object, task.goal.T_world_object));
     ASSERT_GE(plan.steps.size(), 3U);
-    EXPECT_LE(plan.steps.size(), object == "can" ? 5U : 3U);  // on the can there is room for few pairs
-    for (std::size_t n = 1; n + 1 < plan.steps.size(); ++n) EXPECT_EQ(plan.steps[n].kind, RegraspStepKind::pass);
+    EXPECT_LE(plan.steps.size(),
+              object == "can" ? 5U : 3U);  // on the can there is room for few pairs
+    for (std::size_t n = 1; n + 1 < plan.steps.size(); ++n)
+      EXPECT_EQ(plan.steps[n].kind, RegraspStepKind::pass);
     expect_sequence(plan, object, task.start);
   }
 }
@@ -192,7 +211,8 @@ TEST(Regrasp, with_one_arm_it_puts_down_and_takes_up_again) {
   const RegraspPlan picked = planner.plan(task);
   ASSERT_TRUE(picked.solved) << picked.reason;
   task.start = {0, picked.steps.front().grasp_to, Pose::Identity()};
-  for (const double yaw : {0.0, 1.0, 2.0, -1.0, -2.0, 3.1}) task.placements.push_back(DuoStage::standing(object, 0.55, -0.35, yaw));
+  for (const double yaw : {0.0, 1.0, 2.0, -1.0, -2.0, 3.1})
+    task.placements.push_back(DuoStage::standing(object, 0.55, -0.35, yaw));
   const GraspList& list = hand(0, object).list;
   RegraspPlan plan;
   for (std::size_t i = 0; i < list.grasps.size() && plan.steps.size() != 2; i += 3) {
@@ -218,18 +238,22 @@ TEST(Regrasp, says_what_stands_in_the_way) {
   const RegraspPlan plan = planner.plan(task);
   EXPECT_FALSE(plan.solved);
   EXPECT_TRUE(plan.steps.empty());
-  EXPECT_NE(plan.reason.find("no configuration of the arm reaches it"), std::string::npos) << plan.reason;
+  EXPECT_NE(plan.reason.find("no configuration of the arm reaches it"), std::string::npos)
+      << plan.reason;
   ASSERT_FALSE(plan.rejected.empty());
   task.goal.arm = 2;
   EXPECT_THROW(planner.plan(task), ConfigError);
 }
 
 TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_heavier) {
-  const HandOnObject &right = hand_on_object("sah", "tray", 60, 72), &left = hand_on_object("sah_left", "tray", 60, 72);
+  const HandOnObject &right = hand_on_object("sah", "tray", 60, 72),
+                     &left = hand_on_object("sah_left", "tray", 60, 72);
   const std::vector<Manipulator> hands = manipulators(duo().file, duo().robot);
-  const std::vector<RegraspArm> arms{{hands[0], right.hand_geometry.get(), &right.list}, {hands[1], left.hand_geometry.get(), &left.list}};
+  const std::vector<RegraspArm> arms{{hands[0], right.hand_geometry.get(), &right.list},
+                                     {hands[1], left.hand_geometry.get(), &left.list}};
   const auto library = [](const std::string& name) { return object_model(name); };
-  const Pose T_start = DuoStage::standing("tray", 0.50, 0, M_PI / 2), T_goal = DuoStage::standing("tray", 0.60, 0, M_PI / 2);
+  const Pose T_start = DuoStage::standing("tray", 0.50, 0, M_PI / 2),
+             T_goal = DuoStage::standing("tray", 0.60, 0, M_PI / 2);
   RegraspPlanner planner(duo().robot, arms, *right.object, library, duo().scene(), "thing");
   const RegraspPlan plan = planner.plan_together(T_start, T_goal);
   ASSERT_TRUE(plan.solved) << plan.reason;
@@ -237,16 +261,21 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
   ASSERT_EQ(plan.shares.size(), 2U);
   for (std::size_t a = 0; a < 2; ++a) {
     EXPECT_GT(plan.shares[a].margin, 0);
-    EXPECT_EQ(plan.shares[a].effort.size(), arms[a].list->grasps[plan.steps[a].grasp_to].grasp.hand_joints.size());
+    EXPECT_EQ(plan.shares[a].effort.size(),
+              arms[a].list->grasps[plan.steps[a].grasp_to].grasp.hand_joints.size());
     // The same hand alone, the load as it hangs at its side.
-    const BearingHand alone{arms[a].hand_geometry, &arms[a].list->grasps[plan.steps[a].grasp_to].grasp};
+    const BearingHand alone{arms[a].hand_geometry,
+                            &arms[a].list->grasps[plan.steps[a].grasp_to].grasp};
     const GripLoad load = carried_load(right.object->mass(), T_start.linear(), {});
     EXPECT_LT(share_load({alone}, right.object->com(), load, {}).front().margin, 0);
   }
   ObjectModel heavy = *object_model("tray");
   heavy.mass = 12;
-  const Graspable weight(heavy, right.hand_geometry->tip_radius(), GraspListSettings{}.step_fraction, 1);
-  const RegraspPlan refused = RegraspPlanner(duo().robot, arms, weight, library, duo().scene(), "thing").plan_together(T_start, T_goal);
+  const Graspable weight(heavy, right.hand_geometry->tip_radius(),
+                         GraspListSettings{}.step_fraction, 1);
+  const RegraspPlan refused =
+      RegraspPlanner(duo().robot, arms, weight, library, duo().scene(), "thing")
+          .plan_together(T_start, T_goal);
   EXPECT_FALSE(refused.solved);
   EXPECT_NE(refused.reason.find("bear"), std::string::npos) << refused.reason;
 }

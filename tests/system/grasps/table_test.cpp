@@ -1,5 +1,5 @@
-// The table of topics against the nodes themselves, all in one process and virtual time: who really reads and writes what, and that nothing
-// anybody sends is malformed.
+// The table of topics against the nodes themselves, all in one process and virtual time: who really
+// reads and writes what, and that nothing anybody sends is malformed.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -61,9 +61,11 @@ std::set<std::string> words(const char* list) {
 
 TEST_F(Table, names_the_writers_and_readers_there_are) {
   std::map<std::string, std::set<std::string>> readers, writers;
-  for (const auto& endpoint : network.endpoints()) (endpoint.writes ? writers : readers)[endpoint.type].insert(endpoint.component);
+  for (const auto& endpoint : network.endpoints())
+    (endpoint.writes ? writers : readers)[endpoint.type].insert(endpoint.component);
   for (const TopicRow& row : topics()) {
-    // Between processes only (tests/system/busy_machine_test.cpp): in lock-step everybody has one time.
+    // Between processes only (tests/system/busy_machine_test.cpp): in lock-step everybody has one
+    // time.
     if (row.type == std::string("SimClock") || row.type == std::string("ClockReached")) continue;
     std::set<std::string> expected_writers = words(row.writers);
     expected_writers.erase("bridge");
@@ -77,12 +79,15 @@ TEST_F(Table, names_the_writers_and_readers_there_are) {
 
 TEST_F(Table, nobody_sends_what_others_must_reject) {
   std::map<std::string, ComponentHealth> health;
-  network.add("observer").subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) { health[m.component] = m; });
+  network.add("observer").subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
+    health[m.component] = m;
+  });
   network.run_for(std::chrono::seconds(2));
   EXPECT_EQ(health.size(), nodes.size() + 1);
   for (const auto& [component, m] : health) {
     EXPECT_EQ(m.reason.find("refused to send"), std::string::npos) << component << ": " << m.reason;
-    for (const TopicHealth& topic : m.topics) EXPECT_EQ(topic.rejected, 0u) << component << ": " << topic.last_rejection;
+    for (const TopicHealth& topic : m.topics)
+      EXPECT_EQ(topic.rejected, 0u) << component << ": " << topic.last_rejection;
   }
 }
 

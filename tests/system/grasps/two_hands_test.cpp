@@ -1,5 +1,6 @@
-// Two hands on the running system, all components in lock-step with the simulator: pick-and-place goals that no grasp of one hand serves,
-// and a tray too heavy for one hand. HANDSEL_GOALS: which of the five goals, e.g. "3 4"; HANDSEL_SEEDS: of the tray, e.g. "1 2".
+// Two hands on the running system, all components in lock-step with the simulator: pick-and-place
+// goals that no grasp of one hand serves, and a tray too heavy for one hand. HANDSEL_GOALS: which
+// of the five goals, e.g. "3 4"; HANDSEL_SEEDS: of the tray, e.g. "1 2".
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +42,9 @@ config::Scenario scenario_text(const std::string& scenario) {
 /// The settings, but the simulator tells its truth after every step.
 void settings_of_every_step(const std::filesystem::path& folder) {
   const std::filesystem::path from = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
-  std::filesystem::copy(from, folder, std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy(
+      from, folder,
+      std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
   std::ifstream in(from / "sim.txtpb");
   std::ofstream out(folder / "sim.txtpb");
   double step = 0;
@@ -52,7 +55,8 @@ void settings_of_every_step(const std::filesystem::path& folder) {
   out << "ground_truth_rate: " << std::lround(1 / step) << "\n";
 }
 
-Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = TaskKind::place, const std::filesystem::path& settings = {}) {
+Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = TaskKind::place,
+             const std::filesystem::path& settings = {}) {
   LockstepSystem system(system_context(scenario, "", seed, settings));
   const config::Scenario text = scenario_text(scenario);
   Trip run;
@@ -61,7 +65,8 @@ Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = Ta
   bool started = false;
   seat.subscribe<ActionStatus>([&](const ActionStatus& s, const Receipt&) {
     const bool runs = s.state == ActionState::running && s.phase != ActionPhase::none;
-    if (runs && (run.phases.empty() || run.phases.back() != phase_text(s))) run.phases.push_back(phase_text(s));
+    if (runs && (run.phases.empty() || run.phases.back() != phase_text(s)))
+      run.phases.push_back(phase_text(s));
   });
   seat.subscribe<GroundTruth>([&](const GroundTruth& t, const Receipt&) {
     if (!started) run.T_start = t.T_world_object;
@@ -71,13 +76,16 @@ Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = Ta
   });
   seat.after(from_seconds(3.0), [&](TimePoint) {
     started = true;
-    goals->publish(
-        {.id = 1, .kind = kind, .object = text.tasks(0).object(), .surface = kind == TaskKind::place ? text.tasks(0).surface() : ""});
+    goals->publish({.id = 1,
+                    .kind = kind,
+                    .object = text.tasks(0).object(),
+                    .surface = kind == TaskKind::place ? text.tasks(0).surface() : ""});
   });
   const auto over = [&] {
     const auto& tasks = system.snapshot().tasks;
     const auto at = tasks.find(1);
-    return at != tasks.end() && (at->second.state == TaskState::succeeded || at->second.state >= TaskState::failed);
+    return at != tasks.end() &&
+           (at->second.state == TaskState::succeeded || at->second.state >= TaskState::failed);
   };
   system.network().run_until(over, TimePoint(from_seconds(text.timeout())));
   if (system.snapshot().tasks.count(1) != 0) run.task = system.snapshot().tasks.at(1);
@@ -91,13 +99,15 @@ void expect_put(const Trip& run, const std::string& scenario) {
   for (const std::string& phase : run.phases) phases += (phases.empty() ? "" : ", ") + phase;
   SCOPED_TRACE(scenario + ": " + phases);
   EXPECT_EQ(run.task.state, TaskState::succeeded) << run.task.reason;
-  const auto box = std::find_if(text.boxes().begin(), text.boxes().end(), [&](const auto& b) { return b.id() == text.tasks(0).surface(); });
+  const auto box = std::find_if(text.boxes().begin(), text.boxes().end(),
+                                [&](const auto& b) { return b.id() == text.tasks(0).surface(); });
   ASSERT_NE(box, text.boxes().end());
   const Vector3 p = run.ground_truth.T_world_object.translation();
   const ObjectModel& model = *grasp_planner::object_model(text.objects(0).model());
   EXPECT_LT(std::abs(p.x() - box->pose().xyz().x()), box->size().x() / 2);
   EXPECT_LT(std::abs(p.y() - box->pose().xyz().y()), box->size().y() / 2);
-  EXPECT_NEAR(p.z(), box->pose().xyz().z() + box->size().z() / 2 + model.height_above_support, 0.01);
+  EXPECT_NEAR(p.z(), box->pose().xyz().z() + box->size().z() / 2 + model.height_above_support,
+              0.01);
   EXPECT_LT(tilt(run.ground_truth.T_world_object), 3 * kDegree);
   EXPECT_FALSE(run.ground_truth.dropped);
   EXPECT_EQ(run.ground_truth.carrier, "surface");
@@ -112,29 +122,34 @@ TEST(TwoHands, pick_and_place_that_one_hand_cannot_do_goes_from_hand_to_hand) {
   for (std::string k; goals >> k;) {
     const std::string scenario = "duo_regrasp_" + k;
     const Trip run = perform(scenario, 1);
-    std::printf("%s: %s after %.1f s\n", scenario.c_str(), run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(),
+    std::printf("%s: %s after %.1f s\n", scenario.c_str(),
+                run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(),
                 run.seconds);
     expect_put(run, scenario);
-    EXPECT_NE(std::find(run.phases.begin(), run.phases.end(), "carry to the other hand"), run.phases.end());
+    EXPECT_NE(std::find(run.phases.begin(), run.phases.end(), "carry to the other hand"),
+              run.phases.end());
     // Neither hand alone: no grasp of its list serves where it stood and where it stands now.
     const config::Scenario text = scenario_text(scenario);
     Scene scene = stage.scene();
     scene.boxes.clear();
     for (const auto& b : text.boxes())
-      scene.boxes.push_back({b.id(),
-                             make_pose({b.pose().xyz().x(), b.pose().xyz().y(), b.pose().xyz().z()}),
-                             {b.size().x(), b.size().y(), b.size().z()},
-                             true});
+      scene.boxes.push_back(
+          {b.id(),
+           make_pose({b.pose().xyz().x(), b.pose().xyz().y(), b.pose().xyz().z()}),
+           {b.size().x(), b.size().y(), b.size().z()},
+           true});
     const std::string& object = text.objects(0).model();
     for (std::size_t arm = 0; arm < 2; ++arm) {
       const auto arms = stage.arms(object);
       grasp_planner::RegraspPlanner alone(
           stage.robot, {arms[arm]}, *grasp_planner::hand_on_object("sah", object, 60, 144).object,
-          [](const std::string& name) { return grasp_planner::object_model(name); }, scene, "thing");
+          [](const std::string& name) { return grasp_planner::object_model(name); }, scene,
+          "thing");
       grasp_planner::RegraspTask task;
       task.start.T_world_object = run.T_start;
       task.goal.T_world_object = run.ground_truth.T_world_object;
-      EXPECT_FALSE(alone.plan(task).solved) << scenario << ": " << arms[arm].arm.name << " can do it alone";
+      EXPECT_FALSE(alone.plan(task).solved)
+          << scenario << ": " << arms[arm].arm.name << " can do it alone";
     }
   }
 }
@@ -146,9 +161,10 @@ TEST(TwoHands, a_tray_too_heavy_for_one_is_carried_level_by_both) {
   settings_of_every_step(folder.path());
   for (std::uint64_t seed = 0; seeds >> seed;) {
     const Trip run = perform("duo_tray", seed, TaskKind::place, folder.path());
-    std::printf("duo_tray, seed %d: %s after %.1f s, tilted by %.2f degrees at most in %d steps\n", static_cast<int>(seed),
-                run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(), run.seconds, run.max_tilt / kDegree,
-                static_cast<int>(run.truths));
+    std::printf("duo_tray, seed %d: %s after %.1f s, tilted by %.2f degrees at most in %d steps\n",
+                static_cast<int>(seed),
+                run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(),
+                run.seconds, run.max_tilt / kDegree, static_cast<int>(run.truths));
     SCOPED_TRACE("seed " + std::to_string(seed));
     expect_put(run, "duo_tray");
     EXPECT_GT(run.ground_truth.max_lifted, 0.15) << "over the edge of the stand";
@@ -162,7 +178,8 @@ TEST(TwoHands, one_hand_does_not_take_what_is_too_heavy_for_it) {
   const Trip run = perform("duo_tray", 1, TaskKind::pick);
   EXPECT_EQ(run.task.state, TaskState::refused);
   EXPECT_NE(run.task.reason.find("too heavy for one hand"), std::string::npos) << run.task.reason;
-  EXPECT_LT((run.ground_truth.T_world_object.translation() - run.T_start.translation()).norm(), 1e-3);
+  EXPECT_LT((run.ground_truth.T_world_object.translation() - run.T_start.translation()).norm(),
+            1e-3);
 }
 
 }  // namespace

@@ -45,10 +45,13 @@ class LocalStage final : public Stage {
 
 class DdsStage final : public Stage {
  public:
-  DdsStage() { setenv("CYCLONEDDS_URI", "file://" HANDSEL_SOURCE_DIR "/deploy/dds/loopback.xml", 0); }
+  DdsStage() {
+    setenv("CYCLONEDDS_URI", "file://" HANDSEL_SOURCE_DIR "/deploy/dds/loopback.xml", 0);
+  }
   Bus& add(const std::string& component) override {
     auto& bus = buses_[component];
-    bus = std::make_unique<DdsBus>(DdsBusSettings{.component = component, .domain = 100 + static_cast<std::uint32_t>(getpid()) % 100});
+    bus = std::make_unique<DdsBus>(DdsBusSettings{
+        .component = component, .domain = 100 + static_cast<std::uint32_t>(getpid()) % 100});
     bus->set_ready();
     return *bus;
   }
@@ -56,7 +59,8 @@ class DdsStage final : public Stage {
     const TimePoint end = buses_.begin()->second->now() + from_seconds(limit);
     while (!done()) {
       for (auto& [name, bus] : buses_)
-        if (!paused_.contains(name)) bus->run_until([] { return false; }, std::chrono::milliseconds(1));
+        if (!paused_.contains(name))
+          bus->run_until([] { return false; }, std::chrono::milliseconds(1));
       if (buses_.begin()->second->now() > end) return done();
     }
     return true;

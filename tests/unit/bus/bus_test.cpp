@@ -49,7 +49,8 @@ class BusRules : public testing::Test {
  protected:
   StageType stage;
   template <class M>
-  bool matched(const std::unique_ptr<Publisher<M>>& publisher, const SubscriptionStatus& status, int writers = 1) {
+  bool matched(const std::unique_ptr<Publisher<M>>& publisher, const SubscriptionStatus& status,
+               int writers = 1) {
     return stage.until([&] { return publisher->readers() >= 1 && status.writers == writers; });
   }
 };
@@ -62,7 +63,8 @@ TYPED_TEST(BusRules, carries_a_message_with_stamp_and_receipt) {
   auto publisher = a.advertise<RobotState>();
   RobotState got;
   Receipt receipt;
-  const auto& status = b.subscribe<RobotState>([&](const RobotState& m, const Receipt& r) { got = m, receipt = r; });
+  const auto& status =
+      b.subscribe<RobotState>([&](const RobotState& m, const Receipt& r) { got = m, receipt = r; });
   EXPECT_EQ(b.lag<RobotState>(), Duration::max()) << "never seen counts as stale";
   ASSERT_TRUE(this->matched(publisher, status));
   ASSERT_TRUE(publisher->publish(robot_state(7)));
@@ -88,7 +90,9 @@ TYPED_TEST(BusRules, refuses_to_send_a_malformed_message_and_says_so_in_its_heal
   RobotState bad = robot_state(1);
   bad.velocity[3] = std::nan("");
   EXPECT_FALSE(publisher->publish(bad));
-  EXPECT_TRUE(this->stage.until([&] { return reason.find("RobotState.velocity[3] is nan") != std::string::npos; })) << reason;
+  EXPECT_TRUE(this->stage.until([&] {
+    return reason.find("RobotState.velocity[3] is nan") != std::string::npos;
+  })) << reason;
 }
 
 TEST(SendRefusal, is_shown_for_ten_seconds_and_logged_once) {
@@ -98,7 +102,8 @@ TEST(SendRefusal, is_shown_for_ten_seconds_and_logged_once) {
   EXPECT_TRUE(refusal.note("it is nan", begin));
   EXPECT_FALSE(refusal.note("it is inf", begin + from_seconds(5.0)));
   EXPECT_EQ(refusal.text(begin + from_seconds(14.0)), "refused to send: it is inf");
-  EXPECT_EQ(refusal.text(begin + from_seconds(16.0)), "") << "one bad message does not degrade a component for ever";
+  EXPECT_EQ(refusal.text(begin + from_seconds(16.0)), "")
+      << "one bad message does not degrade a component for ever";
   EXPECT_TRUE(refusal.note("it is nan", begin + from_seconds(17.0)));
 }
 
@@ -125,8 +130,10 @@ TYPED_TEST(BusRules, state_keeps_the_last_sample_and_commands_the_last_eight) {
   auto hands = a.advertise<HandCommand>();
   std::vector<std::size_t> sizes;
   std::vector<std::uint64_t> ids;
-  const auto& s1 = b.subscribe<Facts>([&](const Facts& m, const Receipt&) { sizes.push_back(m.facts.size()); });
-  const auto& s2 = b.subscribe<HandCommand>([&](const HandCommand& m, const Receipt&) { ids.push_back(m.id); });
+  const auto& s1 =
+      b.subscribe<Facts>([&](const Facts& m, const Receipt&) { sizes.push_back(m.facts.size()); });
+  const auto& s2 =
+      b.subscribe<HandCommand>([&](const HandCommand& m, const Receipt&) { ids.push_back(m.id); });
   ASSERT_TRUE(this->matched(facts, s1));
   ASSERT_TRUE(this->matched(hands, s2));
   this->stage.pause("b");
@@ -159,7 +166,8 @@ TYPED_TEST(BusRules, late_joiner_gets_state_but_no_old_command) {
   std::uint64_t epoch = 0;
   std::vector<std::uint64_t> ids;
   b.subscribe<Go>([&](const Go& m, const Receipt&) { epoch = m.epoch; });
-  const auto& status = b.subscribe<HandCommand>([&](const HandCommand& m, const Receipt&) { ids.push_back(m.id); });
+  const auto& status =
+      b.subscribe<HandCommand>([&](const HandCommand& m, const Receipt&) { ids.push_back(m.id); });
   EXPECT_TRUE(this->stage.until([&] { return epoch == 3; }));
   ASSERT_TRUE(this->matched(hands, status));
   ASSERT_TRUE(hands->publish(hand_command(2)));
@@ -182,13 +190,15 @@ TYPED_TEST(BusRules, death_of_a_writer_is_seen_as_lost_writer_and_missed_deadlin
   EXPECT_GT(b.lag<RobotState>(), std::chrono::milliseconds(20));
 }
 
-TYPED_TEST(BusRules, the_first_writer_of_a_topic_stays_the_only_one_and_another_follows_when_it_is_gone) {
+TYPED_TEST(BusRules,
+           the_first_writer_of_a_topic_stays_the_only_one_and_another_follows_when_it_is_gone) {
   Bus& b = this->stage.add("b");
   Bus& first = this->stage.add("trajectory_controller");
   auto one = first.advertise<JointCommand>();
   std::uint64_t from_first = 0, from_spare = 0;
-  const auto& status =
-      b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) { ++(m.sequence == 1 ? from_first : from_spare); });
+  const auto& status = b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) {
+    ++(m.sequence == 1 ? from_first : from_spare);
+  });
   ASSERT_TRUE(this->matched(one, status));
   Bus& spare = this->stage.add("trajectory_controller spare");
   auto two = spare.advertise<JointCommand>(10);
@@ -199,10 +209,13 @@ TYPED_TEST(BusRules, the_first_writer_of_a_topic_stays_the_only_one_and_another_
   first.every(std::chrono::milliseconds(4), [&](TimePoint) { one->publish(joint_command(1)); });
   EXPECT_TRUE(this->stage.until([&] { return from_first > 30; }));
   EXPECT_EQ(from_spare, 0u);
-  EXPECT_TRUE(this->stage.until([&] { return status.second_writer.rfind("trajectory_controller spare", 0) == 0; })) << status.second_writer;
+  EXPECT_TRUE(this->stage.until([&] {
+    return status.second_writer.rfind("trajectory_controller spare", 0) == 0;
+  })) << status.second_writer;
   this->stage.kill("trajectory_controller");
   EXPECT_TRUE(this->stage.until([&] { return from_spare > 10; }));
-  EXPECT_TRUE(this->stage.until([&] { return status.second_writer.empty(); })) << status.second_writer;
+  EXPECT_TRUE(this->stage.until([&] { return status.second_writer.empty(); }))
+      << status.second_writer;
 }
 
 TYPED_TEST(BusRules, a_component_that_the_table_does_not_name_as_a_writer_is_refused_and_named) {
@@ -219,11 +232,15 @@ TYPED_TEST(BusRules, a_component_that_the_table_does_not_name_as_a_writer_is_ref
   observer.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
     if (m.component == "b") health = m;
   });
-  stranger.every(std::chrono::milliseconds(1), [&](TimePoint) { theirs->publish(joint_command(9)); });
+  stranger.every(std::chrono::milliseconds(1),
+                 [&](TimePoint) { theirs->publish(joint_command(9)); });
   ASSERT_TRUE(this->stage.until([&] { return status.refused > 20; }));
   EXPECT_EQ(accepted, 0u);
-  EXPECT_TRUE(this->stage.until([&] { return health.reason.rfind("second_writer: stranger", 0) == 0; }, 1.0)) << health.reason;
-  EXPECT_NE(health.reason.find("writes handsel/joint_command too"), std::string::npos) << health.reason;
+  EXPECT_TRUE(this->stage.until(
+      [&] { return health.reason.rfind("second_writer: stranger", 0) == 0; }, 1.0))
+      << health.reason;
+  EXPECT_NE(health.reason.find("writes handsel/joint_command too"), std::string::npos)
+      << health.reason;
   EXPECT_EQ(health.state, HealthState::degraded);
   ASSERT_EQ(health.topics.size(), 1u);
   EXPECT_GT(health.topics[0].refused, 0u);
@@ -231,22 +248,26 @@ TYPED_TEST(BusRules, a_component_that_the_table_does_not_name_as_a_writer_is_ref
   Bus& rightful = this->stage.add("trajectory_controller");
   auto ours = rightful.advertise<JointCommand>();
   rightful.every(std::chrono::milliseconds(4), [&](TimePoint) { ours->publish(joint_command(1)); });
-  EXPECT_TRUE(this->stage.until([&] { return accepted > 20; })) << "the stranger does not hide the rightful writer";
+  EXPECT_TRUE(this->stage.until([&] { return accepted > 20; }))
+      << "the stranger does not hide the rightful writer";
   this->stage.kill("stranger");
   EXPECT_TRUE(this->stage.until([&] { return health.reason.empty(); }, 1.0)) << health.reason;
   EXPECT_EQ(health.state, HealthState::ok);
 }
 
-TYPED_TEST(BusRules, a_second_writer_does_not_push_samples_of_the_first_out_of_a_waiting_readers_queue) {
+TYPED_TEST(BusRules,
+           a_second_writer_does_not_push_samples_of_the_first_out_of_a_waiting_readers_queue) {
   Bus& b = this->stage.add("b");
   Bus& first = this->stage.add("supervisor");
   auto ours = first.advertise<Go>();
   std::vector<std::uint64_t> epochs;
-  const auto& status = b.subscribe<Go>([&](const Go& m, const Receipt&) { epochs.push_back(m.epoch); });
+  const auto& status =
+      b.subscribe<Go>([&](const Go& m, const Receipt&) { epochs.push_back(m.epoch); });
   ASSERT_TRUE(this->matched(ours, status));
   Bus& other = this->stage.add("supervisor twin");
   auto theirs = other.advertise<Go>();
-  ASSERT_TRUE(this->stage.until([&] { return status.writers == 2 && !status.second_writer.empty(); }));
+  ASSERT_TRUE(
+      this->stage.until([&] { return status.writers == 2 && !status.second_writer.empty(); }));
   this->stage.pause("b");
   Go go;
   go.epoch = 1;
@@ -260,13 +281,15 @@ TYPED_TEST(BusRules, a_second_writer_does_not_push_samples_of_the_first_out_of_a
   EXPECT_EQ(epochs, std::vector<std::uint64_t>{1});
 }
 
-TYPED_TEST(BusRules, the_ros2_lane_commands_a_trajectory_while_it_has_a_writer_and_is_no_second_one) {
+TYPED_TEST(BusRules,
+           the_ros2_lane_commands_a_trajectory_while_it_has_a_writer_and_is_no_second_one) {
   Bus& b = this->stage.add("b");
   Bus& planner = this->stage.add("manipulation_planner");
   Bus& lane = this->stage.add("ros2_lane");
   auto usual = planner.advertise<TrajectoryCommand>();
   std::uint64_t planned = 0, asked = 0;
-  const auto& status = b.subscribe<TrajectoryCommand>([&](const TrajectoryCommand& m, const Receipt&) { ++(m.id == 1 ? planned : asked); });
+  const auto& status = b.subscribe<TrajectoryCommand>(
+      [&](const TrajectoryCommand& m, const Receipt&) { ++(m.id == 1 ? planned : asked); });
   ASSERT_TRUE(this->matched(usual, status));
   const auto command = [](std::uint64_t id) {
     TrajectoryCommand m;
@@ -294,9 +317,11 @@ TYPED_TEST(BusRules, polled_subscription_gets_the_newest_once_per_period) {
   auto publisher = a.advertise<RobotState>();
   std::uint64_t sequence = 0, last = 0;
   const auto& status =
-      b.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { last = m.sequence; }, {.period = std::chrono::milliseconds(50)});
+      b.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { last = m.sequence; },
+                              {.period = std::chrono::milliseconds(50)});
   ASSERT_TRUE(this->matched(publisher, status));
-  a.every(std::chrono::milliseconds(2), [&](TimePoint) { publisher->publish(robot_state(++sequence)); });
+  a.every(std::chrono::milliseconds(2),
+          [&](TimePoint) { publisher->publish(robot_state(++sequence)); });
   ASSERT_TRUE(this->stage.until([&] { return sequence > 200; }));
   EXPECT_GT(last, 100u);
   EXPECT_LT(status.received, sequence / 4);
@@ -311,7 +336,8 @@ TYPED_TEST(BusRules, timers_keep_their_pace_and_count_their_cycles) {
     last = now;
   });
   ASSERT_TRUE(this->stage.until([&] { return timer.cycles + timer.skipped >= 50; }));
-  EXPECT_NEAR(to_seconds(last - first), 0.01 * static_cast<double>(timer.cycles + timer.skipped - 1), 0.02);
+  EXPECT_NEAR(to_seconds(last - first),
+              0.01 * static_cast<double>(timer.cycles + timer.skipped - 1), 0.02);
   int once = 0;
   a.after(std::chrono::milliseconds(20), [&](TimePoint) { ++once; });
   this->stage.pass(0.1);
@@ -322,7 +348,8 @@ TYPED_TEST(BusRules, jobs_run_in_turn_and_report_back_even_when_cancelled) {
   Bus& a = this->stage.add("a");
   std::vector<int> order;
   bool saw_cancel = false;
-  a.run_job([](const CancelToken&) { return Duration(std::chrono::milliseconds(5)); }, [&] { order.push_back(1); });
+  a.run_job([](const CancelToken&) { return Duration(std::chrono::milliseconds(5)); },
+            [&] { order.push_back(1); });
   CancelToken second = a.run_job(
       [&](const CancelToken& token) {
         saw_cancel = token.cancelled();
@@ -347,7 +374,8 @@ TYPED_TEST(BusRules, health_tells_rates_ages_and_degradation) {
   auto people = b.advertise<HumanState>();
   b.every(std::chrono::milliseconds(20), [&](TimePoint) { people->publish(HumanState{}); });
   a.set_degraded("waits for a person");
-  ASSERT_TRUE(this->stage.until([&] { return health.topics.size() == 2 && health.topics[0].rate > 40; }));
+  ASSERT_TRUE(
+      this->stage.until([&] { return health.topics.size() == 2 && health.topics[0].rate > 40; }));
   EXPECT_EQ(health.state, HealthState::degraded);
   EXPECT_EQ(health.reason, "waits for a person");
   EXPECT_EQ(health.topics[0].topic, "handsel/human_state");
@@ -360,7 +388,8 @@ TYPED_TEST(BusRules, requests_wait_for_a_busy_reader_without_blocking_the_writer
   Bus& b = this->stage.add("b");
   auto requests = a.advertise<GraspRequest>();
   std::vector<std::uint64_t> numbers, sent;
-  const auto& status = b.subscribe<GraspRequest>([&](const GraspRequest& m, const Receipt&) { numbers.push_back(m.id.number); });
+  const auto& status = b.subscribe<GraspRequest>(
+      [&](const GraspRequest& m, const Receipt&) { numbers.push_back(m.id.number); });
   ASSERT_TRUE(this->matched(requests, status));
   this->stage.pause("b");
   for (std::uint64_t i = 1; i <= 60; ++i) {
@@ -382,7 +411,8 @@ class Ages : public testing::Test {
   Stamp clock_offset{1'700'000'000'000'000'000};
   /// A sample stamped at `sent` that arrives at `arrived` [s] of the receiver's time.
   double age(double sent, double arrived) {
-    return to_seconds(estimator.update(clock_offset + from_seconds(sent).count(), TimePoint(from_seconds(arrived))));
+    return to_seconds(estimator.update(clock_offset + from_seconds(sent).count(),
+                                       TimePoint(from_seconds(arrived))));
   }
 };
 
@@ -416,9 +446,12 @@ TEST(LocalNetwork, same_seed_same_history) {
     Bus& b = network.add("b");
     auto publisher = a.advertise<RobotState>();
     std::vector<std::int64_t> arrivals;
-    b.subscribe<RobotState>([&](const RobotState&, const Receipt& r) { arrivals.push_back(r.arrival.time_since_epoch().count()); });
+    b.subscribe<RobotState>([&](const RobotState&, const Receipt& r) {
+      arrivals.push_back(r.arrival.time_since_epoch().count());
+    });
     std::uint64_t sequence = 0;
-    a.every(std::chrono::milliseconds(2), [&](TimePoint) { publisher->publish(robot_state(++sequence)); });
+    a.every(std::chrono::milliseconds(2),
+            [&](TimePoint) { publisher->publish(robot_state(++sequence)); });
     network.run_until(TimePoint(std::chrono::seconds(1)));
     return arrivals;
   };

@@ -1,4 +1,5 @@
-// Datagrams that are no RTPS, or nearly are, at the ports of running participants: they go on, and memory is flat.
+// Datagrams that are no RTPS, or nearly are, at the ports of running participants: they go on, and
+// memory is flat.
 #include <gtest/gtest.h>
 
 #include <arpa/inet.h>
@@ -36,7 +37,8 @@ class Sender {
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    sent_ += sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address), sizeof address) > 0;
+    sent_ += sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address),
+                    sizeof address) > 0;
   }
   int sent() const { return sent_; }
 
@@ -45,14 +47,16 @@ class Sender {
   int sent_{0};
 };
 
-/// Random bytes; of each four, three with an RTPS header and submessages of random kind, flags and length.
+/// Random bytes; of each four, three with an RTPS header and submessages of random kind, flags and
+/// length.
 std::vector<unsigned char> datagram(std::mt19937_64& random) {
   std::vector<unsigned char> out(20 + random() % 1200);
   for (unsigned char& byte : out) byte = static_cast<unsigned char>(random());
   if (random() % 4 == 0) return out;
   constexpr unsigned char kHeader[] = {'R', 'T', 'P', 'S', 2, 1, 1, 16};
   std::memcpy(out.data(), kHeader, sizeof kHeader);
-  constexpr unsigned char kKinds[] = {0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0d, 0x0e, 0x12, 0x13, 0x15, 0x16};
+  constexpr unsigned char kKinds[] = {0x01, 0x06, 0x07, 0x08, 0x09, 0x0c,
+                                      0x0d, 0x0e, 0x12, 0x13, 0x15, 0x16};
   for (std::size_t at = 20; at + 4 < out.size();) {
     out[at] = kKinds[random() % std::size(kKinds)];
     out[at + 1] = static_cast<unsigned char>(random() % 16 | 1);
@@ -68,12 +72,14 @@ TEST(Garbage, ten_thousand_datagrams_do_not_stop_a_bus_or_grow_it) {
   // As shipped, but for the line that the transport writes about each datagram.
   setenv("CYCLONEDDS_URI",
          "file://" HANDSEL_SOURCE_DIR
-         "/deploy/dds/loopback.xml,<CycloneDDS><Domain><Tracing><Verbosity>severe</Verbosity></Tracing></Domain></CycloneDDS>",
+         "/deploy/dds/loopback.xml,<CycloneDDS><Domain><Tracing><Verbosity>severe</Verbosity></"
+         "Tracing></Domain></CycloneDDS>",
          1);
   test::DdsStage stage;
   Bus &writer = stage.add("sim"), &reader = stage.add("spark");
   std::uint64_t received = 0;
-  const SubscriptionStatus& status = reader.subscribe<RobotState>([&](const RobotState&, const Receipt&) { ++received; });
+  const SubscriptionStatus& status =
+      reader.subscribe<RobotState>([&](const RobotState&, const Receipt&) { ++received; });
   const auto out = writer.advertise<RobotState>();
   RobotState state;
   state.robot = "jido";
@@ -90,7 +96,8 @@ TEST(Garbage, ten_thousand_datagrams_do_not_stop_a_bus_or_grow_it) {
   std::mt19937_64 random(11);
   const auto flood = [&](int n) {
     for (int i = 0; i < n; ++i) {
-      // Of each of the first participants the ports of discovery and of data: 7400 + 250 d + 10 + 2 p, + 11 + 2 p.
+      // Of each of the first participants the ports of discovery and of data: 7400 + 250 d + 10 + 2
+      // p, + 11 + 2 p.
       sender.send(datagram(random), 7400 + 250 * domain + 10 + i % 4);
       if (i % 100 == 99) stage.pass(0.002);
     }

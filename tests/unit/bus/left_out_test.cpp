@@ -1,4 +1,5 @@
-// Long lists and malformed elements of observations: what is received is shortened and counted, never dropped whole; commands are.
+// Long lists and malformed elements of observations: what is received is shortened and counted,
+// never dropped whole; commands are.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,14 +41,16 @@ HumanObservation three_people() {
   out.source = "camera";
   out.coverage = {{-2, -2, 0}, {2, 2, 2}};
   for (int i = 0; i < 3; ++i)
-    out.people.push_back({"body" + std::to_string(i), {{"head", {1.0 * i, 0, 1.7}, 1}, {"torso", {1.0 * i, 0, 1.3}, 1}}});
+    out.people.push_back({"body" + std::to_string(i),
+                          {{"head", {1.0 * i, 0, 1.7}, 1}, {"torso", {1.0 * i, 0, 1.3}, 1}}});
   return out;
 }
 
 TEST(LeftOut, an_object_with_a_pose_that_is_none_is_left_out_and_the_others_stay) {
   ObjectObservation seen;
   seen.source = "camera";
-  for (const char* id : {"cup", "mug", "box"}) seen.objects.push_back({id, "mug", make_pose({1, 0, 1}), 1});
+  for (const char* id : {"cup", "mug", "box"})
+    seen.objects.push_back({id, "mug", make_pose({1, 0, 1}), 1});
   const auto wire = sent(seen);
   damage<ObjectObservation>(wire.get(), "objects[1].T_world_object.position.y");
   ObjectObservation got;
@@ -58,7 +61,9 @@ TEST(LeftOut, an_object_with_a_pose_that_is_none_is_left_out_and_the_others_stay
   EXPECT_EQ(got.objects[0].id, "cup");
   EXPECT_EQ(got.objects[1].id, "box");
   EXPECT_EQ(left_out.count, 1u);
-  EXPECT_EQ(left_out.why, "ObjectObservation.objects[1].T_world_object.position.y is nan, must be a number from -10000 to 10000");
+  EXPECT_EQ(left_out.why,
+            "ObjectObservation.objects[1].T_world_object.position.y is nan, must be a number from "
+            "-10000 to 10000");
 }
 
 TEST(LeftOut, a_malformed_joint_goes_alone_and_the_coverage_stays) {
@@ -77,7 +82,8 @@ TEST(LeftOut, a_malformed_joint_goes_alone_and_the_coverage_stays) {
 
 TEST(LeftOut, a_source_that_lost_a_person_to_malformed_data_shows_no_place_to_be_empty) {
   const auto wire = sent(three_people());
-  for (const char* joint : {"0", "1"}) damage<HumanObservation>(wire.get(), std::string("people[2].joints[") + joint + "].position.z");
+  for (const char* joint : {"0", "1"})
+    damage<HumanObservation>(wire.get(), std::string("people[2].joints[") + joint + "].position.z");
   HumanObservation got;
   std::string why;
   LeftOutElements left_out;
@@ -142,13 +148,16 @@ TEST(LeftOut, two_hundred_people_and_a_thousand_objects_arrive_whole) {
   LocalNetwork net(1);
   Bus &camera = net.add("camera"), &reader = net.add("reader");
   std::size_t people = 0, objects = 0;
-  reader.subscribe<HumanObservation>([&](const HumanObservation& m, const Receipt&) { people = m.people.size(); });
-  reader.subscribe<ObjectObservation>([&](const ObjectObservation& m, const Receipt&) { objects = m.objects.size(); });
+  reader.subscribe<HumanObservation>(
+      [&](const HumanObservation& m, const Receipt&) { people = m.people.size(); });
+  reader.subscribe<ObjectObservation>(
+      [&](const ObjectObservation& m, const Receipt&) { objects = m.objects.size(); });
   HumanObservation bodies = three_people();
   while (bodies.people.size() < 200) bodies.people.push_back(bodies.people.front());
   ObjectObservation things;
   things.source = "camera";
-  while (things.objects.size() < 1000) things.objects.push_back({"thing" + std::to_string(things.objects.size()), "mug"});
+  while (things.objects.size() < 1000)
+    things.objects.push_back({"thing" + std::to_string(things.objects.size()), "mug"});
   const auto bodies_out = camera.advertise<HumanObservation>();
   const auto things_out = camera.advertise<ObjectObservation>();
   EXPECT_TRUE(bodies_out->publish(bodies));

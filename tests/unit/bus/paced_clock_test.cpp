@@ -141,7 +141,8 @@ TEST(Executor, of_the_ticks_before_a_jump_of_time_only_the_newest_is_served) {
   TimePoint start = monotonic_now();
   executor.grant({.incarnation = 1, .until = start + from_seconds(0.02), .waited = {}});
   std::vector<TimePoint> ticks;
-  const TimerStatus& status = executor.every(from_seconds(0.001), [&](TimePoint now) { ticks.push_back(now); });
+  const TimerStatus& status =
+      executor.every(from_seconds(0.001), [&](TimePoint now) { ticks.push_back(now); });
   timespec nap{0, 150'000'000};
   nanosleep(&nap, nullptr);  // the process is stopped, the simulator does not wait
   executor.run_until([] { return false; }, from_seconds(0.005));

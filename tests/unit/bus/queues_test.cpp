@@ -1,4 +1,5 @@
-// Queues of requests and goals: asking twice is harmless, newer replaces older where that is wanted, and all of them are bounded.
+// Queues of requests and goals: asking twice is harmless, newer replaces older where that is
+// wanted, and all of them are bounded.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -48,7 +49,8 @@ TEST(RequestQueue, cancels_what_is_not_answered_and_what_comes_late) {
 
 TEST(RequestQueue, is_full_at_its_bound_and_has_room_again_after_an_answer) {
   Queue queue(Newer::beside, {.open = 4});
-  for (std::uint64_t number = 1; number <= 4; ++number) EXPECT_EQ(queue.admit({number, 1}), Admission::fresh);
+  for (std::uint64_t number = 1; number <= 4; ++number)
+    EXPECT_EQ(queue.admit({number, 1}), Admission::fresh);
   EXPECT_EQ(queue.admit({9, 1}), Admission::full);
   PathReply reply;
   reply.id = {2, 1};

@@ -1,4 +1,5 @@
-// Recordings: what is written is read, whatever happens to the file; what is replayed is what came in, as if it came now.
+// Recordings: what is written is read, whatever happens to the file; what is replayed is what came
+// in, as if it came now.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +21,8 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<mcap::Channel> kChannels{{"a", "cdr", "A", "omgidl", "struct A {};"}, {"b", "cdr", "B", "omgidl", "struct B {};"}};
+const std::vector<mcap::Channel> kChannels{{"a", "cdr", "A", "omgidl", "struct A {};"},
+                                           {"b", "cdr", "B", "omgidl", "struct B {};"}};
 
 mcap::Message message(std::mt19937& random, std::int64_t time) {
   mcap::Message out{static_cast<std::uint16_t>(random() % kChannels.size()), time, {}};
@@ -29,7 +31,9 @@ mcap::Message message(std::mt19937& random, std::int64_t time) {
   return out;
 }
 
-bool same(const mcap::Message& a, const mcap::Message& b) { return a.channel == b.channel && a.time == b.time && a.data == b.data; }
+bool same(const mcap::Message& a, const mcap::Message& b) {
+  return a.channel == b.channel && a.time == b.time && a.data == b.data;
+}
 
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -95,7 +99,8 @@ TEST(Mcap, a_damaged_file_is_refused_with_its_place_or_read_and_never_more) {
   int refused = 0;
   for (int i = 0; i < 400; ++i) {
     std::string bad = whole;
-    for (unsigned n = 1 + random() % 4; n > 0; --n) bad[random() % bad.size()] = static_cast<char>(random());
+    for (unsigned n = 1 + random() % 4; n > 0; --n)
+      bad[random() % bad.size()] = static_cast<char>(random());
     const auto file = folder.write("bad.mcap", bad);
     try {
       mcap::Reader reader(file);
@@ -111,13 +116,18 @@ TEST(Mcap, a_damaged_file_is_refused_with_its_place_or_read_and_never_more) {
 
 TEST(Mcap, what_is_no_recording_or_would_be_overwritten_is_said) {
   const TemporaryFolder folder;
-  EXPECT_THAT(message_of<MissingError>([&] { mcap::Reader(folder.path() / "none.mcap"); }), HasSubstr("no recording"));
-  EXPECT_THAT(message_of<ConfigError>([&] { mcap::Reader(folder.write("text.mcap", "hello, this is a text")); }),
+  EXPECT_THAT(message_of<MissingError>([&] { mcap::Reader(folder.path() / "none.mcap"); }),
+              HasSubstr("no recording"));
+  EXPECT_THAT(message_of<ConfigError>(
+                  [&] { mcap::Reader(folder.write("text.mcap", "hello, this is a text")); }),
               HasSubstr("is no MCAP recording"));
   const auto there = folder.write("there.mcap", "precious");
-  EXPECT_THAT(message_of<ConfigError>([&] { mcap::Writer(there, kChannels, {}); }), HasSubstr("is there already"));
+  EXPECT_THAT(message_of<ConfigError>([&] { mcap::Writer(there, kChannels, {}); }),
+              HasSubstr("is there already"));
   EXPECT_EQ(text_of(there), "precious");
-  EXPECT_THAT(message_of<ConfigError>([&] { mcap::Writer(folder.path() / "no" / "x.mcap", kChannels, {}); }), HasSubstr("cannot write"));
+  EXPECT_THAT(message_of<ConfigError>(
+                  [&] { mcap::Writer(folder.path() / "no" / "x.mcap", kChannels, {}); }),
+              HasSubstr("cannot write"));
 }
 
 /// States and commands, recorded on one network, replayed on another.
@@ -156,7 +166,9 @@ TEST_F(Replayed, the_inputs_come_again_in_their_order_at_their_pace_and_as_new) 
   std::vector<std::pair<std::uint64_t, Stamp>> heard;
   int commands = 0;
   Bus& ear = network.add("ear");
-  ear.subscribe<RobotState>([&](const RobotState& state, const Receipt&) { heard.emplace_back(state.sequence, state.stamp); });
+  ear.subscribe<RobotState>([&](const RobotState& state, const Receipt&) {
+    heard.emplace_back(state.sequence, state.stamp);
+  });
   ear.subscribe<JointCommand>([&](const JointCommand&, const Receipt&) { ++commands; });
   Replay replay(bus, {.file = file_, .topics = {}, .from = 0.5});
   network.run_for(std::chrono::seconds(100));  // long after the recording
@@ -188,9 +200,11 @@ TEST_F(Replayed, what_was_recorded_with_another_idl_is_refused) {
   { mcap::Writer writer(file_, channels, {}); }
   LocalNetwork network(4);
   Bus& bus = network.add("replay sim");
-  EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {"robot_state"}, .from = 0}); }),
+  EXPECT_THAT(message_of<ConfigError>(
+                  [&] { Replay(bus, {.file = file_, .topics = {"robot_state"}, .from = 0}); }),
               HasSubstr("handsel/robot_state was recorded with another IDL"));
-  EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {"dance"}, .from = 0}); }),
+  EXPECT_THAT(message_of<ConfigError>(
+                  [&] { Replay(bus, {.file = file_, .topics = {"dance"}, .from = 0}); }),
               HasSubstr("no topic \"dance\""));
 }
 
@@ -204,7 +218,9 @@ TEST_F(Replayed, nothing_is_sent_of_a_recording_that_is_damaged_further_on) {
   }
   LocalNetwork network(4);
   Bus& bus = network.add("replay");
-  EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {}, .from = 0}); }), HasSubstr("x.mcap: at byte "));
+  EXPECT_THAT(
+      message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {}, .from = 0}); }),
+      HasSubstr("x.mcap: at byte "));
 }
 
 TEST_F(Replayed, a_message_of_another_century_is_refused) {
@@ -215,7 +231,8 @@ TEST_F(Replayed, a_message_of_another_century_is_refused) {
   }
   LocalNetwork network(4);
   Bus& bus = network.add("replay");
-  EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {"robot_state"}, .from = 0}); }),
+  EXPECT_THAT(message_of<ConfigError>(
+                  [&] { Replay(bus, {.file = file_, .topics = {"robot_state"}, .from = 0}); }),
               HasSubstr("a recording has at most 30 days"));
 }
 

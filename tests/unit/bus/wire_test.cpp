@@ -1,4 +1,5 @@
-// The customs office: every message there and back, every field damaged, every IDL field documented.
+// The customs office: every message there and back, every field damaged, every IDL field
+// documented.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -35,7 +36,8 @@ class EveryMessage : public testing::TestWithParam<std::size_t> {
   }
   /// Within an observation only the element goes: idl/README.md.
   bool leaves_out_singly(const NamedLeaf& leaf) const {
-    return std::string(type.row().type).ends_with("Observation") && leaf.name.find('[') != std::string::npos;
+    return std::string(type.row().type).ends_with("Observation") &&
+           leaf.name.find('[') != std::string::npos;
   }
   void expect_rejected(void* wire, const NamedLeaf& leaf, const std::string& with) const {
     std::string why;
@@ -58,7 +60,8 @@ TEST_P(EveryMessage, goes_there_and_back_without_loss) {
     auto first = sample(full);
     auto message = type.new_message();
     std::string why;
-    if (full && std::string(type.row().type) == "Costmap") continue;  // full lists do not fit its three counts
+    if (full && std::string(type.row().type) == "Costmap")
+      continue;  // full lists do not fit its three counts
     ASSERT_TRUE(type.from_wire(first.get(), message.get(), why)) << why;
     auto second = type.new_wire();
     ASSERT_TRUE(type.to_wire(message.get(), 5, second.get(), why)) << why;
@@ -66,8 +69,9 @@ TEST_P(EveryMessage, goes_there_and_back_without_loss) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
       const bool text = a[i].kind == WireLeaf::Kind::text;
-      EXPECT_TRUE(text ? std::strcmp(static_cast<char*>(a[i].value), static_cast<char*>(b[i].value)) == 0
-                       : std::memcmp(a[i].value, b[i].value, a[i].size) == 0)
+      EXPECT_TRUE(
+          text ? std::strcmp(static_cast<char*>(a[i].value), static_cast<char*>(b[i].value)) == 0
+               : std::memcmp(a[i].value, b[i].value, a[i].size) == 0)
           << type.row().type << a[i].name;
     }
   }
@@ -81,7 +85,8 @@ TEST_P(EveryMessage, prints_as_json) {
   const auto json = nlohmann::json::parse(type.to_json(message.get()), nullptr, false);
   ASSERT_FALSE(json.is_discarded()) << type.to_json(message.get());
   EXPECT_EQ(json.at("stamp"), 1);
-  EXPECT_FALSE(nlohmann::json::parse(type.to_json(type.new_message().get()), nullptr, false).is_discarded());
+  EXPECT_FALSE(
+      nlohmann::json::parse(type.to_json(type.new_message().get()), nullptr, false).is_discarded());
 }
 
 TEST_P(EveryMessage, rejects_every_number_that_is_none) {
@@ -91,8 +96,9 @@ TEST_P(EveryMessage, rejects_every_number_that_is_none) {
     if (leaf.kind != WireLeaf::Kind::number) continue;
     double& value = *static_cast<double*>(leaf.value);
     const double good = value;
-    for (const double bad : {std::nan(""), -std::nan(""), std::numeric_limits<double>::signaling_NaN(), kInf, -kInf, 1e308, -1e308, DBL_MAX,
-                             -DBL_MAX, 1e18, -1e18}) {
+    for (const double bad :
+         {std::nan(""), -std::nan(""), std::numeric_limits<double>::signaling_NaN(), kInf, -kInf,
+          1e308, -1e308, DBL_MAX, -DBL_MAX, 1e18, -1e18}) {
       value = bad;
       expect_rejected(wire.get(), leaf, std::to_string(bad));
     }
@@ -118,7 +124,8 @@ TEST_P(EveryMessage, rejects_every_number_that_is_none) {
 TEST_P(EveryMessage, rejects_unknown_choices_broken_texts_flags_and_stamps) {
   auto wire = sample();
   for (const NamedLeaf& leaf : leaves(wire.get())) {
-    std::vector<char> good(static_cast<char*>(leaf.value), static_cast<char*>(leaf.value) + leaf.size);
+    std::vector<char> good(static_cast<char*>(leaf.value),
+                           static_cast<char*>(leaf.value) + leaf.size);
     if (leaf.kind == WireLeaf::Kind::choice) {
       for (const std::uint32_t bad : {100u, 0x7fffffffu, 0xffffffffu}) {
         std::memcpy(leaf.value, &bad, sizeof bad);
@@ -151,7 +158,9 @@ TEST_P(EveryMessage, fullest_sample_fits_its_row_of_the_table) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, EveryMessage, testing::Range<std::size_t>(0, std::size(kTopics)),
-                         [](const auto& instance) { return std::string(kTopics[instance.param].type); });
+                         [](const auto& instance) {
+                           return std::string(kTopics[instance.param].type);
+                         });
 
 std::string refusal_of(const auto& message) {
   using M = std::remove_cvref_t<decltype(message)>;
@@ -190,10 +199,13 @@ TEST(Wire, says_what_is_wrong_in_one_sentence) {
   command.trajectory.axes[1].segments.push_back({0.5, 1.0});
   EXPECT_EQ(refusal_of(command), "TrajectoryCommand.trajectory.axes do not last equally long");
   command.trajectory.axes[0].segments.push_back({0.5, std::nan("")});
-  EXPECT_EQ(refusal_of(command), "TrajectoryCommand.trajectory.axes[0].segments[0].jerk is nan, must be a number from -1e+09 to 1e+09");
+  EXPECT_EQ(refusal_of(command),
+            "TrajectoryCommand.trajectory.axes[0].segments[0].jerk is nan, must be a number from "
+            "-1e+09 to 1e+09");
   TaskGoal goal;
   goal.kind = static_cast<TaskKind>(99);
-  EXPECT_EQ(refusal_of(goal), "TaskGoal.kind is the unknown choice 99, the last known one is 14 (clear_person)");
+  EXPECT_EQ(refusal_of(goal),
+            "TaskGoal.kind is the unknown choice 99, the last known one is 14 (clear_person)");
 }
 
 TEST(Wire, normalises_nearly_unit_quaternions_and_rejects_zero_ones) {
@@ -273,7 +285,8 @@ TEST(Topics, table_names_what_exists_once) {
       EXPECT_GT(count, 0) << row.topic;
     }
     if (row.deadline > 0) {
-      EXPECT_GE(row.deadline * row.rate, 2.0) << row.topic << ": a deadline is at least two periods";
+      EXPECT_GE(row.deadline * row.rate, 2.0)
+          << row.topic << ": a deadline is at least two periods";
     }
     EXPECT_EQ(find_topic(row.type), &row);
     EXPECT_EQ(find_topic(row.topic), &row);
@@ -288,21 +301,26 @@ TEST(Idl, every_field_and_enumerator_is_documented) {
     std::string line;
     bool inside = false;
     for (int number = 1; std::getline(file, line); ++number) {
-      const std::string where = entry.path().filename().string() + ':' + std::to_string(number) + ": " + line;
+      const std::string where =
+          entry.path().filename().string() + ':' + std::to_string(number) + ": " + line;
       const std::size_t comment = line.find("//");
-      const std::string code = line.substr(0, comment), text = comment == std::string::npos ? "" : line.substr(comment + 2);
+      const std::string code = line.substr(0, comment),
+                        text = comment == std::string::npos ? "" : line.substr(comment + 2);
       if (code.find("struct ") != std::string::npos || code.rfind("enum ", 0) == 0) inside = true;
       if (code.rfind("};", 0) == 0) inside = false;
       EXPECT_EQ(code.find("@optional"), std::string::npos) << where;
       EXPECT_EQ(code.find("union"), std::string::npos) << where;
       EXPECT_EQ(code.find("wchar"), std::string::npos) << where;
-      EXPECT_TRUE(code.find("struct ") == std::string::npos || code.find("@final") != std::string::npos) << where;
+      EXPECT_TRUE(code.find("struct ") == std::string::npos ||
+                  code.find("@final") != std::string::npos)
+          << where;
       const bool member = inside && code.rfind("  ", 0) == 0;
       if (!member) continue;
       ++fields;
       EXPECT_GT(text.size(), 3u) << where;
-      const bool numeric = code.find("double") != std::string::npos || code.find(" long ") != std::string::npos ||
-                           code.find("octet") != std::string::npos || code.find("Vector3 ") != std::string::npos;
+      const bool numeric =
+          code.find("double") != std::string::npos || code.find(" long ") != std::string::npos ||
+          code.find("octet") != std::string::npos || code.find("Vector3 ") != std::string::npos;
       if (numeric) {
         EXPECT_NE(text.find('['), std::string::npos) << where << " has no unit";
       }

@@ -18,13 +18,17 @@ struct Process {
   std::string components;
   std::shared_ptr<bool> ended = std::make_shared<bool>(false);
   WriterIdentity identity() const {
-    return {.components = components, .name = components, .matches = true, .ended = [ended = ended] { return *ended; }};
+    return {
+        .components = components, .name = components, .matches = true, .ended = [ended = ended] {
+          return *ended;
+        }};
   }
 };
 
 /// A process on another host.
 WriterIdentity elsewhere(const std::string& components) {
-  return {.components = components, .name = components + " elsewhere", .matches = true, .ended = {}};
+  return {
+      .components = components, .name = components + " elsewhere", .matches = true, .ended = {}};
 }
 
 TEST(WriterPin, a_writer_is_eligible_by_a_word_of_its_name) {
@@ -88,7 +92,8 @@ TEST(WriterPin, a_spare_that_does_not_speak_follows_at_the_next_watch) {
   EXPECT_EQ(pin.second_writer(), "");
 }
 
-TEST(WriterPin, of_a_process_elsewhere_only_a_later_one_of_the_same_component_follows_after_a_silence) {
+TEST(WriterPin,
+     of_a_process_elsewhere_only_a_later_one_of_the_same_component_follows_after_a_silence) {
   WriterPin pin(TopicOf<RobotState>::row);
   pin.appeared(1, elsewhere("driver"), at(0));
   EXPECT_TRUE(pin.accepts(1, at(0.4)));
@@ -133,14 +138,15 @@ TEST(WriterPin, names_the_first_of_several_and_counts_the_rest) {
 TEST(WriterPin, thousands_of_writers_take_no_more_room_and_do_not_displace_the_pinned_one) {
   WriterPin pin(kSetPoints);
   pin.appeared(1, Process{"trajectory_controller"}.identity(), at(0));
-  for (std::uint64_t i = 2; i < 5000; ++i) pin.appeared(i, elsewhere("trajectory_controller"), at(1));
+  for (std::uint64_t i = 2; i < 5000; ++i)
+    pin.appeared(i, elsewhere("trajectory_controller"), at(1));
   EXPECT_EQ(pin.second_writer(), "trajectory_controller elsewhere and 62 more");
   EXPECT_TRUE(pin.accepts(1, at(2)));
   EXPECT_FALSE(pin.accepts(4999, at(2)));
 }
 
-/// Whatever happens, at every moment samples of at most one writer are accepted, that writer is eligible, and it changes only when the one
-/// before has left or its process has ended.
+/// Whatever happens, at every moment samples of at most one writer are accepted, that writer is
+/// eligible, and it changes only when the one before has left or its process has ended.
 TEST(WriterPin, at_most_one_living_writer_is_accepted_in_random_histories) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -174,7 +180,8 @@ TEST(WriterPin, at_most_one_living_writer_is_accepted_in_random_histories) {
         EXPECT_EQ(process.components, "trajectory_controller");
         passed = writer;
       }
-      const bool changed = passed != 0 && accepted != 0 && passed != accepted && living.contains(accepted);
+      const bool changed =
+          passed != 0 && accepted != 0 && passed != accepted && living.contains(accepted);
       EXPECT_TRUE(!changed || *living.at(accepted).ended) << "a living writer lost its place";
       if (passed != 0) accepted = passed;
     }

@@ -28,13 +28,16 @@ int states_wanted() {
   return text == nullptr ? 9000 : std::atoi(text);
 }
 
-RobotModel load_jido() { return RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb"); }
+RobotModel load_jido() {
+  return RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+}
 
 std::vector<const detail::SimdKernels*> kernels() {
   std::vector<const detail::SimdKernels*> out = {&detail::kSimdKernelsBase};
   if (&detail::simd_kernels() != out[0]) out.push_back(&detail::simd_kernels());
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && &detail::simd_kernels() != &detail::kSimdKernelsAvx2)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+      &detail::simd_kernels() != &detail::kSimdKernelsAvx2)
     out.push_back(&detail::kSimdKernelsAvx2);
 #endif
   return out;
@@ -50,10 +53,12 @@ bool held(const SphereCover& cover, const Vector3& p, std::size_t index = 0) {
   return false;
 }
 
-Vector random_state(const RobotModel& robot, const std::vector<int>& axes, Vector q, std::mt19937& random) {
+Vector random_state(const RobotModel& robot, const std::vector<int>& axes, Vector q,
+                    std::mt19937& random) {
   for (int i : axes) {
     const Axis& axis = robot.axes()[static_cast<std::size_t>(i)];
-    q[i] = std::uniform_real_distribution<double>(std::max(axis.lower, -3.1), std::min(axis.upper, 3.1))(random);
+    q[i] = std::uniform_real_distribution<double>(std::max(axis.lower, -3.1),
+                                                  std::min(axis.upper, 3.1))(random);
   }
   return q;
 }
@@ -65,17 +70,21 @@ TEST(SphereCover, every_point_of_a_solid_is_inside_a_leaf_and_all_spheres_above_
   for (int k = 0; k < 12; ++k) {
     const Vector3 half = 0.5 * Vector3(size(random), size(random), size(random));
     const double radius = 0.5 * size(random), length = size(random);
-    const SphereCover box = cover_shape(Box{2 * half}), cylinder = cover_shape(Cylinder{radius, length}),
-                      capsule = cover_shape(Capsule{radius, length}), sphere = cover_shape(Sphere{radius});
+    const SphereCover box = cover_shape(Box{2 * half}),
+                      cylinder = cover_shape(Cylinder{radius, length}),
+                      capsule = cover_shape(Capsule{radius, length}),
+                      sphere = cover_shape(Sphere{radius});
     for (int i = 0; i < 3000; ++i) {
       Vector3 u(unit(random), unit(random), unit(random));
       if (i % 3 == 0) u[i / 3 % 3] = u[i / 3 % 3] < 0 ? -1 : 1;  // on a face
       ASSERT_TRUE(held(box, half.cwiseProduct(u)));
-      const double angle = M_PI * u.x(), r = i % 3 == 0 ? radius : radius * std::sqrt(std::abs(u.y()));
+      const double angle = M_PI * u.x(),
+                   r = i % 3 == 0 ? radius : radius * std::sqrt(std::abs(u.y()));
       const Vector3 disc(r * std::cos(angle), r * std::sin(angle), 0);
       ASSERT_TRUE(held(cylinder, disc + Vector3(0, 0, 0.5 * length * u.z())));
       ASSERT_TRUE(held(capsule, disc + Vector3(0, 0, 0.5 * length * u.z())));
-      ASSERT_TRUE(held(capsule, Vector3(0, 0, std::copysign(0.5 * length, u.z())) + radius * u.normalized()));
+      ASSERT_TRUE(held(
+          capsule, Vector3(0, 0, std::copysign(0.5 * length, u.z())) + radius * u.normalized()));
       ASSERT_TRUE(held(sphere, radius * u.normalized()));
     }
   }
@@ -148,9 +157,11 @@ class BothChecks {
     }
   }
   void report(const char* name) const {
-    std::printf("%s: %d states, %.1f %% free, of these %.1f %% cleared without FCL; 0-5 cm clear of the scene: %d, %.1f %% left to FCL\n",
-                name, states_, 100.0 * free_ / states_, 100.0 * cleared_ / std::max(1, free_), near_,
-                100.0 * refused_near_ / std::max(1, near_));
+    std::printf(
+        "%s: %d states, %.1f %% free, of these %.1f %% cleared without FCL; 0-5 cm clear of the "
+        "scene: %d, %.1f %% left to FCL\n",
+        name, states_, 100.0 * free_ / states_, 100.0 * cleared_ / std::max(1, free_), near_,
+        100.0 * refused_near_ / std::max(1, near_));
   }
   int states_{}, free_{}, cleared_{}, near_{}, refused_near_{};
   const RobotModel& robot_;
@@ -190,7 +201,8 @@ TEST(WideCollision, refuses_none_of_the_goals_of_the_panda_problems) {
       refused += !world.is_free(goal);
     }
   }
-  std::printf("%d goals, %d refused; %d cleared without FCL\n", goals, refused, goals - static_cast<int>(world.exact_checks()));
+  std::printf("%d goals, %d refused; %d cleared without FCL\n", goals, refused,
+              goals - static_cast<int>(world.exact_checks()));
   EXPECT_GE(goals, 210);
   EXPECT_EQ(refused, 0);
 }
@@ -207,11 +219,13 @@ TEST(WideCollision, never_clears_what_is_in_collision_of_the_iiwa) {
   for (int k = 0; k < scenes; ++k) {
     std::vector<Obstacle> obstacles;
     for (int i = 0; i < 8; ++i) {
-      const Vector3 at = Vector3(place(random), place(random), 0.6 * place(random)).normalized() * (0.55 + 0.3 * place(random));
+      const Vector3 at = Vector3(place(random), place(random), 0.6 * place(random)).normalized() *
+                         (0.55 + 0.3 * place(random));
       const Pose T = make_pose(at + Vector3(0, 0, 0.4),
-                               Eigen::Quaterniond(Eigen::AngleAxisd(3 * place(random), Vector3(place(random), 1, 0).normalized())));
-      const Shape shape =
-          i % 2 ? Shape(Box{{size(random), size(random), size(random)}}) : Shape(Cylinder{0.3 * size(random), size(random)});
+                               Eigen::Quaterniond(Eigen::AngleAxisd(
+                                   3 * place(random), Vector3(place(random), 1, 0).normalized())));
+      const Shape shape = i % 2 ? Shape(Box{{size(random), size(random), size(random)}})
+                                : Shape(Cylinder{0.3 * size(random), size(random)});
       obstacles.push_back({"thing" + std::to_string(i), {shape, T}});
     }
     checks.both([&](CollisionWorld& world) { world.set_obstacles(obstacles); });
@@ -227,7 +241,9 @@ ObjectModel slab() {
   ObjectModel object;
   object.name = "slab";
   const Vector3 half(0.05, 0.03, 0.08);
-  for (int i = 0; i < 8; ++i) object.mesh.vertices.emplace_back(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).cwiseProduct(half));
+  for (int i = 0; i < 8; ++i)
+    object.mesh.vertices.emplace_back(
+        Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).cwiseProduct(half));
   object.mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                            {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return object;
@@ -237,19 +253,24 @@ TEST(WideCollision, agrees_on_jido_with_people_objects_and_something_in_the_hand
   const RobotModel robot = load_jido();
   const ObjectModel object = slab();
   BothChecks checks(
-      robot, [&](const std::string& name) { return name == "slab" ? &object : nullptr; }, robot.require_group("arm").axes);
+      robot, [&](const std::string& name) { return name == "slab" ? &object : nullptr; },
+      robot.require_group("arm").axes);
   std::mt19937 random(kSeed + 1);
   std::uniform_real_distribution<double> place(-1, 1);
   std::printf("seed %u\n", kSeed + 1);
   for (int k = 0; k < 6; ++k) {
     Scene scene;
     scene.robot_known = true;
-    scene.T_world_base = make_pose({3.0 * place(random), 2.0 * place(random), 0},
-                                   Eigen::Quaterniond(Eigen::AngleAxisd(3 * place(random), Vector3::UnitZ())));
-    const auto at = [&](double x, double y, double z) { return Pose(scene.T_world_base * Eigen::Translation3d(x, y, z)); };
+    scene.T_world_base =
+        make_pose({3.0 * place(random), 2.0 * place(random), 0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(3 * place(random), Vector3::UnitZ())));
+    const auto at = [&](double x, double y, double z) {
+      return Pose(scene.T_world_base * Eigen::Translation3d(x, y, z));
+    };
     scene.boxes.push_back({"table", at(0.9, place(random), 0.35), {0.6, 1.2, 0.7}, true});
     scene.boxes.push_back({"wall", at(0, 1.3, 1), {400, 0.1, 400}, false});
-    scene.objects.push_back({"far", "slab", at(0.7, 0.3 * place(random), 0.785), Holder::nobody, "", 0.0});
+    scene.objects.push_back(
+        {"far", "slab", at(0.7, 0.3 * place(random), 0.785), Holder::nobody, "", 0.0});
     scene.objects.push_back({"held", "slab", Pose::Identity(), Holder::robot, "", 0.0});
     checks.both([&](CollisionWorld& world) {
       world.set_scene(scene);
@@ -258,7 +279,8 @@ TEST(WideCollision, agrees_on_jido_with_people_objects_and_something_in_the_hand
       Attachment attachment;
       if (k >= 2) attachment.object = "held";
       attachment.T_tool_object = make_pose({0.0, 0.05, 0.12});
-      world.set_attachment(attachment, k % 3 == 1 ? std::vector<std::string>{"far", "table"} : std::vector<std::string>{"anna"});
+      world.set_attachment(attachment, k % 3 == 1 ? std::vector<std::string>{"far", "table"}
+                                                  : std::vector<std::string>{"anna"});
     });
     checks.compare(states_wanted() / 12, robot.rest_configuration(), random);
   }
@@ -285,7 +307,8 @@ TEST(WideCollision, lines_have_the_same_verdicts_names_and_counts) {
     if (k % 2 == 0) to = from + 0.3 * (to - from);
     const double step = k % 3 == 0 ? 0.005 : 0.02;
     const std::uint64_t before[2] = {checks.exact_.checks(), checks.batch_.checks()};
-    const CollisionVerdict exact = checks.exact_.check_motion(from, to, step), wide = checks.batch_.check_motion(from, to, step);
+    const CollisionVerdict exact = checks.exact_.check_motion(from, to, step),
+                           wide = checks.batch_.check_motion(from, to, step);
     EXPECT_EQ(exact.free, wide.free);
     EXPECT_EQ(exact.first, wide.first);
     EXPECT_EQ(exact.second, wide.second);
@@ -295,8 +318,9 @@ TEST(WideCollision, lines_have_the_same_verdicts_names_and_counts) {
     free += exact.free;
     sure += surely;
   }
-  std::printf("%d of 60 lines free, %d shown free without steps, %llu of %llu states left to FCL\n", free, sure,
-              static_cast<unsigned long long>(checks.batch_.exact_checks()), static_cast<unsigned long long>(checks.batch_.checks()));
+  std::printf("%d of 60 lines free, %d shown free without steps, %llu of %llu states left to FCL\n",
+              free, sure, static_cast<unsigned long long>(checks.batch_.exact_checks()),
+              static_cast<unsigned long long>(checks.batch_.checks()));
   EXPECT_GT(free, 3);
   EXPECT_LT(free, 60);
   EXPECT_GT(sure, 0);
@@ -325,7 +349,8 @@ TEST(WideCollision, what_other_axes_turn_is_kept_off_by_the_turning_margin) {
   const Group &arm = robot.require_group("arm"), &head = robot.require_group("head");
   const auto turned_by = [&](int link, const Group& group) {
     for (int l = link; robot.links()[static_cast<std::size_t>(l)].parent_joint >= 0;) {
-      const auto& joint = robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(l)].parent_joint)];
+      const auto& joint = robot.joints()[static_cast<std::size_t>(
+          robot.links()[static_cast<std::size_t>(l)].parent_joint)];
       if (std::count(group.axes.begin(), group.axes.end(), joint.dof) > 0) return true;
       l = joint.parent;
     }
@@ -342,7 +367,8 @@ TEST(WideCollision, what_other_axes_turn_is_kept_off_by_the_turning_margin) {
         if (robot.pair_disabled(static_cast<int>(a), static_cast<int>(h))) continue;
         for (const PlacedShape& x : robot.links()[a].collision)
           for (const PlacedShape& y : robot.links()[h].collision) {
-            const ShapeDistance d = shape_distance(x.shape, links[a] * x.T_parent_shape, y.shape, links[h] * y.T_parent_shape);
+            const ShapeDistance d = shape_distance(x.shape, links[a] * x.T_parent_shape, y.shape,
+                                                   links[h] * y.T_parent_shape);
             least = std::min(least, d.collide ? 0.0 : d.distance);
           }
       }
@@ -365,11 +391,14 @@ TEST(WideCollision, what_other_axes_turn_is_kept_off_by_the_turning_margin) {
     if (!free || (free_with && k % 200 != 0)) continue;
     const double d = gap(q);
     ASSERT_GT(d, free_with ? kMargin : 0.0) << "seed " << kSeed << " state " << k;
-    ASSERT_LT(d, free_with ? 1e9 : kMargin * std::sqrt(3.0) + 1e-6) << "seed " << kSeed << " state " << k;
+    ASSERT_LT(d, free_with ? 1e9 : kMargin * std::sqrt(3.0) + 1e-6)
+        << "seed " << kSeed << " state " << k;
     near += !free_with;
     kept_off += free_with;
   }
-  std::printf("%d states free but within the margin of the head, %d of those farther away looked at\n", near, kept_off);
+  std::printf(
+      "%d states free but within the margin of the head, %d of those farther away looked at\n",
+      near, kept_off);
   EXPECT_GE(near, 20);
 }
 
@@ -390,16 +419,19 @@ TEST(WideCollision, distance_to_people_is_that_of_the_nearest_pair_with_its_poin
     world.set_base(T_world_base);
     world.set_people(people);
     for (int i = 0; i < 25; ++i) {
-      const Vector q = random_state(robot, robot.require_group("arm").axes, robot.rest_configuration(), random);
+      const Vector q =
+          random_state(robot, robot.require_group("arm").axes, robot.rest_configuration(), random);
       std::vector<Pose> links;
       robot.forward(q, links);
       double least = std::numeric_limits<double>::infinity();
       for (const Person& person : people.people)
         for (const BodyCapsule& body : body_capsules(person))
           for (const LinkCapsule& capsule : capsules)
-            least = std::min(least, segment_distance(T_world_base * (links[capsule.link] * capsule.a),
-                                                     T_world_base * (links[capsule.link] * capsule.b), body.a, body.b) -
-                                        capsule.radius - body.radius);
+            least =
+                std::min(least, segment_distance(T_world_base * (links[capsule.link] * capsule.a),
+                                                 T_world_base * (links[capsule.link] * capsule.b),
+                                                 body.a, body.b) -
+                                    capsule.radius - body.radius);
       Vector3 on_robot, on_person;
       const double found = world.distance_to_people(q, &on_robot, &on_person);
       worst = std::max(worst, std::abs(found - least));
@@ -417,8 +449,9 @@ class Lanes : public ::testing::Test {
   Lanes() : batch_(robot_) {
     for (std::size_t i = 0; i < robot_.links().size(); ++i)
       for (const PlacedShape& placed : robot_.links()[i].collision)
-        bodies_.push_back({static_cast<int>(i), std::make_shared<const SphereCover>(cover_shape(placed.shape)), placed.shape,
-                           placed.T_parent_shape, kArmPart});
+        bodies_.push_back({static_cast<int>(i),
+                           std::make_shared<const SphereCover>(cover_shape(placed.shape)),
+                           placed.shape, placed.T_parent_shape, kArmPart});
   }
   RobotModel robot_{load_jido()};
   BatchWorld batch_;
@@ -436,17 +469,21 @@ TEST_F(Lanes, have_the_poses_of_the_model_at_every_width_and_clear_no_numbers_th
     batch_.set_kernels(*kernel);
     for (int block = 0; block < 20; ++block) {
       std::vector<Vector> states;
-      for (int i = 0; i < BatchWorld::kStates; ++i) states.push_back(random_state(robot_, axes, robot_.rest_configuration(), random));
+      for (int i = 0; i < BatchWorld::kStates; ++i)
+        states.push_back(random_state(robot_, axes, robot_.rest_configuration(), random));
       EXPECT_EQ(batch_.unclear(states.data(), BatchWorld::kStates), 0u);
       for (int lane = BatchWorld::kStates - kernel->width; lane < BatchWorld::kStates; ++lane)
         for (std::size_t link = 0; link < robot_.links().size(); ++link) {
-          const Pose T = robot_.link_pose(states[static_cast<std::size_t>(lane)], static_cast<int>(link));
+          const Pose T =
+              robot_.link_pose(states[static_cast<std::size_t>(lane)], static_cast<int>(link));
           const Pose lanes = batch_.link_pose(static_cast<int>(link), lane);
-          worst = std::max(worst, (T * Vector3(0.1, 0.1, 0.1) - lanes * Vector3(0.1, 0.1, 0.1)).norm());
+          worst =
+              std::max(worst, (T * Vector3(0.1, 0.1, 0.1) - lanes * Vector3(0.1, 0.1, 0.1)).norm());
         }
     }
   }
-  std::printf("poses in single precision within %.1e m, %.1e m are added to the radii\n", worst, batch_.rounding());
+  std::printf("poses in single precision within %.1e m, %.1e m are added to the radii\n", worst,
+              batch_.rounding());
   EXPECT_LT(worst, batch_.rounding() / 3);
   batch_.set_solids({{Sphere{0.05}, nullptr, make_pose({0.6, 0, 0.9})}}, Pose::Identity());
   Vector q = robot_.rest_configuration();
@@ -460,13 +497,14 @@ TEST_F(Lanes, every_width_clears_the_same_states_but_for_rounding) {
   std::mt19937 random(kSeed + 4);
   const std::vector<int>& axes = robot_.require_group("arm").axes;
   batch_.set_robot(bodies_, {}, axes, robot_.rest_configuration());
-  batch_.set_solids(
-      {{Cylinder{0.1, 0.5}, nullptr, make_pose({0.8, 0.2, 0.9})}, {Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}},
-      Pose::Identity());
+  batch_.set_solids({{Cylinder{0.1, 0.5}, nullptr, make_pose({0.8, 0.2, 0.9})},
+                     {Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}},
+                    Pose::Identity());
   int different = 0, unclear = 0;
   for (int block = 0; block < 50; ++block) {
     std::vector<Vector> states;
-    for (int i = 0; i < BatchWorld::kStates; ++i) states.push_back(random_state(robot_, axes, robot_.rest_configuration(), random));
+    for (int i = 0; i < BatchWorld::kStates; ++i)
+      states.push_back(random_state(robot_, axes, robot_.rest_configuration(), random));
     std::uint32_t first = 0;
     for (const detail::SimdKernels* kernel : kernels()) {
       batch_.set_kernels(*kernel);
@@ -488,17 +526,21 @@ TEST_F(Lanes, a_line_is_clear_for_who_asks_for_any_unclear_state_exactly_when_al
   for (int a = 0; a < static_cast<int>(bodies_.size()); ++a)
     for (int b = a + 6; b < static_cast<int>(bodies_.size()); ++b) pairs.emplace_back(a, b);
   batch_.set_robot(bodies_, pairs, axes, robot_.rest_configuration());
-  batch_.set_solids({{Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}}, Pose::Identity());
+  batch_.set_solids({{Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}},
+                    Pose::Identity());
   std::array<double, BatchWorld::kStates> at{};
   for (std::size_t i = 0; i < at.size(); ++i) at[i] = static_cast<double>(i) / (at.size() - 1.0);
   int clear = 0, partly = 0;
   for (int line = 0; line < 400; ++line) {
     const Vector from = random_state(robot_, axes, robot_.rest_configuration(), random),
-                 to = from + 0.2 * (random_state(robot_, axes, robot_.rest_configuration(), random) - from);
+                 to =
+                     from +
+                     0.2 * (random_state(robot_, axes, robot_.rest_configuration(), random) - from);
     for (const detail::SimdKernels* kernel : kernels()) {
       batch_.set_kernels(*kernel);
       const std::uint32_t all = batch_.unclear_on_line(from, to, at.data(), BatchWorld::kStates),
-                          any = batch_.unclear_on_line(from, to, at.data(), BatchWorld::kStates, true);
+                          any = batch_.unclear_on_line(from, to, at.data(), BatchWorld::kStates,
+                                                       true);
       EXPECT_EQ(any != 0, all != 0) << kernel->name << ", line " << line;
       EXPECT_EQ(any & ~all, 0u) << kernel->name << ", line " << line;
       clear += all == 0;

@@ -26,7 +26,8 @@ ActiveTrajectory sweep(double time, double speed_factor) {
 Scene wall(double angle) {
   Scene scene;
   scene.revision = 1;
-  scene.boxes.push_back({"wall", make_pose({std::cos(angle), std::sin(angle), 0}), {0.02, 0.02, 0.2}, false});
+  scene.boxes.push_back(
+      {"wall", make_pose({std::cos(angle), std::sin(angle), 0}), {0.02, 0.02, 0.2}, false});
   return scene;
 }
 
@@ -99,7 +100,8 @@ TEST_F(Forecast, a_path_that_grows_while_it_runs_is_judged_anew) {
   for (AxisTrajectory& axis : active.rest.axes) axis.segments[0].duration = 1.2;
   EXPECT_FALSE(forecaster_.forecast(active).collides);
   active = sweep(1.0, 1.0);
-  EXPECT_TRUE(forecaster_.forecast(active).collides) << "the same command, and what was put in line behind it";
+  EXPECT_TRUE(forecaster_.forecast(active).collides)
+      << "the same command, and what was put in line behind it";
 }
 
 TEST_F(Forecast, a_hand_counts_where_it_is_expected_when_the_robot_gets_there) {
@@ -115,7 +117,8 @@ TEST_F(Forecast, a_hand_counts_where_it_is_expected_when_the_robot_gets_there) {
   const auto expected = [&](double first, double last) {
     people.people[0].hands = {{"r_hand", {}}};
     for (const double time : {0.1, 0.2, 0.3, 0.4, 0.5})
-      people.people[0].hands[0].ahead.push_back({time, time >= first && time <= last ? Vector3(1.1, 0, 1.2) : Vector3(3, 0, 1.2), 0.2});
+      people.people[0].hands[0].ahead.push_back(
+          {time, time >= first && time <= last ? Vector3(1.1, 0, 1.2) : Vector3(3, 0, 1.2), 0.2});
     forecaster_.set_people(people);
     const TrajectoryForecast forecast = forecaster_.forecast(active);
     EXPECT_FALSE(forecast.collides) << "the guard answers for hands";

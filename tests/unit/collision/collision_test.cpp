@@ -25,7 +25,8 @@ TEST(ShapeDistance, spheres_along_an_axis) {
 }
 
 TEST(ShapeDistance, touching_is_collision_with_distance_zero) {
-  const ShapeDistance d = shape_distance(Box{{1, 1, 1}}, at(0, 0, 0), Box{{1, 1, 1}}, at(0.9, 0.2, 0.3));
+  const ShapeDistance d =
+      shape_distance(Box{{1, 1, 1}}, at(0, 0, 0), Box{{1, 1, 1}}, at(0.9, 0.2, 0.3));
   EXPECT_TRUE(d.collide);
   EXPECT_EQ(d.distance, 0.0);
 }
@@ -41,12 +42,14 @@ TEST(ShapeDistance, capsule_length_is_the_straight_part) {
 }
 
 TEST(ShapeDistance, cylinder_rim_to_sphere) {
-  const ShapeDistance d = shape_distance(Cylinder{0.5, 1.0}, at(0, 0, 0), Sphere{0.1}, at(1.5, 0, 1.5));
+  const ShapeDistance d =
+      shape_distance(Cylinder{0.5, 1.0}, at(0, 0, 0), Sphere{0.1}, at(1.5, 0, 1.5));
   EXPECT_NEAR(d.distance, std::sqrt(2.0) - 0.1, 1e-7);
 }
 
 TEST(ShapeDistance, mesh_to_box) {
-  const ShapeDistance d = shape_distance(tetrahedron(0.5), at(0, 0, 0), Box{{1, 1, 1}}, at(-1.25, 0, 0));
+  const ShapeDistance d =
+      shape_distance(tetrahedron(0.5), at(0, 0, 0), Box{{1, 1, 1}}, at(-1.25, 0, 0));
   EXPECT_FALSE(d.collide);
   EXPECT_NEAR(d.distance, 0.75, 1e-6);
 }
@@ -57,7 +60,9 @@ TEST(ShapeDistance, mesh_wholly_inside_a_solid_collides) {
 }
 
 TEST(ShapeDistance, a_mesh_without_triangles_is_refused) {
-  EXPECT_THROW(shape_distance(std::make_shared<TriangleMesh>(), at(0, 0, 0), Sphere{1.0}, at(0, 0, 0)), ConfigError);
+  EXPECT_THROW(
+      shape_distance(std::make_shared<TriangleMesh>(), at(0, 0, 0), Sphere{1.0}, at(0, 0, 0)),
+      ConfigError);
 }
 
 TEST(SegmentDistance, crossing_parallel_and_degenerate) {

@@ -23,7 +23,8 @@ Costmap layer(const std::string& name, std::uint8_t value = 100) {
 
 TEST(CostLayers, keeps_arm_comfort_and_what_others_add) {
   CostLayers layers;
-  for (const char* name : {"total", "safety", "visibility", "noise", "crowd"}) layers.put(layer(name), kStart, kStart);
+  for (const char* name : {"total", "safety", "visibility", "noise", "crowd"})
+    layers.put(layer(name), kStart, kStart);
   Costmap comfort = layer("arm_comfort");
   comfort.person = "anna";
   layers.put(comfort, kStart, kStart);
@@ -51,15 +52,18 @@ TEST(CostLayers, a_place_costs_the_weighted_sum_and_says_who_forbids_it) {
 
 TEST(CostLayers, what_has_a_fault_is_left_out_counted_and_named) {
   CostLayers layers;
-  Costmap short_one = layer("short"), flat = layer("flat"), fine = layer("fine"), endless = layer("endless");
+  Costmap short_one = layer("short"), flat = layer("flat"), fine = layer("fine"),
+          endless = layer("endless");
   short_one.values.pop_back();
   flat.nz = 1;
   flat.values.resize(4);
   fine.resolution = 0;
   endless.origin.x() = std::numeric_limits<double>::infinity();
   std::uint64_t count = 0;
-  for (const auto& [bad, why] :
-       {std::pair{short_one, "7 values for 8 points"}, {flat, "at least two points"}, {fine, "resolution"}, {endless, "origin"}}) {
+  for (const auto& [bad, why] : {std::pair{short_one, "7 values for 8 points"},
+                                 {flat, "at least two points"},
+                                 {fine, "resolution"},
+                                 {endless, "origin"}}) {
     layers.put(bad, kStart, kStart);
     EXPECT_EQ(layers.left_out(), ++count);
     EXPECT_THAT(layers.complaint(kStart), HasSubstr("\"" + bad.layer + "\""));
@@ -76,7 +80,8 @@ TEST(CostLayers, one_older_than_a_second_counts_no_more_until_it_comes_again) {
   EXPECT_EQ(layers.left_out(), 1u);
   EXPECT_THAT(layers.complaint(kStart + milliseconds(1001)), HasSubstr("crowd"));
   layers.put(layer("crowd"), kStart, kStart + milliseconds(1500));
-  EXPECT_TRUE(layers.at(kStart + milliseconds(1500)).outside.empty()) << "sent too long ago when it came";
+  EXPECT_TRUE(layers.at(kStart + milliseconds(1500)).outside.empty())
+      << "sent too long ago when it came";
   EXPECT_EQ(layers.left_out(), 2u);
   layers.put(layer("crowd"), kStart + milliseconds(1600), kStart + milliseconds(1600));
   EXPECT_EQ(layers.at(kStart + milliseconds(1600)).outside.size(), 1u);

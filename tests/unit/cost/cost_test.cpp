@@ -21,7 +21,8 @@ TEST(SafetyCost, is_one_at_contact_and_zero_from_the_radius_on) {
   EXPECT_DOUBLE_EQ(safety_cost(-0.5, 1.0), 1.0);
   EXPECT_DOUBLE_EQ(safety_cost(1.0, 1.0), 0.0);
   EXPECT_DOUBLE_EQ(safety_cost(5.0, 1.0), 0.0);
-  EXPECT_NEAR(safety_cost(0.5, 1.0), (std::exp(-0.5) - std::exp(-1.0)) / (1 - std::exp(-1.0)), 1e-12);
+  EXPECT_NEAR(safety_cost(0.5, 1.0), (std::exp(-0.5) - std::exp(-1.0)) / (1 - std::exp(-1.0)),
+              1e-12);
 }
 
 TEST(VisibilityCost, grows_from_the_gaze_to_the_back_and_ends_at_the_cutoff) {
@@ -44,7 +45,8 @@ TEST(VisibilityCost, without_a_gaze_the_front_of_the_body_stands_in) {
 
 TEST(ArmComfort, in_front_of_the_chest_is_better_than_overhead_and_far_is_out_of_reach) {
   const Person person = standing({0, 0, 0}, 0);
-  const double chest = arm_comfort_cost(person, {0.35, -0.15, 1.1}), overhead = arm_comfort_cost(person, {0.1, -0.2, 1.85});
+  const double chest = arm_comfort_cost(person, {0.35, -0.15, 1.1}),
+               overhead = arm_comfort_cost(person, {0.1, -0.2, 1.85});
   EXPECT_LT(chest, 0.4);
   EXPECT_GT(overhead, chest);
   EXPECT_LT(overhead, 1.0);
@@ -56,10 +58,13 @@ TEST(ArmComfort, in_front_of_the_chest_is_better_than_overhead_and_far_is_out_of
 
 TEST(ArmComfort, is_the_same_for_left_and_right_mirrored) {
   const Person person = standing({0, 0, 0}, 0);
-  EXPECT_NEAR(arm_comfort_cost(person, Side::left, {0.3, 0.2, 1.2}), arm_comfort_cost(person, Side::right, {0.3, -0.2, 1.2}), 1e-6);
+  EXPECT_NEAR(arm_comfort_cost(person, Side::left, {0.3, 0.2, 1.2}),
+              arm_comfort_cost(person, Side::right, {0.3, -0.2, 1.2}), 1e-6);
 }
 
-TEST(ArmComfort, a_body_without_arms_reaches_nothing) { EXPECT_EQ(arm_comfort_cost(Person{}, {0.3, 0, 1}), 1.0); }
+TEST(ArmComfort, a_body_without_arms_reaches_nothing) {
+  EXPECT_EQ(arm_comfort_cost(Person{}, {0.3, 0, 1}), 1.0);
+}
 
 TEST(HumanCost, is_zero_without_people_and_larger_toward_them) {
   const RobotModel robot = test::planar_arm();

@@ -47,8 +47,10 @@ TEST(Layers, a_person_without_arms_or_head_gets_a_map_all_the_same) {
     if (joint.name == "waist" || joint.name == "torso") person.joints.push_back(joint);
   MapMaker maker({});
   const Layers& layers = maker.make(person, {});
-  EXPECT_TRUE(std::all_of(layers[2].values.begin(), layers[2].values.end(), [](std::uint8_t v) { return v == 255; }));
-  EXPECT_TRUE(std::all_of(layers[1].values.begin(), layers[1].values.end(), [](std::uint8_t v) { return v == 0; }));
+  EXPECT_TRUE(std::all_of(layers[2].values.begin(), layers[2].values.end(),
+                          [](std::uint8_t v) { return v == 255; }));
+  EXPECT_TRUE(std::all_of(layers[1].values.begin(), layers[1].values.end(),
+                          [](std::uint8_t v) { return v == 0; }));
 }
 
 TEST(ComfortMap, a_comfortable_point_is_better_than_a_stretched_one) {
@@ -61,7 +63,8 @@ TEST(ComfortMap, under_inside_and_near_a_table_is_no_place) {
   const Person person = standing({0, 0, 0}, 0);
   const std::vector<SceneBox> table = {{"table", make_pose({0.6, 0, 1.0}), {0.7, 1.2, 0.04}, true}};
   const Costmap free = comfort_of(person, {}), map = comfort_of(person, table);
-  for (const Vector3& p : {Vector3(0.3, -0.25, 0.95), Vector3(0.3, -0.25, 1.0), Vector3(0.3, -0.25, 1.05)}) {
+  for (const Vector3& p :
+       {Vector3(0.3, -0.25, 0.95), Vector3(0.3, -0.25, 1.0), Vector3(0.3, -0.25, 1.05)}) {
     EXPECT_LT(value_at(free, p), 255);
     EXPECT_EQ(value_at(map, p), 255);
   }
@@ -71,7 +74,8 @@ TEST(ComfortMap, under_inside_and_near_a_table_is_no_place) {
 
 TEST(ComfortMap, behind_a_wall_is_no_place_and_a_shelf_overhead_does_no_harm) {
   const Person person = standing({0, 0, 0}, 0);
-  const Costmap wall = comfort_of(person, {{"wall", make_pose({0.3, 0, 1.25}), {0.05, 4, 2.5}, false}});
+  const Costmap wall =
+      comfort_of(person, {{"wall", make_pose({0.3, 0, 1.25}), {0.05, 4, 2.5}, false}});
   EXPECT_EQ(value_at(wall, {0.5, -0.2, 1.2}), 255);
   EXPECT_LT(value_at(wall, {0.2, -0.3, 1.2}), 255);
   const Costmap shelf = comfort_of(person, {{"shelf", make_pose({0, 0, 2.4}), {3, 3, 0.05}, true}});
@@ -84,7 +88,8 @@ TEST(Watch, notices_moves_turns_and_furniture_only_beyond_its_thresholds) {
   EXPECT_TRUE(watch.changed(standing({0, 0, 0}, 0), boxes));
   EXPECT_FALSE(watch.changed(standing({0, 0, 0}, 0), boxes));
   EXPECT_FALSE(watch.changed(standing({0.02, 0, 0}, 0), boxes));
-  EXPECT_TRUE(watch.changed(standing({0.04, 0, 0}, 0), boxes)) << "measured from where the last map was made";
+  EXPECT_TRUE(watch.changed(standing({0.04, 0, 0}, 0), boxes))
+      << "measured from where the last map was made";
   EXPECT_TRUE(watch.changed(standing({0.04, 0, 0}, 0.2), boxes));
   Person looks_up = standing({0.04, 0, 0}, 0.2);
   looks_up.gaze_known = true;

@@ -1,4 +1,5 @@
-// deploy/docker-compose.yml and deploy/Dockerfile against the one list of processes, the table of topics and the files they name.
+// deploy/docker-compose.yml and deploy/Dockerfile against the one list of processes, the table of
+// topics and the files they name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +30,8 @@ std::vector<std::string> faults(const std::string& compose) {
   };
   const auto all = compose_services(compose);
   const std::set<std::string> processes(kProcesses.begin(), kProcesses.end());
-  for (const std::string& process : processes) require(all.contains(process), process + " is no service");
+  for (const std::string& process : processes)
+    require(all.contains(process), process + " is no service");
   for (const auto& [name, text] : all) {
     require(processes.contains(name), "the service " + name + " is no process of the system");
     const auto has = [&, name = name, &text = text](const std::string& what) {
@@ -38,37 +40,45 @@ std::vector<std::string> faults(const std::string& compose) {
     has("<<: *process\n");
     has("command: [handsel_" + name + ", --scenario, \"${HANDSEL_SCENARIO:-");
     has("healthcheck: {test: [CMD, handsel, health, " + name + "]");
-    require(text.find("    environment:") == std::string::npos || text.find("<<: *environment") != std::string::npos,
+    require(text.find("    environment:") == std::string::npos ||
+                text.find("<<: *environment") != std::string::npos,
             name + " has an environment of its own without the common one");
     for (const char* own : {"HANDSEL_DOMAIN", "HANDSEL_PEERS", "CYCLONEDDS_URI", "--domain"})
       require(text.find(own) == std::string::npos, name + " says " + own + " for itself alone");
   }
-  // A topic joins services: each end that is not a person's command, a real robot or an outside lane must be one.
+  // A topic joins services: each end that is not a person's command, a real robot or an outside
+  // lane must be one.
   const std::set<std::string> elsewhere{"handsel", "driver", "ros2_lane"};
   for (const TopicRow& row : topics())
     for (const char* list : {row.writers, row.readers}) {
       std::istringstream ends(list);
       for (std::string end; ends >> end;)
-        require(all.contains(end) || elsewhere.contains(end), std::string(row.topic) + " has its end at " + end + ", which is no service");
+        require(all.contains(end) || elsewhere.contains(end),
+                std::string(row.topic) + " has its end at " + end + ", which is no service");
     }
   const std::string common = compose.substr(0, compose.find("\nservices:\n"));
-  for (const char* what : {"restart: unless-stopped", "read_only: true", "cap_drop: [ALL]", "no-new-privileges",
-                           "tmpfs:", "cpus:", "mem_limit:", "pids_limit:", "HANDSEL_DOMAIN: ${HANDSEL_DOMAIN:-0}",
-                           "HANDSEL_PEERS: ${HANDSEL_PEERS:-multicast}"})
-    require(common.find(what) != std::string::npos, std::string("the services lack \"") + what + "\"");
+  for (const char* what :
+       {"restart: unless-stopped", "read_only: true", "cap_drop: [ALL]", "no-new-privileges",
+        "tmpfs:", "cpus:", "mem_limit:", "pids_limit:", "HANDSEL_DOMAIN: ${HANDSEL_DOMAIN:-0}",
+        "HANDSEL_PEERS: ${HANDSEL_PEERS:-multicast}"})
+    require(common.find(what) != std::string::npos,
+            std::string("the services lack \"") + what + "\"");
   return out;
 }
 
 std::set<std::string> found(const std::string& text, const char* pattern) {
   std::set<std::string> out;
   const std::regex expression(pattern);
-  for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it) out.insert((*it)[1]);
+  for (std::sregex_iterator it(text.begin(), text.end(), expression), end; it != end; ++it)
+    out.insert((*it)[1]);
   return out;
 }
 
 const std::string kCompose = text_of(kRoot / "deploy/docker-compose.yml");
 
-TEST(ComposeFile, every_process_is_a_service_with_a_health_check_and_limits) { EXPECT_THAT(faults(kCompose), testing::IsEmpty()); }
+TEST(ComposeFile, every_process_is_a_service_with_a_health_check_and_limits) {
+  EXPECT_THAT(faults(kCompose), testing::IsEmpty());
+}
 
 TEST(ComposeFile, faults_are_seen) {
   const auto broken = [](const std::string& what, const std::string& by) {
@@ -78,11 +88,14 @@ TEST(ComposeFile, faults_are_seen) {
     return faults(text.replace(at, what.size(), by));
   };
   EXPECT_THAT(broken("  spark:\n", "  sparc:\n"), testing::Contains("spark is no service"));
-  EXPECT_THAT(broken("handsel, health, spark", "handsel, health, sim"), testing::Contains(HasSubstr("spark lacks")));
-  EXPECT_THAT(broken("[handsel_costmap,", "[handsel_spark,"), testing::Contains(HasSubstr("costmap lacks")));
+  EXPECT_THAT(broken("handsel, health, spark", "handsel, health, sim"),
+              testing::Contains(HasSubstr("spark lacks")));
+  EXPECT_THAT(broken("[handsel_costmap,", "[handsel_spark,"),
+              testing::Contains(HasSubstr("costmap lacks")));
   EXPECT_THAT(broken("      <<: *environment\n", "      HANDSEL_DOMAIN: 7\n"),
               testing::Contains("supervisor says HANDSEL_DOMAIN for itself alone"));
-  EXPECT_THAT(broken("read_only: true", "read_only: false"), testing::Contains(HasSubstr("read_only")));
+  EXPECT_THAT(broken("read_only: true", "read_only: false"),
+              testing::Contains(HasSubstr("read_only")));
 }
 
 TEST(ComposeFile, on_several_hosts_every_service_is_there_too) {
@@ -91,7 +104,8 @@ TEST(ComposeFile, on_several_hosts_every_service_is_there_too) {
   for (const std::string process : kProcesses) EXPECT_TRUE(services.contains(process)) << process;
 }
 
-// podman-compose of Debian 12 knows ${NAME:-default} with a default that is not empty, and no other form.
+// podman-compose of Debian 12 knows ${NAME:-default} with a default that is not empty, and no other
+// form.
 TEST(ComposeFile, every_variable_has_a_default_and_is_explained) {
   const std::string docs = text_of(kRoot / "docs/deploy.md");
   const auto variables = found(kCompose, R"(\$\{(\w+):-[^}]+\})");
@@ -104,17 +118,21 @@ TEST(ComposeFile, every_variable_has_a_default_and_is_explained) {
 }
 
 TEST(ComposeFile, files_it_names_exist) {
-  for (const std::string& file : found(kCompose, R"(dockerfile: ([\w/.]+))")) EXPECT_TRUE(fs::exists(kRoot / file)) << file;
+  for (const std::string& file : found(kCompose, R"(dockerfile: ([\w/.]+))"))
+    EXPECT_TRUE(fs::exists(kRoot / file)) << file;
   for (const std::string& scenario : found(kCompose, R"(HANDSEL_SCENARIO:-(\w+))"))
     EXPECT_TRUE(fs::exists(kRoot / "sim/scenarios" / (scenario + ".txtpb"))) << scenario;
   const std::string dockerfile = text_of(kRoot / "deploy/Dockerfile");
-  for (const std::string& file : found(dockerfile, R"(\n(?:RUN )?.*?\b(deploy/\w+\.sh))")) EXPECT_TRUE(fs::exists(kRoot / file)) << file;
-  for (const std::string& base : found(dockerfile, R"(\nFROM (\S+))")) EXPECT_TRUE(base == "debian:bookworm" || base == "${TREE}") << base;
+  for (const std::string& file : found(dockerfile, R"(\n(?:RUN )?.*?\b(deploy/\w+\.sh))"))
+    EXPECT_TRUE(fs::exists(kRoot / file)) << file;
+  for (const std::string& base : found(dockerfile, R"(\nFROM (\S+))"))
+    EXPECT_TRUE(base == "debian:bookworm" || base == "${TREE}") << base;
   EXPECT_THAT(dockerfile, HasSubstr("\nUSER handsel\n"));
 }
 
 TEST(ComposeFile, the_network_settings_let_every_topic_and_every_process_through) {
-  const DdsConfiguration dds = read_dds_configuration("file://" HANDSEL_SOURCE_DIR "/deploy/dds/network.xml", 0);
+  const DdsConfiguration dds =
+      read_dds_configuration("file://" HANDSEL_SOURCE_DIR "/deploy/dds/network.xml", 0);
   EXPECT_EQ(dds.error, "");
   EXPECT_TRUE(dds.multicast);
   EXPECT_EQ(dds.participant_index, "auto");

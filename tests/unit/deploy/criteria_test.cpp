@@ -13,9 +13,12 @@ namespace {
 class CriteriaTest : public testing::Test {
  protected:
   CriteriaTest()
-      : world_(network_.add("sim")), criteria_(network_.add("handsel"), network_), ground_truth_out_(world_.advertise<GroundTruth>()) {
-    for (const char* component : {"spark", "costmap", "collision_checker", "attention", "path_planner", "grasp_planner",
-                                  "trajectory_planner", "manipulation_planner"})
+      : world_(network_.add("sim")),
+        criteria_(network_.add("handsel"), network_),
+        ground_truth_out_(world_.advertise<GroundTruth>()) {
+    for (const char* component :
+         {"spark", "costmap", "collision_checker", "attention", "path_planner", "grasp_planner",
+          "trajectory_planner", "manipulation_planner"})
       network_.add(component);
     ground_truth_.person = standing_body(Vector3(0.85, 0, 0), M_PI, 1.75);
     ground_truth_.separation = 2.0;
@@ -35,8 +38,10 @@ class CriteriaTest : public testing::Test {
     }
   }
 
-  /// Somebody comes on at 1 m/s, nearer than 0.40 m after `first_near` steps; the arm moves from `start` on, slower from `slower` on.
-  std::vector<double> reactions(int first_near, int start, int slower, double before, double after, std::uint32_t causes) {
+  /// Somebody comes on at 1 m/s, nearer than 0.40 m after `first_near` steps; the arm moves from
+  /// `start` on, slower from `slower` on.
+  std::vector<double> reactions(int first_near, int start, int slower, double before, double after,
+                                std::uint32_t causes) {
     ground_truth_.person = standing_body(Vector3(4, 0, 0), M_PI, 1.75);
     ground_truth_.separation = 0.39 + 0.02 * first_near;
     for (int i = 0; i < first_near + 60; ++i) {
@@ -66,7 +71,8 @@ class CriteriaTest : public testing::Test {
   GroundTruth ground_truth_;
 };
 
-TEST_F(CriteriaTest, the_way_to_the_person_and_the_strain_of_their_arm_are_told_of_what_changes_hands) {
+TEST_F(CriteriaTest,
+       the_way_to_the_person_and_the_strain_of_their_arm_are_told_of_what_changes_hands) {
   ground_truth_.T_world_object.translation() = Vector3(0, 0, 1.1);
   ground_truth_.carrier = "surface";
   tell(5);
@@ -83,7 +89,9 @@ TEST_F(CriteriaTest, the_way_to_the_person_and_the_strain_of_their_arm_are_told_
   EXPECT_LT(fields["discomfort"].get<double>(), 1.0);
 }
 
-TEST_F(CriteriaTest, an_object_out_of_reach_is_as_uncomfortable_as_can_be_and_what_the_person_brings_has_no_way_of_the_robot) {
+TEST_F(
+    CriteriaTest,
+    an_object_out_of_reach_is_as_uncomfortable_as_can_be_and_what_the_person_brings_has_no_way_of_the_robot) {
   ground_truth_.carrier = "human";
   ground_truth_.T_world_object.translation() = Vector3(-1.5, 0, 1.1);
   tell(2);

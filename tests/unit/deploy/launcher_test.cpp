@@ -37,16 +37,20 @@ struct LauncherTest : testing::Test {
   LauncherOptions shell(const std::vector<std::string>& scripts) {
     LauncherOptions options{.log_directory = folder};
     for (const std::string& script : scripts) {
-      options.processes.push_back({"box" + std::to_string(options.processes.size()), "/bin/sh", {"-c", script}});
+      options.processes.push_back(
+          {"box" + std::to_string(options.processes.size()), "/bin/sh", {"-c", script}});
     }
     return options;
   }
-  std::string reporting(const std::string& script) const { return "echo $$ > " + fifo.string() + "; " + script; }
+  std::string reporting(const std::string& script) const {
+    return "echo $$ > " + fifo.string() + "; " + script;
+  }
   /// Of the next script that runs; -1: none did in time.
   pid_t reported() const {
     std::string line;
     pollfd ready{reports, POLLIN, 0};
-    for (char c = 0; poll(&ready, 1, 5000) == 1 && read(reports, &c, 1) == 1 && c != '\n';) line += c;
+    for (char c = 0; poll(&ready, 1, 5000) == 1 && read(reports, &c, 1) == 1 && c != '\n';)
+      line += c;
     return line.empty() ? -1 : std::stoi(line);
   }
   static bool is_gone(pid_t pid) { return kill(pid, 0) != 0 && errno == ESRCH; }
@@ -109,7 +113,8 @@ TEST_F(LauncherTest, bad_input_is_a_failure_with_the_last_line_it_said) {
 
 TEST_F(LauncherTest, a_process_that_keeps_dying_is_started_again_for_ever_after_growing_waits) {
   LauncherOptions options = shell({reporting("echo 'out of luck' >&2; exit 1")});
-  options.backoff = {.first = from_seconds(0.02), .max_wait = from_seconds(0.3), .stable_after = from_seconds(30)};
+  options.backoff = {
+      .first = from_seconds(0.02), .max_wait = from_seconds(0.3), .stable_after = from_seconds(30)};
   std::vector<std::string> events;  // read only after the launcher has ended
   options.on_event = [&](const std::string& sentence) { events.push_back(sentence); };
   std::vector<double> waits;
@@ -135,7 +140,8 @@ TEST_F(LauncherTest, a_process_that_keeps_dying_is_started_again_for_ever_after_
 TEST_F(LauncherTest, once_everything_was_up_no_death_is_a_failure) {
   for (const int code : {2, 3}) {
     const fs::path second = folder / ("second" + std::to_string(code));
-    Launcher launcher(shell({"if [ -e " + second.string() + " ]; then " + reporting("exit " + std::to_string(code)) + "; fi; touch " +
+    Launcher launcher(shell({"if [ -e " + second.string() + " ]; then " +
+                             reporting("exit " + std::to_string(code)) + "; fi; touch " +
                              second.string() + "; " + reporting("exec sleep 1000")}));
     const pid_t first = reported();
     ASSERT_GT(first, 0);

@@ -1,4 +1,5 @@
-// Alive, starved or hung: what the launcher concludes from heartbeats and from what the kernel says.
+// Alive, starved or hung: what the launcher concludes from heartbeats and from what the kernel
+// says.
 #include "deploy/handsel/system/liveness.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,8 @@ struct Process {
   Liveness liveness{LivenessSettings{}, signs};
   bool beats{true}, job_silent{};
 
-  /// So many seconds, judged ten times a second; of each second the process waits `waiting` and the listener `deaf` for a processor.
+  /// So many seconds, judged ten times a second; of each second the process waits `waiting` and the
+  /// listener `deaf` for a processor.
   Life live(double seconds, double waiting = 0.0, double deaf = 0.0) {
     Life life{};
     for (int k = 0; k < static_cast<int>(10 * seconds + 0.5); ++k) {

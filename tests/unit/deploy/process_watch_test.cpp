@@ -1,4 +1,5 @@
-// A launcher's ear: processes whose heartbeats fail are replaced, and while one does not run somebody says so in its name.
+// A launcher's ear: processes whose heartbeats fail are replaced, and while one does not run
+// somebody says so in its name.
 #include "deploy/handsel/system/process_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,9 @@ struct Watched : testing::Test {
   fs::path folder = fs::temp_directory_path() / ("handsel-watch-" + std::to_string(getpid()));
   DdsBus bus{{.component = "watch", .domain = 227, .health = false}};
   std::unique_ptr<Publisher<ComponentHealth>> beats = bus.advertise<ComponentHealth>();
-  LivenessSettings settings{.hung_after = from_seconds(0.6), .silent_job_after = from_seconds(1.0), .start_timeout = from_seconds(5.0)};
+  LivenessSettings settings{.hung_after = from_seconds(0.6),
+                            .silent_job_after = from_seconds(1.0),
+                            .start_timeout = from_seconds(5.0)};
   std::unique_ptr<Launcher> launcher;
   std::unique_ptr<ProcessWatch> watch;
   bool silent{};
@@ -34,13 +37,15 @@ struct Watched : testing::Test {
   std::string reason;                   // in the heartbeats
   std::optional<ComponentHealth> said;  // in the name of the process
 
-  void start(const std::string& script, BackoffSettings backoff = {}, const std::vector<std::string>& names = {"box"}) {
+  void start(const std::string& script, BackoffSettings backoff = {},
+             const std::vector<std::string>& names = {"box"}) {
     bus.every(from_seconds(0.1), [this](TimePoint) { beat(); });
     bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt&) {
       if (health.state == HealthState::stopping) said = health;
     });
     LauncherOptions options{.log_directory = folder, .backoff = backoff};
-    for (const std::string& one : names) options.processes.push_back({one, "/bin/sh", {"-c", script}});
+    for (const std::string& one : names)
+      options.processes.push_back({one, "/bin/sh", {"-c", script}});
     launcher = std::make_unique<Launcher>(std::move(options));
     watch = std::make_unique<ProcessWatch>(bus, *launcher, settings);
     ASSERT_TRUE(until(5.0, [this] { return launcher->pid("box") > 0; }));
@@ -58,7 +63,9 @@ struct Watched : testing::Test {
       beats->publish(health);
     }
   }
-  bool until(double limit, const std::function<bool()>& done) { return bus.run_until(done, from_seconds(limit)); }
+  bool until(double limit, const std::function<bool()>& done) {
+    return bus.run_until(done, from_seconds(limit));
+  }
   ~Watched() override {
     launcher.reset();
     fs::remove_all(folder);
@@ -75,10 +82,14 @@ TEST_F(Watched, a_stopped_process_without_heartbeats_is_replaced) {
   ASSERT_TRUE(until(5.0, [&] { return said.has_value(); }));
   EXPECT_EQ(said->component, "box");
   EXPECT_EQ(said->pid, 0u);
-  EXPECT_NE(said->reason.find("it was hung, stopped and without heartbeat for more than 0.6 s, killed"), std::string::npos) << said->reason;
+  EXPECT_NE(
+      said->reason.find("it was hung, stopped and without heartbeat for more than 0.6 s, killed"),
+      std::string::npos)
+      << said->reason;
   EXPECT_EQ(said->reason.find("restart 1 in "), 0u) << said->reason;
   silent = false;
-  ASSERT_TRUE(until(5.0, [&] { return launcher->pid("box") > 0 && launcher->pid("box") != first; }));
+  ASSERT_TRUE(
+      until(5.0, [&] { return launcher->pid("box") > 0 && launcher->pid("box") != first; }));
   until(1.0, [] { return false; });
   EXPECT_EQ(launcher->processes()[0].restarts, 1) << "the new one is left alone";
 }
@@ -95,7 +106,8 @@ TEST_F(Watched, when_everybody_is_silent_at_once_the_listener_is_deaf_and_kills_
   until(0.5, [] { return false; });
   silent = true;
   until(3.0, [] { return false; });
-  for (const ProcessStatus& process : launcher->processes()) EXPECT_EQ(process.restarts, 0) << process.name;
+  for (const ProcessStatus& process : launcher->processes())
+    EXPECT_EQ(process.restarts, 0) << process.name;
 }
 
 TEST_F(Watched, when_most_are_silent_at_once_the_machine_is_at_fault_and_nobody_is_killed) {
@@ -117,7 +129,9 @@ TEST_F(Watched, a_process_whose_job_is_silent_for_long_is_replaced_though_it_bea
   EXPECT_EQ(launcher->processes()[0].restarts, 0);
   job_silent = true;
   ASSERT_TRUE(until(5.0, [&] { return launcher->processes()[0].restarts == 1; }));
-  EXPECT_NE(launcher->processes()[0].why.find("a job has given no sign of life for more than 1.0 s"), std::string::npos)
+  EXPECT_NE(
+      launcher->processes()[0].why.find("a job has given no sign of life for more than 1.0 s"),
+      std::string::npos)
       << launcher->processes()[0].why;
 }
 
@@ -125,13 +139,15 @@ TEST(LauncherSettings, are_read_and_each_bad_value_is_refused_with_file_line_and
   const LauncherSettings shipped = load_launcher_settings(resource("config/launcher.txtpb"));
   EXPECT_EQ(shipped.liveness.hung_after, from_seconds(2.0));
   EXPECT_EQ(shipped.backoff.max_wait, from_seconds(10.0));
-  const fs::path file = fs::temp_directory_path() / ("launcher-" + std::to_string(getpid()) + ".txtpb");
+  const fs::path file =
+      fs::temp_directory_path() / ("launcher-" + std::to_string(getpid()) + ".txtpb");
   const std::vector<std::string> keys{"hung_after",    "silent_job_after", "start_timeout",
-                                      "first_backoff", "max_backoff",  "stable_after"};
+                                      "first_backoff", "max_backoff",      "stable_after"};
   for (const std::string& wrong : keys) {
     for (const std::string value : {"nan", "inf", "-1", "0", "1e9"}) {
       std::string text;
-      for (const std::string& key : keys) text += key + ": " + (key == wrong ? value : "5.0") + "\n";
+      for (const std::string& key : keys)
+        text += key + ": " + (key == wrong ? value : "5.0") + "\n";
       std::ofstream(file) << text;
       try {
         load_launcher_settings(file);

@@ -59,11 +59,13 @@ TEST(Story, a_mistake_is_named_with_its_line) {
   EXPECT_THAT(error_of("task give mug\n"), HasSubstr("f:1: a story begins with start"));
   EXPECT_THAT(error_of("start a\nstart b\n"), HasSubstr("f:2: a story starts once"));
   EXPECT_THAT(error_of("start a\nexpct ready\n"), HasSubstr("f:2: \"expct\" is no step"));
-  EXPECT_THAT(error_of("start a\nexpect happiness within 1s\n"), HasSubstr("\"happiness\" is no condition"));
+  EXPECT_THAT(error_of("start a\nexpect happiness within 1s\n"),
+              HasSubstr("\"happiness\" is no condition"));
   EXPECT_THAT(error_of("start a\nexpect mode\n"), HasSubstr("a name should follow"));
   EXPECT_THAT(error_of("start a\nwait ready\n"), HasSubstr("within"));
   EXPECT_THAT(error_of("start a\nexpect ready within soon\n"), HasSubstr("needs a time"));
-  EXPECT_THAT(error_of("start a\nexpect speed below much within 1s\n"), HasSubstr("needs a number"));
+  EXPECT_THAT(error_of("start a\nexpect speed below much within 1s\n"),
+              HasSubstr("needs a number"));
   EXPECT_THAT(error_of("start a\nspeed nan\n"), HasSubstr("f:2: \"speed\" needs a number"));
   EXPECT_THAT(error_of("start a\nexpect speed below inf within 1s\n"), HasSubstr("needs a number"));
   EXPECT_LT(error_of("start a\n" + std::string(1 << 20, 'x') + "\n").size(), 1000u);
@@ -75,7 +77,8 @@ TEST(Story, a_mistake_is_named_with_its_line) {
 TEST(Story, times_are_seconds_or_milliseconds) {
   EXPECT_EQ(parse_duration("350ms"), std::chrono::milliseconds(350));
   EXPECT_EQ(parse_duration("1.5s"), std::chrono::milliseconds(1500));
-  for (const char* wrong : {"", "s", "ms", "5", "-1s", "1e9s", "nans", "1.2m", "1s2"}) EXPECT_FALSE(parse_duration(wrong)) << wrong;
+  for (const char* wrong : {"", "s", "ms", "5", "-1s", "1e9s", "nans", "1.2m", "1s2"})
+    EXPECT_FALSE(parse_duration(wrong)) << wrong;
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace {
 using testing::HasSubstr;
 using Json = nlohmann::json;
 
-Json line(const std::string& condition, std::uint64_t seed, bool success, double separation, double cpu) {
+Json line(const std::string& condition, std::uint64_t seed, bool success, double separation,
+          double cpu) {
   return {{"scenario", "give"}, {"attention", condition}, {"condition", condition},
           {"seed", seed},       {"success", success},     {"min_separation_m", separation},
           {"cpu_chain_s", cpu}, {"activations", 40},      {"activations_at_pmin", 100}};
@@ -90,7 +91,8 @@ TEST(Study, compares_what_has_the_same_seed_and_hands_it_on) {
       if (r["against"] == condition && r["measure"] == measure) return r;
     throw std::logic_error("no row");
   };
-  EXPECT_NEAR(against("max", "cpu_chain_s")["difference"].get<double>(), -0.5, 1e-9) << "seed 99 has no partner";
+  EXPECT_NEAR(against("max", "cpu_chain_s")["difference"].get<double>(), -0.5, 1e-9)
+      << "seed 99 has no partner";
   EXPECT_LT(against("max", "cpu_chain_s")["p"].get<double>(), 0.01);
   EXPECT_NEAR(against("max", "min_separation_m")["difference"].get<double>(), 0.0, 1e-9);
   EXPECT_THAT(study.table("adaptive"), HasSubstr("give: adaptive against max"));

@@ -12,7 +12,9 @@ namespace {
 
 TriangleMesh box(const Vector3& size, const Vector3& at = Vector3::Zero()) {
   TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i) mesh.vertices.push_back(at + size.cwiseProduct(Vector3(i & 1, i >> 1 & 1, i >> 2) - Vector3::Constant(0.5)));
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.push_back(
+        at + size.cwiseProduct(Vector3(i & 1, i >> 1 & 1, i >> 2) - Vector3::Constant(0.5)));
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
@@ -24,14 +26,16 @@ TEST(MassProperties, of_a_box_are_those_of_the_book) {
   EXPECT_NEAR(p.volume, size.prod(), 1e-12);
   EXPECT_LT((p.com - at).norm(), 1e-12);
   const Vector3 squares = size.cwiseProduct(size);
-  const Vector3 wanted = Vector3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()) / 12;
+  const Vector3 wanted =
+      Vector3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()) / 12;
   EXPECT_LT((p.inertia_per_mass - Eigen::Matrix3d(wanted.asDiagonal())).norm(), 1e-12);
 }
 
 TEST(MassProperties, turn_with_the_object) {
   TriangleMesh mesh = box({0.1, 0.2, 0.3}, {0.1, 0, 0});
   const MassProperties before = mass_properties(mesh);
-  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized()).toRotationMatrix();
   for (Vector3& p : mesh.vertices) p = R * p + Vector3(1, 2, 3);
   const MassProperties after = mass_properties(mesh);
   EXPECT_LT((after.inertia_per_mass - R * before.inertia_per_mass * R.transpose()).norm(), 1e-12);
@@ -56,7 +60,8 @@ TEST(Placements, a_box_stands_on_six_faces_the_flattest_first) {
   for (const Placement& p : found) {
     EXPECT_LT((p.T_support_object * Vector3::Zero() - Vector3(0, 0, p.height)).norm(), 1e-9);
     double lowest = 1;
-    for (const Vector3& v : box({0.1, 0.2, 0.3}).vertices) lowest = std::min(lowest, (p.T_support_object * v).z());
+    for (const Vector3& v : box({0.1, 0.2, 0.3}).vertices)
+      lowest = std::min(lowest, (p.T_support_object * v).z());
     EXPECT_NEAR(lowest, 0, 1e-9);
   }
 }
@@ -77,7 +82,8 @@ TEST(Placements, a_tetrahedron_stands_on_any_face_and_nothing_is_below_the_suppo
   std::normal_distribution<double> any;
   for (int k = 0; k < 50; ++k) {
     TriangleMesh cloud;
-    for (int i = 0; i < 40; ++i) cloud.vertices.emplace_back(0.1 * any(random), 0.05 * any(random), 0.02 * any(random));
+    for (int i = 0; i < 40; ++i)
+      cloud.vertices.emplace_back(0.1 * any(random), 0.05 * any(random), 0.02 * any(random));
     Vector3 com = Vector3::Zero();
     for (const Vector3& v : cloud.vertices) com += v / 40;
     const std::vector<Placement> found = stable_placements(cloud, com, 0.0);
@@ -96,11 +102,13 @@ TEST(Placements, a_tetrahedron_stands_on_any_face_and_nothing_is_below_the_suppo
 }
 
 TEST(Placements, the_mug_stands_upright) {
-  const ObjectModel mug = ObjectModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/objects/mug/mug.txtpb");
+  const ObjectModel mug =
+      ObjectModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/objects/mug/mug.txtpb");
   const std::vector<Placement> found = stable_placements(mug.mesh, mug.com);
   ASSERT_FALSE(found.empty());
   bool upright = false;
-  for (const Placement& p : found) upright = upright || (p.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999;
+  for (const Placement& p : found)
+    upright = upright || (p.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999;
   EXPECT_TRUE(upright);
 }
 

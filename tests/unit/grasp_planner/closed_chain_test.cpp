@@ -1,4 +1,5 @@
-// Two arms joined by what they hold: along random motions of the first the second keeps its tip where it is joined, by forward kinematics.
+// Two arms joined by what they hold: along random motions of the first the second keeps its tip
+// where it is joined, by forward kinematics.
 #include "components/trajectory_planner/closed_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,9 @@ struct Pair {
   const Group& second = robot.require_group("left_arm");
   std::mt19937 random{71};
 
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  }
 
   /// Off the limits and off rest.
   Vector somewhere() {
@@ -34,9 +37,12 @@ struct Pair {
     }
     return q;
   }
-  JoinedArm joined(const Vector& q) const { return {&second, robot.link_pose(q, first.tip).inverse() * robot.link_pose(q, second.tip)}; }
+  JoinedArm joined(const Vector& q) const {
+    return {&second, robot.link_pose(q, first.tip).inverse() * robot.link_pose(q, second.tip)};
+  }
   JoinError error(const Vector& q, const JoinedArm& as) const {
-    return join_error(robot.link_pose(q, first.tip).inverse() * robot.link_pose(q, second.tip), as.T_tip_follower);
+    return join_error(robot.link_pose(q, first.tip).inverse() * robot.link_pose(q, second.tip),
+                      as.T_tip_follower);
   }
 };
 
@@ -82,7 +88,8 @@ TEST(ClosedChain, keeps_its_elbow_and_begins_anew) {
   T.translation().z() += 0.02;
   std::string why;
   ASSERT_TRUE(chain.follow(T, 0.5, why)) << why;
-  EXPECT_NEAR(std::remainder(arm->elbow_angle(chain.joints()) - elbow, 2 * std::numbers::pi), 0, 1e-6);
+  EXPECT_NEAR(std::remainder(arm->elbow_angle(chain.joints()) - elbow, 2 * std::numbers::pi), 0,
+              1e-6);
   chain.restart();
   EXPECT_EQ(chain.joints(), RobotModel::part(start, pair.second));
 }
@@ -120,7 +127,8 @@ TEST(ClosedChain, planned_motion_keeps_the_tips_joined_at_every_time) {
     for (int k = 0; k <= 200; ++k) {
       const Vector now = run_by.at(run_by.duration() * k / 200).position;
       Vector q = request.start;
-      for (std::size_t i = 0; i < motion.axes.size(); ++i) q[motion.axes[i]] = now[static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < motion.axes.size(); ++i)
+        q[motion.axes[i]] = now[static_cast<Eigen::Index>(i)];
       const JoinError off = pair.error(q, *request.joined);
       ASSERT_LE(off.apart, kApart) << "run " << run;
       ASSERT_LE(off.turned, kTurned) << "run " << run;
@@ -139,7 +147,8 @@ TEST(CarriedMotion, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_
     up.translation().z() += 0.1;
     over.translation() += Vector3(0.1, 0.05, 0.1);
     const std::vector<Pose> way = grasp_planner::path_of_object({T, up, over}, 0.03);
-    for (std::size_t k = 1; k < way.size(); ++k) EXPECT_LE((way[k].translation() - way[k - 1].translation()).norm(), 0.03 + 1e-9);
+    for (std::size_t k = 1; k < way.size(); ++k)
+      EXPECT_LE((way[k].translation() - way[k - 1].translation()).norm(), 0.03 + 1e-9);
     const ik::Chain chain(pair.robot, pair.first, start);
     const auto arm = ik::SrsArm::recognise(chain);
     for (const auto& carried : grasp_planner::carried_motions(pair.robot, pair.first, start, way)) {
@@ -151,7 +160,9 @@ TEST(CarriedMotion, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_
         const JoinError off = join_error(chain.forward(q, nullptr), way[k]);
         EXPECT_LE(off.apart, 1e-6);
         EXPECT_LE(off.turned, 1e-6);
-        EXPECT_NEAR(std::remainder(arm->elbow_angle(q) - arm->elbow_angle(carried.joints.front()), 2 * std::numbers::pi), 0, 1e-4);
+        EXPECT_NEAR(std::remainder(arm->elbow_angle(q) - arm->elbow_angle(carried.joints.front()),
+                                   2 * std::numbers::pi),
+                    0, 1e-4);
         room = std::min({room, (q - chain.lower()).minCoeff(), (chain.upper() - q).minCoeff()});
       }
       EXPECT_NEAR(carried.room, room, 1e-12);

@@ -18,20 +18,24 @@ const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) 
 
 const ObjectModel* library(const std::string& name) {
   static std::map<std::string, ObjectModel> models;
-  if (models.find(name) == models.end()) models[name] = ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb"));
+  if (models.find(name) == models.end())
+    models[name] = ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb"));
   return &models[name];
 }
 
 std::filesystem::path store_folder() {
-  static const auto folder = std::filesystem::temp_directory_path() / ("handsel_grasp_test_" + std::to_string(::getpid()));
+  static const auto folder =
+      std::filesystem::temp_directory_path() / ("handsel_grasp_test_" + std::to_string(::getpid()));
   return folder;
 }
 
 class GraspChoice : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
-    hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+    robot =
+        std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
+    hand_geometry =
+        std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
     settings.positions = 40;
     settings.orientations = 72;
     cache = std::make_unique<GraspCache>(hand_geometry, settings, GraspStore(store_folder()));
@@ -48,7 +52,9 @@ class GraspChoice : public testing::Test {
     s.robot_known = true;
     s.robot_position = robot->rest_configuration();
     s.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
-    s.objects.push_back({"cup", "mug", make_pose({x, y, 0.72 + library("mug")->height_above_support}), Holder::surface, "table", 0});
+    s.objects.push_back({"cup", "mug",
+                         make_pose({x, y, 0.72 + library("mug")->height_above_support}),
+                         Holder::surface, "table", 0});
     return s;
   }
 
@@ -87,21 +93,28 @@ TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
   allowed.set_attachment({}, {"cup"});
   for (const Grasp& g : choice.grasps) {
     const auto posture = [&](const Vector& arm_q, const Vector& hand_q) {
-      return RobotModel::with(RobotModel::with(robot->rest_configuration(), arm, arm_q), hand, hand_q);
+      return RobotModel::with(RobotModel::with(robot->rest_configuration(), arm, arm_q), hand,
+                              hand_q);
     };
     const Pose reached = robot->link_pose(posture(g.arm_joints, g.hand_joints), robot->tool_link());
     const Pose wanted = scene.objects[0].T_world_object * g.T_object_hand;
     EXPECT_LT((reached.translation() - wanted.translation()).norm(), 1e-4);
-    EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(reached.linear().transpose() * wanted.linear())).angle(), 1e-3);
-    const Pose before = robot->link_pose(posture(g.approach_joints, g.pregrasp_joints), robot->tool_link());
+    EXPECT_LT(
+        Eigen::AngleAxisd(Eigen::Matrix3d(reached.linear().transpose() * wanted.linear())).angle(),
+        1e-3);
+    const Pose before =
+        robot->link_pose(posture(g.approach_joints, g.pregrasp_joints), robot->tool_link());
     EXPECT_NEAR((before.translation() - wanted.translation()).norm(), 0.09, 1e-3);
     EXPECT_TRUE(allowed.check(posture(g.arm_joints, g.hand_joints)).free);
-    const Vector from = posture(g.approach_joints, g.pregrasp_joints), to = posture(g.arm_joints, g.pregrasp_joints);
+    const Vector from = posture(g.approach_joints, g.pregrasp_joints),
+                 to = posture(g.arm_joints, g.pregrasp_joints);
     for (int i = 0; i <= 20; ++i) {
       const CollisionVerdict v = strict.check(from + i / 20.0 * (to - from));
-      EXPECT_TRUE(v.free) << "at " << i << "/20 of the approach of grasp " << g.id << ": " << v.first << " touches " << v.second;
+      EXPECT_TRUE(v.free) << "at " << i << "/20 of the approach of grasp " << g.id << ": "
+                          << v.first << " touches " << v.second;
     }
-    for (const Contact& c : g.contacts) EXPECT_GT((scene.objects[0].T_world_object * c.position).z(), 0.72);
+    for (const Contact& c : g.contacts)
+      EXPECT_GT((scene.objects[0].T_world_object * c.position).z(), 0.72);
   }
 }
 
@@ -120,9 +133,11 @@ TEST_F(GraspChoice, is_the_same_every_time) {
 
 TEST_F(GraspChoice, an_object_out_of_reach_gives_a_reason) {
   const GraspChooser chooser(robot, hand_geometry, library, {});
-  const Choice choice = chooser.choose(request(), page->list, *page->object, scene_with_mug(2.5, -0.5), {});
+  const Choice choice =
+      chooser.choose(request(), page->list, *page->object, scene_with_mug(2.5, -0.5), {});
   EXPECT_TRUE(choice.grasps.empty());
-  EXPECT_NE(choice.why_none(page->list).find("reaches"), std::string::npos) << choice.why_none(page->list);
+  EXPECT_NE(choice.why_none(page->list).find("reaches"), std::string::npos)
+      << choice.why_none(page->list);
 }
 
 TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
@@ -141,8 +156,9 @@ TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
   const auto room = [&](const Choice& c) {
     double sum = 0;
     for (const Grasp& g : c.grasps) {
-      sum +=
-          std::find_if(page->list.grasps.begin(), page->list.grasps.end(), [&](const ListedGrasp& l) { return l.grasp.id == g.id; })->room;
+      sum += std::find_if(page->list.grasps.begin(), page->list.grasps.end(),
+                          [&](const ListedGrasp& l) { return l.grasp.id == g.id; })
+                 ->room;
     }
     return sum / static_cast<double>(c.grasps.size());
   };
@@ -151,7 +167,8 @@ TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
 }
 
 TEST_F(GraspChoice, a_robot_with_another_hand_is_refused) {
-  const auto bare = std::make_shared<const RobotModel>(RobotModel::load_urdf(kDeploy / "robots/jido/jido.urdf"));
+  const auto bare =
+      std::make_shared<const RobotModel>(RobotModel::load_urdf(kDeploy / "robots/jido/jido.urdf"));
   EXPECT_THROW(GraspChooser(bare, hand_geometry, library, {}), ConfigError);
 }
 

@@ -1,5 +1,5 @@
-// Grasps chosen for what comes after: where the object is put, who is to see it, where the robot may drive. Checked on the whole robot's
-// links with FCL by postures found here.
+// Grasps chosen for what comes after: where the object is put, who is to see it, where the robot
+// may drive. Checked on the whole robot's links with FCL by postures found here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,8 +23,10 @@ const ObjectModel* library(const std::string& name) { return object_model(name);
 
 struct Robot {
   std::filesystem::path file = deploy_folder() / "robots/jido/jido.txtpb";
-  std::shared_ptr<const RobotModel> model = std::make_shared<const RobotModel>(RobotModel::load(file));
-  std::shared_ptr<const RobotModel> mobile = std::make_shared<const RobotModel>(on_platform(*model, file).value());
+  std::shared_ptr<const RobotModel> model =
+      std::make_shared<const RobotModel>(RobotModel::load(file));
+  std::shared_ptr<const RobotModel> mobile =
+      std::make_shared<const RobotModel>(on_platform(*model, file).value());
   const Group &arm = model->require_group("arm"), &hand = model->require_group("hand");
 };
 const Robot& robot() {
@@ -63,25 +65,33 @@ HumanState anna(double x, double y) {
   return people;
 }
 
-Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& people = {}, const ChoiceSettings& settings = {}) {
+Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& people = {},
+              const ChoiceSettings& settings = {}) {
   const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, robot().mobile);
   return chooser.choose(r, mug().list, *mug().object, scene, people);
 }
 
-std::uint64_t count(const Choice& c, ChoiceReason r) { return c.reasons[static_cast<std::size_t>(r)]; }
+std::uint64_t count(const Choice& c, ChoiceReason r) {
+  return c.reasons[static_cast<std::size_t>(r)];
+}
 
 Vector posture(const Vector& arm_q, const Vector& hand_q) {
-  return RobotModel::with(RobotModel::with(robot().model->rest_configuration(), robot().arm, arm_q), robot().hand, hand_q);
+  return RobotModel::with(RobotModel::with(robot().model->rest_configuration(), robot().arm, arm_q),
+                          robot().hand, hand_q);
 }
 
-void expect_hand_at(const Vector& arm_q, const Vector& hand_q, const Pose& T_world_base, const Pose& wanted) {
-  const Pose reached = T_world_base * robot().model->link_pose(posture(arm_q, hand_q), robot().model->tool_link());
+void expect_hand_at(const Vector& arm_q, const Vector& hand_q, const Pose& T_world_base,
+                    const Pose& wanted) {
+  const Pose reached =
+      T_world_base * robot().model->link_pose(posture(arm_q, hand_q), robot().model->tool_link());
   EXPECT_LT((reached.translation() - wanted.translation()).norm(), 1e-4);
-  EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(reached.linear().transpose() * wanted.linear())).angle(), 1e-3);
+  EXPECT_LT(
+      Eigen::AngleAxisd(Eigen::Matrix3d(reached.linear().transpose() * wanted.linear())).angle(),
+      1e-3);
 }
 
-// The object is put down: carried down from above, let go, the hand off it; nothing touches but the hand the object and the object its
-// support.
+// The object is put down: carried down from above, let go, the hand off it; nothing touches but the
+// hand the object and the object its support.
 void expect_put_down(const Choice& c, std::size_t i, const Scene& scene, const Pose& T_world_goal) {
   const Grasp& g = c.grasps[i];
   const PuttingDown& down = c.goals[i];
@@ -96,12 +106,15 @@ void expect_put_down(const Choice& c, std::size_t i, const Scene& scene, const P
   carrying.set_attachment({"cup", g.T_object_hand.inverse()}, {});
   left.set_scene(put);
   const Vector above = posture(down.above, g.hand_joints), at = posture(down.at, g.hand_joints);
-  const Vector opened = posture(down.at, g.pregrasp_joints), off = posture(down.off, g.pregrasp_joints);
+  const Vector opened = posture(down.at, g.pregrasp_joints),
+               off = posture(down.off, g.pregrasp_joints);
   for (int k = 0; k <= 20; ++k) {
     const CollisionVerdict carried = carrying.check(above + k / 20.0 * (at - above));
-    EXPECT_TRUE(carried.free) << "carried down, " << k << "/20: " << carried.first << " touches " << carried.second;
+    EXPECT_TRUE(carried.free) << "carried down, " << k << "/20: " << carried.first << " touches "
+                              << carried.second;
     const CollisionVerdict gone = left.check(opened + k / 20.0 * (off - opened));
-    EXPECT_TRUE(gone.free) << "leaving, " << k << "/20: " << gone.first << " touches " << gone.second;
+    EXPECT_TRUE(gone.free) << "leaving, " << k << "/20: " << gone.first << " touches "
+                           << gone.second;
   }
 }
 
@@ -115,11 +128,19 @@ TEST(Goal, every_grasp_is_free_at_both_ends) {
     std::uniform_real_distribution<double> unit(-1, 1);
     Scene scene = table_with_mug();
     // Something low and something high stand about.
-    scene.boxes.push_back({"book", make_pose({0.8 + 0.2 * unit(random), -0.7 + 0.1 * unit(random), kTop + 0.03}), {0.2, 0.15, 0.06}, true});
-    scene.boxes.push_back({"shelf", make_pose({0.85 + 0.1 * unit(random), -0.8, kTop + 0.3}), {0.5, 0.25, 0.03}, false});
+    scene.boxes.push_back(
+        {"book",
+         make_pose({0.8 + 0.2 * unit(random), -0.7 + 0.1 * unit(random), kTop + 0.03}),
+         {0.2, 0.15, 0.06},
+         true});
+    scene.boxes.push_back({"shelf",
+                           make_pose({0.85 + 0.1 * unit(random), -0.8, kTop + 0.3}),
+                           {0.5, 0.25, 0.03},
+                           false});
     GraspRequest r = request(4);
     r.has_goal = true;
-    r.T_world_goal = standing(0.73 + 0.15 * unit(random), -0.52 + 0.15 * unit(random), 1.2 * unit(random));
+    r.T_world_goal =
+        standing(0.73 + 0.15 * unit(random), -0.52 + 0.15 * unit(random), 1.2 * unit(random));
     const Choice c = choose(r, scene);
     ASSERT_EQ(c.goals.size(), c.grasps.size());
     if (c.grasps.empty()) ++without;
@@ -129,12 +150,14 @@ TEST(Goal, every_grasp_is_free_at_both_ends) {
     for (std::size_t i = 0; i < c.grasps.size(); ++i, ++judged) {
       const Grasp& g = c.grasps[i];
       SCOPED_TRACE("grasp " + std::to_string(g.id));
-      expect_hand_at(g.arm_joints, g.hand_joints, scene.T_world_base, scene.objects[0].T_world_object * g.T_object_hand);
+      expect_hand_at(g.arm_joints, g.hand_joints, scene.T_world_base,
+                     scene.objects[0].T_world_object * g.T_object_hand);
       EXPECT_TRUE(start.check(posture(g.arm_joints, g.hand_joints)).free);
       expect_put_down(c, i, scene, r.T_world_goal);
     }
   }
-  std::printf("%zu grasps judged at start and goal; %zu of %d goals with none\n", judged, without, runs);
+  std::printf("%zu grasps judged at start and goal; %zu of %d goals with none\n", judged, without,
+              runs);
   EXPECT_GE(judged, static_cast<std::size_t>(runs));
 }
 
@@ -158,8 +181,9 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
   EXPECT_GT(count(c, ChoiceReason::goal_support), 0U);
 
   Scene full = scene;
-  full.objects.push_back(
-      {"other", "can", make_pose({0.75, -0.6, kTop + object_model("can")->height_above_support}), Holder::surface, "table", 0});
+  full.objects.push_back({"other", "can",
+                          make_pose({0.75, -0.6, kTop + object_model("can")->height_above_support}),
+                          Holder::surface, "table", 0});
   r.T_world_goal = standing(0.77, -0.6);
   c = choose(r, full);
   EXPECT_TRUE(c.grasps.empty());
@@ -195,7 +219,9 @@ double seen_by_steps(const Grasp& g, const Vector3& eye) {
       const Pose at = make_pose(from + s * along);
       for (std::size_t l = 0; l < T.size() && !hidden; ++l) {
         for (const PlacedShape& shape : hand_geometry.hand.model().links()[l].collision)
-          hidden = hidden || shape_distance(Sphere{0.0002}, at, shape.shape, g.T_object_hand * T[l] * shape.T_parent_shape).collide;
+          hidden = hidden || shape_distance(Sphere{0.0002}, at, shape.shape,
+                                            g.T_object_hand * T[l] * shape.T_parent_shape)
+                                 .collide;
       }
     }
     if (!hidden) ++seen;
@@ -211,9 +237,11 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
   int grasps = 0;
   for (std::size_t i = 0; i < mug().list.grasps.size(); i += mug().list.grasps.size() / 8 + 1) {
     const Grasp& g = mug().list.grasps[i].grasp;
-    const Vector3 eye = mug().object->box().center() + 0.9 * Vector3(normal(random), normal(random), normal(random)).normalized();
+    const Vector3 eye = mug().object->box().center() +
+                        0.9 * Vector3(normal(random), normal(random), normal(random)).normalized();
     mug().hand_geometry->forward(g.hand_joints, T_step);
-    const double share = visible_fraction(*mug().object, mug().hand_geometry->shape.placed(T_step, g.T_object_hand), eye);
+    const double share = visible_fraction(
+        *mug().object, mug().hand_geometry->shape.placed(T_step, g.T_object_hand), eye);
     const double expected = seen_by_steps(g, eye);
     EXPECT_NEAR(share, expected, 0.18) << "grasp " << g.id;  // of some sixty points, other ones
     difference += std::abs(share - expected);
@@ -221,12 +249,16 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
     least = std::min(least, share);
     most = std::max(most, share);
   }
-  std::printf("shares %.2f to %.2f, on average %.3f beside those by steps\n", least, most, difference / grasps);
+  std::printf("shares %.2f to %.2f, on average %.3f beside those by steps\n", least, most,
+              difference / grasps);
   EXPECT_LT(difference / grasps, 0.07);
   EXPECT_LT(least, most - 0.2);
   // A hand that is far away hides nothing.
   mug().hand_geometry->forward(mug().list.grasps[0].grasp.hand_joints, T_step);
-  EXPECT_EQ(visible_fraction(*mug().object, mug().hand_geometry->shape.placed(T_step, make_pose({0, 0, -3})), {0, 0, 2}), 1.0);
+  EXPECT_EQ(
+      visible_fraction(*mug().object,
+                       mug().hand_geometry->shape.placed(T_step, make_pose({0, 0, -3})), {0, 0, 2}),
+      1.0);
 }
 
 TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
@@ -265,7 +297,8 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
   r.min_visible = 0;
   r.for_human = "anna";
   r.max_grasps = 5;
-  EXPECT_GT(mean(choose(r, scene, anna(1.35, 0.3), sight)), mean(choose(r, scene, anna(1.35, 0.3), blind)));
+  EXPECT_GT(mean(choose(r, scene, anna(1.35, 0.3), sight)),
+            mean(choose(r, scene, anna(1.35, 0.3), blind)));
 }
 
 /// Held out by anna at her right hand, toward the robot.
@@ -273,7 +306,9 @@ Scene held_out(HumanState& people) {
   Scene scene = table_with_mug();
   people = anna(1.45, 0.0);
   Person& who = people.people.front();
-  const auto at = [&](const char* joint) -> Vector3& { return who.joints[static_cast<std::size_t>(body_joint_index(joint))].position; };
+  const auto at = [&](const char* joint) -> Vector3& {
+    return who.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
+  };
   at("r_hand") = {0.97, 0.0, 1.1};
   at("r_wrist") = {1.05, 0.0, 1.1};
   at("r_elbow") = {1.28, 0.1, 1.1};
@@ -293,7 +328,8 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
   CollisionWorld body(*robot().model, library);
   body.set_scene(scene);
   body.set_people(around, PeopleParts::without_forearms_and_hands);
-  around.people.front() = with_fingers_bent(around.people.front(), scene.objects[0].T_world_object.translation());
+  around.people.front() =
+      with_fingers_bent(around.people.front(), scene.objects[0].T_world_object.translation());
   around.people.front().inflation = ChoiceSettings{}.off_fingers - 0.001;
   CollisionWorld all(*robot().model, library);
   all.set_scene(scene);
@@ -318,11 +354,15 @@ TEST(Platform, drives_to_what_is_out_of_reach_and_stays_clear) {
   r.move_platform = true;
   const auto begin = std::chrono::steady_clock::now();
   const Choice c = choose(r, scene, people);
-  std::printf("%zu grasps from elsewhere; %llu places (%llu blocked, %llu near a person, %llu useless), %llu reaches, %.0f ms\n",
-              c.grasps.size(), static_cast<unsigned long long>(c.platform.places), static_cast<unsigned long long>(c.platform.blocked),
-              static_cast<unsigned long long>(c.platform.near_person), static_cast<unsigned long long>(c.platform.useless),
-              static_cast<unsigned long long>(c.reaches),
-              1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  std::printf(
+      "%zu grasps from elsewhere; %llu places (%llu blocked, %llu near a person, %llu useless), "
+      "%llu reaches, %.0f ms\n",
+      c.grasps.size(), static_cast<unsigned long long>(c.platform.places),
+      static_cast<unsigned long long>(c.platform.blocked),
+      static_cast<unsigned long long>(c.platform.near_person),
+      static_cast<unsigned long long>(c.platform.useless),
+      static_cast<unsigned long long>(c.reaches),
+      1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
   Scene from_world = scene;
   CollisionWorld driven(*robot().mobile, library);
@@ -331,15 +371,20 @@ TEST(Platform, drives_to_what_is_out_of_reach_and_stays_clear) {
   for (const Grasp& g : c.grasps) {
     ASSERT_TRUE(g.has_platform);
     const Pose T_world_base =
-        make_pose({g.platform.x(), g.platform.y(), 0}, Eigen::Quaterniond(Eigen::AngleAxisd(g.platform.z(), Vector3::UnitZ())));
-    expect_hand_at(g.arm_joints, g.hand_joints, T_world_base, scene.objects[0].T_world_object * g.T_object_hand);
+        make_pose({g.platform.x(), g.platform.y(), 0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(g.platform.z(), Vector3::UnitZ())));
+    expect_hand_at(g.arm_joints, g.hand_joints, T_world_base,
+                   scene.objects[0].T_world_object * g.T_object_hand);
     const Vector there = with_platform(robot().model->rest_configuration(), T_world_base);
     driven.set_attachment({}, {});
     EXPECT_TRUE(driven.check(there).free);
     EXPECT_GE(driven.distance_to_people(there), 0.5);
-    EXPECT_TRUE(driven.check(with_platform(posture(g.approach_joints, g.pregrasp_joints), T_world_base)).free);
+    EXPECT_TRUE(
+        driven.check(with_platform(posture(g.approach_joints, g.pregrasp_joints), T_world_base))
+            .free);
     driven.set_attachment({}, {"cup"});
-    const CollisionVerdict grasping = driven.check(with_platform(posture(g.arm_joints, g.hand_joints), T_world_base));
+    const CollisionVerdict grasping =
+        driven.check(with_platform(posture(g.arm_joints, g.hand_joints), T_world_base));
     EXPECT_TRUE(grasping.free) << grasping.first << " touches " << grasping.second;
   }
 }
@@ -353,20 +398,23 @@ TEST(Platform, says_why_it_does_not_drive) {
   Scene walled = table_with_mug(2.4, 0.3);
   for (int k = 0; k < 4; ++k) {
     const double turn = 0.5 * M_PI * k;
-    walled.boxes.push_back({"wall " + std::to_string(k),
-                            make_pose(Vector3(2.57 + 0.5 * std::cos(turn), 0.1 + 0.5 * std::sin(turn), 1),
-                                      Eigen::Quaterniond(Eigen::AngleAxisd(turn, Vector3::UnitZ()))),
-                            {0.04, 1.0, 2.0},
-                            false});
+    walled.boxes.push_back(
+        {"wall " + std::to_string(k),
+         make_pose(Vector3(2.57 + 0.5 * std::cos(turn), 0.1 + 0.5 * std::sin(turn), 1),
+                   Eigen::Quaterniond(Eigen::AngleAxisd(turn, Vector3::UnitZ()))),
+         {0.04, 1.0, 2.0},
+         false});
   }
   const Choice none = choose(r, walled);
   EXPECT_TRUE(none.grasps.empty());
   EXPECT_GT(none.platform.blocked, 0U);
-  EXPECT_NE(none.why_none(mug().list).find("places of the platform"), std::string::npos) << none.why_none(mug().list);
+  EXPECT_NE(none.why_none(mug().list).find("places of the platform"), std::string::npos)
+      << none.why_none(mug().list);
   const GraspChooser fixed(robot().model, mug().hand_geometry, library, {});
   const Choice still = fixed.choose(r, mug().list, *mug().object, table_with_mug(2.4, 0.3), {});
   EXPECT_TRUE(still.grasps.empty());
-  EXPECT_NE(still.why_none(mug().list).find("no platform"), std::string::npos) << still.why_none(mug().list);
+  EXPECT_NE(still.why_none(mug().list).find("no platform"), std::string::npos)
+      << still.why_none(mug().list);
 }
 
 }  // namespace

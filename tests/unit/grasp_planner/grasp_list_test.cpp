@@ -1,4 +1,5 @@
-// Lists of grasps of the Schunk hand on the project's own objects: every promise of a listed grasp, checked from the outside.
+// Lists of grasps of the Schunk hand on the project's own objects: every promise of a listed grasp,
+// checked from the outside.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +14,8 @@ namespace {
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
 std::shared_ptr<const HandGeometry> sah() {
-  static const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  static const auto hand_geometry =
+      std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   return hand_geometry;
 }
 
@@ -22,13 +24,18 @@ std::shared_ptr<const FingerWorkspaces> workspaces() {
   return made;
 }
 
-ObjectModel object(const std::string& name) { return ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb")); }
+ObjectModel object(const std::string& name) {
+  return ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb"));
+}
 
-GraspList list_of(const std::string& name, std::uint32_t positions = 24, std::uint32_t orientations = 48) {
+GraspList list_of(const std::string& name, std::uint32_t positions = 24,
+                  std::uint32_t orientations = 48) {
   GraspListSettings settings;
   settings.positions = positions;
   settings.orientations = orientations;
-  return list_grasps(sah(), workspaces(), std::make_shared<const Graspable>(object(name), sah()->tip_radius(), settings.step_fraction, 1),
+  return list_grasps(sah(), workspaces(),
+                     std::make_shared<const Graspable>(object(name), sah()->tip_radius(),
+                                                       settings.step_fraction, 1),
                      settings);
 }
 
@@ -36,21 +43,27 @@ GraspList list_of(const std::string& name, std::uint32_t positions = 24, std::ui
 double depth(const Shape& shape, const Vector3& p) {
   if (const auto* s = std::get_if<Sphere>(&shape)) return s->radius - p.norm();
   if (const auto* b = std::get_if<Box>(&shape)) return (0.5 * b->size - p.cwiseAbs()).minCoeff();
-  if (const auto* c = std::get_if<Cylinder>(&shape)) return std::min(c->radius - p.head<2>().norm(), 0.5 * c->length - std::abs(p.z()));
+  if (const auto* c = std::get_if<Cylinder>(&shape))
+    return std::min(c->radius - p.head<2>().norm(), 0.5 * c->length - std::abs(p.z()));
   ADD_FAILURE() << "shape not known to this test";
   return 0;
 }
 
-// Virtual work by the hand's kinematics: what the axes do when they move a little is what the forces do at the fingers' contact points.
-void expect_efforts_do_the_work_of_the_squeeze(const ObjectModel& o, const std::vector<PointContact>& contacts, const Grasp& g) {
+// Virtual work by the hand's kinematics: what the axes do when they move a little is what the
+// forces do at the fingers' contact points.
+void expect_efforts_do_the_work_of_the_squeeze(const ObjectModel& o,
+                                               const std::vector<PointContact>& contacts,
+                                               const Grasp& g) {
   const GripForces grip = grip_forces(contacts, o.com, o.mass);
   EXPECT_NEAR(grip.margin, g.margin, 1e-9);
   ASSERT_EQ(g.hand_effort.size(), g.hand_joints.size());
   const HandModel& hand = sah()->hand;
   const auto contact_at = [&](std::size_t k, const Vector& q) {
     const int tip = hand.model().link_index(hand.fingers()[g.contacts[k].finger].tip_link);
-    const Pose T_tip_object = (g.T_object_hand * hand.model().link_pose(g.hand_joints, tip)).inverse();
-    return Vector3(g.T_object_hand * hand.model().link_pose(q, tip) * T_tip_object * g.contacts[k].position);
+    const Pose T_tip_object =
+        (g.T_object_hand * hand.model().link_pose(g.hand_joints, tip)).inverse();
+    return Vector3(g.T_object_hand * hand.model().link_pose(q, tip) * T_tip_object *
+                   g.contacts[k].position);
   };
   for (Eigen::Index a = 0; a < g.hand_joints.size(); ++a) {
     constexpr double kStep = 1e-6;
@@ -92,12 +105,18 @@ TEST_P(ListedGrasps, keep_their_promises) {
     for (const Contact& c : g.grasp.contacts) {
       const auto& t = o.mesh.triangles[c.triangle];
       Vector3 on = Vector3::Zero();
-      for (int k = 0; k < 3; ++k) on += c.barycentric[k] * o.mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+      for (int k = 0; k < 3; ++k)
+        on += c.barycentric[k] *
+              o.mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
       EXPECT_LT((on - c.position).norm(), 1e-9);
       const Finger& finger = sah()->hand.fingers()[c.finger];
-      const Vector3 tip = g.grasp.T_object_hand * T_hand_link[static_cast<std::size_t>(model.link_index(finger.tip_link))].translation();
+      const Vector3 tip =
+          g.grasp.T_object_hand *
+          T_hand_link[static_cast<std::size_t>(model.link_index(finger.tip_link))].translation();
       EXPECT_LT((tip - c.position - finger.tip_radius * c.normal).norm(), 2e-4);
-      const Vector3 open = g.grasp.T_object_hand * T_open[static_cast<std::size_t>(model.link_index(finger.tip_link))].translation();
+      const Vector3 open =
+          g.grasp.T_object_hand *
+          T_open[static_cast<std::size_t>(model.link_index(finger.tip_link))].translation();
       EXPECT_GT((open - tip).dot(c.normal), 0.008) << "the opened finger is off the surface";
       for (const int a : finger.axes) {
         EXPECT_GE(g.grasp.hand_joints[a], sah()->hand.lower_contact()[a] - 1e-9);
@@ -113,8 +132,10 @@ TEST_P(ListedGrasps, keep_their_promises) {
     double deepest = -1, deepest_open = -1;
     for (std::size_t l = 0; l < model.links().size(); ++l) {
       for (const PlacedShape& shape : model.links()[l].collision) {
-        const Pose T_shape_object = (g.grasp.T_object_hand * T_hand_link[l] * shape.T_parent_shape).inverse();
-        const Pose T_shape_open = (g.grasp.T_object_hand * T_open[l] * shape.T_parent_shape).inverse();
+        const Pose T_shape_object =
+            (g.grasp.T_object_hand * T_hand_link[l] * shape.T_parent_shape).inverse();
+        const Pose T_shape_open =
+            (g.grasp.T_object_hand * T_open[l] * shape.T_parent_shape).inverse();
         for (const SurfacePoint& p : surface) {
           deepest = std::max(deepest, depth(shape.shape, T_shape_object * p.position));
           deepest_open = std::max(deepest_open, depth(shape.shape, T_shape_open * p.position));
@@ -129,15 +150,17 @@ TEST_P(ListedGrasps, keep_their_promises) {
 INSTANTIATE_TEST_SUITE_P(Objects, ListedGrasps, testing::Values("mug", "bottle", "box"));
 
 TEST(GraspList, is_the_same_every_time_and_longer_lists_contain_shorter_ones) {
-  const GraspList a = list_of("box", 12, 24), b = list_of("box", 12, 24), longer = list_of("box", 12, 40);
+  const GraspList a = list_of("box", 12, 24), b = list_of("box", 12, 24),
+                  longer = list_of("box", 12, 40);
   ASSERT_EQ(a.grasps.size(), b.grasps.size());
   for (std::size_t i = 0; i < a.grasps.size(); ++i) {
     EXPECT_EQ(a.grasps[i].grasp.id, b.grasps[i].grasp.id);
     EXPECT_EQ(a.grasps[i].grasp.hand_joints, b.grasps[i].grasp.hand_joints);
     EXPECT_EQ(a.grasps[i].grasp.T_object_hand.matrix(), b.grasps[i].grasp.T_object_hand.matrix());
     EXPECT_EQ(a.grasps[i].grasp.quality, b.grasps[i].grasp.quality);
-    const auto same =
-        std::find_if(longer.grasps.begin(), longer.grasps.end(), [&](const auto& g) { return g.grasp.id == a.grasps[i].grasp.id; });
+    const auto same = std::find_if(longer.grasps.begin(), longer.grasps.end(), [&](const auto& g) {
+      return g.grasp.id == a.grasps[i].grasp.id;
+    });
     ASSERT_NE(same, longer.grasps.end());
     EXPECT_EQ(same->grasp.hand_joints, a.grasps[i].grasp.hand_joints);
     EXPECT_EQ(same->grasp.hand_effort, a.grasps[i].grasp.hand_effort);
@@ -157,8 +180,9 @@ TEST(GraspList, says_why_a_frame_gives_none) {
 }
 
 TEST(GraspList, sheets_and_needles_get_no_more_positions_than_other_things) {
-  for (const Vector3& size : {Vector3(0.1, 0.1, 0.1), Vector3(0.2, 0.3, 1e-4), Vector3(0.3, 0.001, 0.001), Vector3(0.05, 0.08, 0.0),
-                              Vector3(0.2, 0.0, 0.0), Vector3(0.04, 0.2, 0.011)}) {
+  for (const Vector3& size :
+       {Vector3(0.1, 0.1, 0.1), Vector3(0.2, 0.3, 1e-4), Vector3(0.3, 0.001, 0.001),
+        Vector3(0.05, 0.08, 0.0), Vector3(0.2, 0.0, 0.0), Vector3(0.04, 0.2, 0.011)}) {
     const auto positions = uniform_positions({Vector3::Zero(), size}, 60);
     EXPECT_GE(positions.size(), 40U) << size.transpose();
     EXPECT_LE(positions.size(), 90U) << size.transpose();
@@ -167,7 +191,8 @@ TEST(GraspList, sheets_and_needles_get_no_more_positions_than_other_things) {
 
 TEST(GraspList, positions_in_a_large_box_are_as_near_each_other_as_in_a_small_one) {
   GraspListSettings settings;
-  EXPECT_EQ(position_count({Vector3::Zero(), Vector3(0.1, 0.1, 0.1)}, settings), settings.positions);
+  EXPECT_EQ(position_count({Vector3::Zero(), Vector3(0.1, 0.1, 0.1)}, settings),
+            settings.positions);
   const Eigen::AlignedBox3d tray(Vector3::Zero(), Vector3(0.56, 0.22, 0.135));
   const auto positions = uniform_positions(tray, position_count(tray, settings));
   double farthest = 0;
@@ -203,14 +228,17 @@ TEST(FingerWorkspace, spheres_are_inside_and_the_finger_gets_everywhere_in_them)
     for (const WorkspaceSphere& s : w.spheres()) {
       EXPECT_LE(s.radius, last + 1e-12);
       last = s.radius;
-      for (const Vector3& d : {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(-0.6, 0.6, -0.5)}) {
+      for (const Vector3& d :
+           {Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0, 0, 1), Vector3(-0.6, 0.6, -0.5)}) {
         const Vector3 p = s.centre + 0.9 * s.radius * d;
         ++asked;
         for (const auto& seed : w.seeds(p)) {
           Vector q = sah()->hand.pregrasp();
           for (std::size_t k = 0; k < sah()->chains[f].axes().size(); ++k)
             q[sah()->chains[f].axes()[k]] = seed.q[static_cast<Eigen::Index>(k)];
-          if (!sah()->chains[f].inverse(p, sah()->hand.lower_contact(), sah()->hand.upper_contact(), q)) continue;
+          if (!sah()->chains[f].inverse(p, sah()->hand.lower_contact(), sah()->hand.upper_contact(),
+                                        q))
+            continue;
           EXPECT_LT((sah()->chains[f].tip(q) - p).norm(), 1.1e-4);
           ++reached;
           break;

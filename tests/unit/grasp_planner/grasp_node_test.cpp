@@ -29,7 +29,9 @@ const ObjectModel* library(const std::string& name) {
 
 class GraspNode : public testing::Test {
  protected:
-  GraspNode() : folder_(fs::temp_directory_path() / ("handsel_grasp_node_" + std::to_string(::getpid()))), network_(3) {
+  GraspNode()
+      : folder_(fs::temp_directory_path() / ("handsel_grasp_node_" + std::to_string(::getpid()))),
+        network_(3) {
     fs::create_directories(folder_);
     setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
     setenv("HANDSEL_HOME", kDeploy.c_str(), 1);
@@ -51,13 +53,16 @@ class GraspNode : public testing::Test {
     scene_out_ = spark.advertise<Scene>();
     people_out_ = spark.advertise<HumanState>();
     request_out_ = planner.advertise<GraspRequest>();
-    planner.subscribe<GraspReply>([this](const GraspReply& r, const Receipt&) { replies_.push_back(r); });
-    planner.subscribe<GraspCandidates>([this](const GraspCandidates& c, const Receipt&) { candidates_.push_back(c); });
+    planner.subscribe<GraspReply>(
+        [this](const GraspReply& r, const Receipt&) { replies_.push_back(r); });
+    planner.subscribe<GraspCandidates>(
+        [this](const GraspCandidates& c, const Receipt&) { candidates_.push_back(c); });
     scene_.robot_known = true;
     scene_.robot_position = context_.robot->rest_configuration();
     scene_.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
-    scene_.objects.push_back(
-        {"cup", "mug", make_pose({0.68, -0.42, 0.72 + library("mug")->height_above_support}), Holder::surface, "table", 0});
+    scene_.objects.push_back({"cup", "mug",
+                              make_pose({0.68, -0.42, 0.72 + library("mug")->height_above_support}),
+                              Holder::surface, "table", 0});
     publish_scene();
   }
   ~GraspNode() override { fs::remove_all(folder_); }
@@ -77,7 +82,9 @@ class GraspNode : public testing::Test {
     request_out_->publish(r);
   }
 
-  bool wait(const std::function<bool()>& done) { return network_.run_until(done, network_.now() + seconds(20)); }
+  bool wait(const std::function<bool()>& done) {
+    return network_.run_until(done, network_.now() + seconds(20));
+  }
 
   fs::path folder_;
   LocalNetwork network_;
@@ -167,7 +174,8 @@ TEST_F(GraspNode, candidates_follow_the_object_until_it_is_in_a_hand) {
   EXPECT_EQ(candidates_.back().grasps[0].arm_joints, replies_[0].grasps[0].arm_joints);
   scene_.objects[0].T_world_object.translation().x() += 0.04;
   publish_scene();
-  EXPECT_TRUE(wait([&] { return candidates_.back().grasps[0].arm_joints != replies_[0].grasps[0].arm_joints; }));
+  EXPECT_TRUE(wait(
+      [&] { return candidates_.back().grasps[0].arm_joints != replies_[0].grasps[0].arm_joints; }));
   scene_.objects[0].holder = Holder::robot;
   publish_scene();
   const std::size_t before = candidates_.size();

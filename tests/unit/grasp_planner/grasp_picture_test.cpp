@@ -1,4 +1,5 @@
-// Pictures of grasps: what is nearer hides what is behind, light parts let it through, and a figure shows what it is about.
+// Pictures of grasps: what is nearer hides what is behind, light parts let it through, and a figure
+// shows what it is about.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,13 +14,16 @@ using namespace grasp_planner;
 
 constexpr Colour kRed = {200, 0, 0}, kBlue = {0, 0, 200};
 
-Canvas from_above() { return Canvas(40, 40, {Vector3::Zero(), Vector3::UnitZ(), Vector3::UnitY(), 0.4}); }
+Canvas from_above() {
+  return Canvas(40, 40, {Vector3::Zero(), Vector3::UnitZ(), Vector3::UnitY(), 0.4});
+}
 
 TEST(Canvas, what_is_nearer_hides_what_is_behind_in_whatever_order_they_are_drawn) {
   for (const bool near_first : {true, false}) {
     Canvas canvas = from_above();
     for (const bool near : {near_first, !near_first})
-      canvas.shape(Box{{0.1, 0.1, 0.02}}, make_pose(Vector3(0, 0, near ? 0.1 : 0)), near ? kRed : kBlue);
+      canvas.shape(Box{{0.1, 0.1, 0.02}}, make_pose(Vector3(0, 0, near ? 0.1 : 0)),
+                   near ? kRed : kBlue);
     const Colour c = canvas.picture().at(20, 20);
     EXPECT_GT(c[0], 80) << near_first;
     EXPECT_EQ(c[2], 0) << near_first;
@@ -72,7 +76,8 @@ class Figures : public testing::Test {
 
   const std::filesystem::path deploy_ = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
   HandGeometry hand_geometry_{HandModel::load(deploy_ / "hands/sah/sah.txtpb")};
-  Graspable object_{ObjectModel::load(deploy_ / "objects/box/box.txtpb"), hand_geometry_.tip_radius(), 0.6, 1};
+  Graspable object_{ObjectModel::load(deploy_ / "objects/box/box.txtpb"),
+                    hand_geometry_.tip_radius(), 0.6, 1};
 };
 
 TEST_F(Figures, a_grasp_shows_the_contacts_of_its_fingers_and_of_no_other) {
@@ -112,7 +117,8 @@ TEST_F(Figures, flat_is_red_and_the_edges_of_a_box_are_blue) {
 
 TEST_F(Figures, candidates_are_coloured_by_the_fingers_that_reach_them) {
   const FingerWorkspaces workspaces = make_workspaces(hand_geometry_);
-  const Pose T_object_hand = make_pose(object_.box().center()) * hand_geometry_.hand.T_hand_grasp().inverse();
+  const Pose T_object_hand =
+      make_pose(object_.box().center()) * hand_geometry_.hand.T_hand_grasp().inverse();
   std::array<int, 4> seen{};
   for (const Vector3& side : {Vector3(1, 1, 1), Vector3(-1, -1, -1)}) {
     Canvas canvas(200, 200, eye_on(object_.box(), side));
@@ -130,7 +136,9 @@ TEST_F(Figures, the_boxes_of_the_tree_hold_all_points_at_every_depth) {
     const auto boxes = tree.boxes(depth);
     EXPECT_LE(boxes.size(), std::size_t{1} << depth);
     EXPECT_GT(boxes.size(), (std::size_t{1} << depth) / 2);
-    for (const Vector3& p : positions) EXPECT_TRUE(std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) { return b.contains(p); }));
+    for (const Vector3& p : positions)
+      EXPECT_TRUE(
+          std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) { return b.contains(p); }));
   }
 }
 

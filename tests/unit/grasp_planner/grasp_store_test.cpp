@@ -1,4 +1,5 @@
-// Grasp lists on disk under two writers that are killed without warning, and lists that are gone on with.
+// Grasp lists on disk under two writers that are killed without warning, and lists that are gone on
+// with.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -30,9 +31,11 @@ GraspList list_of(std::uint64_t writer) {
     ListedGrasp g;
     g.grasp.id = i;
     g.grasp.quality = static_cast<double>(writer);
-    g.grasp.hand_joints = g.grasp.pregrasp_joints = g.grasp.hand_effort = Vector::Constant(13, static_cast<double>(writer));
+    g.grasp.hand_joints = g.grasp.pregrasp_joints = g.grasp.hand_effort =
+        Vector::Constant(13, static_cast<double>(writer));
     for (std::uint32_t f = 0; f < 4; ++f)
-      g.grasp.contacts.push_back({f, Vector3::Constant(static_cast<double>(writer)), Vector3::UnitZ(), f, Vector3::Zero(), 0.5, 0});
+      g.grasp.contacts.push_back({f, Vector3::Constant(static_cast<double>(writer)),
+                                  Vector3::UnitZ(), f, Vector3::Zero(), 0.5, 0});
     list.grasps.push_back(g);
   }
   return list;
@@ -42,7 +45,8 @@ bool whole(const GraspList& list) {
   if (list.grasps.size() != 400) return false;
   const double writer = list.grasps.front().grasp.quality;
   return std::all_of(list.grasps.begin(), list.grasps.end(), [writer](const ListedGrasp& g) {
-    return g.grasp.quality == writer && g.grasp.hand_joints == Vector::Constant(13, writer) && g.grasp.contacts.size() == 4 &&
+    return g.grasp.quality == writer && g.grasp.hand_joints == Vector::Constant(13, writer) &&
+           g.grasp.contacts.size() == 4 &&
            g.grasp.contacts[3].position == Vector3::Constant(writer);
   });
 }
@@ -102,7 +106,8 @@ TEST(GraspStore, a_list_that_names_joints_fingers_or_triangles_that_are_not_ther
   const auto with = [&](const auto& change) {
     GraspList list = list_of(1);
     for (ListedGrasp& g : list.grasps)
-      g.grasp.hand_joints = g.grasp.pregrasp_joints = g.grasp.hand_effort = Vector::Zero(hand.model().dof());
+      g.grasp.hand_joints = g.grasp.pregrasp_joints = g.grasp.hand_effort =
+          Vector::Zero(hand.model().dof());
     change(list.grasps[7]);
     return fits(list, hand, box);
   };
@@ -111,13 +116,17 @@ TEST(GraspStore, a_list_that_names_joints_fingers_or_triangles_that_are_not_ther
   EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.hand_effort[2] = std::nan(""); }));
   EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.contacts[1].finger = 4; }));
   EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.contacts[1].triangle = 99999999; }));
-  EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.T_object_hand.translation().x() = std::numeric_limits<double>::infinity(); }));
+  EXPECT_FALSE(with([](ListedGrasp& g) {
+    g.grasp.T_object_hand.translation().x() = std::numeric_limits<double>::infinity();
+  }));
   EXPECT_FALSE(with([](ListedGrasp& g) { g.room = std::nan(""); }));
 }
 
-TEST(GraspCache, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_same_as_a_list_made_at_once) {
+TEST(GraspCache,
+     more_orientations_go_on_with_the_list_on_disk_and_come_to_the_same_as_a_list_made_at_once) {
   const TemporaryFolder folder;
-  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto hand_geometry =
+      std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const ObjectModel box = ObjectModel::load(kDeploy / "objects/box/box.txtpb");
   GraspListSettings few, more;
   few.positions = more.positions = 8;
@@ -136,26 +145,31 @@ TEST(GraspCache, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_s
     EXPECT_EQ(longer->list.grasps[i].grasp.hand_joints, at_once->list.grasps[i].grasp.hand_joints);
   }
   const auto again = GraspCache(hand_geometry, few, GraspStore(folder.path())).page(box);
-  EXPECT_EQ(again->list.frames, first->list.frames) << "a longer list on disk does not lengthen a shorter one";
+  EXPECT_EQ(again->list.frames, first->list.frames)
+      << "a longer list on disk does not lengthen a shorter one";
   EXPECT_EQ(again->list.grasps.size(), first->list.grasps.size());
 }
 
 TEST(GraspList, shared_among_listers_it_is_the_list_of_one) {
-  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto hand_geometry =
+      std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
-  const auto box =
-      std::make_shared<const Graspable>(ObjectModel::load(kDeploy / "objects/box/box.txtpb"), hand_geometry->tip_radius(), 0.6, 1);
+  const auto box = std::make_shared<const Graspable>(
+      ObjectModel::load(kDeploy / "objects/box/box.txtpb"), hand_geometry->tip_radius(), 0.6, 1);
   GraspListSettings settings;
   settings.positions = 8;
   settings.orientations = 30;
   const GraspList one = list_grasps(hand_geometry, workspaces, box, settings);
-  GraspLister a(hand_geometry, workspaces, box, settings), b(hand_geometry, workspaces, box, settings);
-  for (std::uint64_t first = 0; first < a.frames(); first += 32) (first / 32 % 2 ? a : b).test(first, 32);
+  GraspLister a(hand_geometry, workspaces, box, settings),
+      b(hand_geometry, workspaces, box, settings);
+  for (std::uint64_t first = 0; first < a.frames(); first += 32)
+    (first / 32 % 2 ? a : b).test(first, 32);
   const GraspList both = merged({a.list(), b.list()});
   EXPECT_EQ(both.frames, one.frames);
   EXPECT_EQ(both.reasons, one.reasons);
   ASSERT_EQ(both.grasps.size(), one.grasps.size());
-  for (std::size_t i = 0; i < one.grasps.size(); ++i) EXPECT_EQ(both.grasps[i].grasp.id, one.grasps[i].grasp.id);
+  for (std::size_t i = 0; i < one.grasps.size(); ++i)
+    EXPECT_EQ(both.grasps[i].grasp.id, one.grasps[i].grasp.id);
 }
 
 }  // namespace

@@ -14,10 +14,12 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return 2 * std::acos(std::min(1.0, std::abs(a.dot(b)))); }
+double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
+  return 2 * std::acos(std::min(1.0, std::abs(a.dot(b))));
+}
 
-// Largest rotation angle [deg] from any of 2000 random orientations to the nearest of the set, then (climb) from each of the first 150
-// uphill to a local maximum: the least upper bound.
+// Largest rotation angle [deg] from any of 2000 random orientations to the nearest of the set, then
+// (climb) from each of the first 150 uphill to a local maximum: the least upper bound.
 double dispersion(const std::vector<Eigen::Quaterniond>& set, std::uint64_t seed, bool climb) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -33,7 +35,9 @@ double dispersion(const std::vector<Eigen::Quaterniond>& set, std::uint64_t seed
     double here = nearest(q);
     for (double step = 0.2; climb && step > 1e-4; step *= 0.8) {
       for (int k = 0; k < 6; ++k) {
-        Eigen::Quaterniond next(q.coeffs() + step * Eigen::Vector4d(normal(random), normal(random), normal(random), normal(random)));
+        Eigen::Quaterniond next(q.coeffs() + step * Eigen::Vector4d(normal(random), normal(random),
+                                                                    normal(random),
+                                                                    normal(random)));
         next.normalize();
         const double there = nearest(next);
         if (there > here) {
@@ -51,7 +55,8 @@ TEST(So3Grid, dispersion_halves_with_each_level) {
   const double sampled[] = {52.9, 24.6, 12.2}, bound[] = {56.3, 27.9, 13.9};
   for (int level = 0; level <= 2; ++level) {
     std::vector<Eigen::Quaterniond> grid;
-    for (std::uint64_t i = 0; i < so3_grid_size(level); ++i) grid.push_back(so3_grid_cell(level, i));
+    for (std::uint64_t i = 0; i < so3_grid_size(level); ++i)
+      grid.push_back(so3_grid_cell(level, i));
     EXPECT_NEAR(dispersion(grid, 3, false), sampled[level], 1.2) << "level " << level;
     EXPECT_NEAR(dispersion(grid, 3, true), bound[level], 0.3) << "level " << level;
   }
@@ -63,7 +68,8 @@ TEST(So3Grid, longer_sequences_begin_with_shorter_ones_and_prefixes_cover_evenly
   ASSERT_EQ(large.size(), 720U);
   for (std::size_t i = 0; i < small.size(); ++i) EXPECT_EQ(small[i].coeffs(), large[i].coeffs());
   for (std::size_t i = 0; i < large.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) ASSERT_GT(angle(large[i], large[j]), 1 * kDegree) << i << " " << j;
+    for (std::size_t j = 0; j < i; ++j)
+      ASSERT_GT(angle(large[i], large[j]), 1 * kDegree) << i << " " << j;
   }
   const auto some = so3_sequence(24);
   EXPECT_LT(dispersion(some, 5, true), 100);
@@ -116,7 +122,8 @@ TEST(Surface, points_lie_on_their_triangles_and_cover_the_surface) {
                  z = 0.1 * static_cast<double>(random() % 1000) / 1000;
     double nearest = 1;
     for (const SurfacePoint& p : points)
-      nearest = std::min(nearest, (p.position - Vector3(0.04 * std::cos(a), 0.04 * std::sin(a), z)).norm());
+      nearest = std::min(nearest,
+                         (p.position - Vector3(0.04 * std::cos(a), 0.04 * std::sin(a), z)).norm());
     EXPECT_LT(nearest, 1.3 * s.step);
   }
   const auto again = sample_surface(m, s);
@@ -126,7 +133,8 @@ TEST(Surface, points_lie_on_their_triangles_and_cover_the_surface) {
 
 TEST(Surface, mean_curvature_of_a_cylinder_is_half_its_inverse_radius) {
   const TriangleMesh m = cylinder(0.05, 0.4, 200, 60);
-  const auto h = mean_curvature(m, {{0.05, 0, 0.2}, {0, 0.05, 0.15}, {0.01, 0, 0.4}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0.013);
+  const auto h = mean_curvature(m, {{0.05, 0, 0.2}, {0, 0.05, 0.15}, {0.01, 0, 0.4}},
+                                {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0.013);
   EXPECT_NEAR(h[0], 1 / (2 * 0.05), 1);
   EXPECT_NEAR(h[1], 1 / (2 * 0.05), 1);
   EXPECT_NEAR(h[2], 0, 1e-9);
@@ -139,19 +147,22 @@ TEST(Surface, the_other_side_of_a_thin_wall_does_not_hide_an_edge) {
   orient(inner);
   const auto shift = static_cast<int>(outer.vertices.size());
   for (const Vector3& v : inner.vertices) outer.vertices.push_back(v + Vector3(0, 0, 0.0015));
-  for (const auto& t : inner.triangles) outer.triangles.push_back({t[0] + shift, t[2] + shift, t[1] + shift});
+  for (const auto& t : inner.triangles)
+    outer.triangles.push_back({t[0] + shift, t[2] + shift, t[1] + shift});
   const auto h = mean_curvature(outer, {{0.05, 0, 0.002}}, {{1, 0, 0}}, 0.013);
   EXPECT_GT(normalised_curvature(h[0], 0.013), 0.7);
 }
 
 TEST(Surface, turned_triangles_are_mended) {
   TriangleMesh m = cylinder(0.04, 0.1, 24, 4);
-  for (std::size_t i = 0; i < m.triangles.size(); i += 3) std::swap(m.triangles[i][0], m.triangles[i][1]);
+  for (std::size_t i = 0; i < m.triangles.size(); i += 3)
+    std::swap(m.triangles[i][0], m.triangles[i][1]);
   const MeshFindings f = orient(m);
   EXPECT_EQ(f.components, 1U);
   EXPECT_EQ(f.open_edges, 0U);
   EXPECT_EQ(f.turned, (m.triangles.size() + 2) / 3);
-  for (const SurfacePoint& p : sample_surface(m, {})) EXPECT_GT(p.normal.dot(p.position - Vector3(0, 0, 0.05)), 0);
+  for (const SurfacePoint& p : sample_surface(m, {}))
+    EXPECT_GT(p.normal.dot(p.position - Vector3(0, 0, 0.05)), 0);
 }
 
 TEST(Surface, what_is_wrong_with_a_mesh_is_mended_and_said) {
@@ -215,7 +226,9 @@ TEST(TriangleTree, nearest_is_what_a_scan_of_dense_samples_finds) {
     const SurfaceHit hit = tree.nearest(p);
     const auto& t = mesh.triangles[hit.triangle];
     Vector3 on = Vector3::Zero();
-    for (std::size_t k = 0; k < 3; ++k) on += hit.barycentric[static_cast<Eigen::Index>(k)] * mesh.vertices[static_cast<std::size_t>(t[k])];
+    for (std::size_t k = 0; k < 3; ++k)
+      on += hit.barycentric[static_cast<Eigen::Index>(k)] *
+            mesh.vertices[static_cast<std::size_t>(t[k])];
     EXPECT_LT((on - hit.position).norm(), 1e-12);
     EXPECT_GE(hit.barycentric.minCoeff(), -1e-12);
     EXPECT_NEAR((p - hit.position).norm(), hit.along, 1e-12);

@@ -1,4 +1,5 @@
-// Lists of grasps of the parallel gripper on the project's own objects: every promise of a listed grasp, checked from the outside.
+// Lists of grasps of the parallel gripper on the project's own objects: every promise of a listed
+// grasp, checked from the outside.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +13,8 @@ namespace {
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
 std::shared_ptr<const HandGeometry> gripper() {
-  static const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
+  static const auto hand_geometry = std::make_shared<const HandGeometry>(
+      HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
   return hand_geometry;
 }
 
@@ -32,18 +34,23 @@ GraspListSettings small_settings() {
 }
 
 std::shared_ptr<const Graspable> graspable(const ObjectModel& o) {
-  return std::make_shared<const Graspable>(o, gripper()->tip_radius(), small_settings().step_fraction, 1);
+  return std::make_shared<const Graspable>(o, gripper()->tip_radius(),
+                                           small_settings().step_fraction, 1);
 }
 
 GraspList list_of(const ObjectModel& o) {
-  return list_grasps(gripper(), std::make_shared<const FingerWorkspaces>(make_workspaces(*gripper())), graspable(o), small_settings());
+  return list_grasps(gripper(),
+                     std::make_shared<const FingerWorkspaces>(make_workspaces(*gripper())),
+                     graspable(o), small_settings());
 }
 
-/// Signed distance of a point of the object from a pad's plane, positive before it, and where it is on the pad.
+/// Signed distance of a point of the object from a pad's plane, positive before it, and where it is
+/// on the pad.
 Vector3 on_pad(const Grasp& g, std::uint32_t finger, const Vector3& p_object) {
   const HandModel& hand = gripper()->hand;
   const Finger& f = hand.fingers()[finger];
-  const Pose T_hand_pad = hand.model().link_pose(g.hand_joints, hand.model().link_index(f.tip_link)) * f.pad->T_tip_pad;
+  const Pose T_hand_pad =
+      hand.model().link_pose(g.hand_joints, hand.model().link_index(f.tip_link)) * f.pad->T_tip_pad;
   return (g.T_object_hand * T_hand_pad).inverse() * p_object;
 }
 
@@ -89,7 +96,8 @@ INSTANTIATE_TEST_SUITE_P(Objects, PinchedObjects, testing::Values("box", "can", 
 TEST(Pinch, holds_nothing_wider_than_it_opens) {
   const GraspList list = list_of(object("box", 2.0));
   EXPECT_TRUE(list.grasps.empty());
-  EXPECT_GT(list.reasons[static_cast<std::size_t>(FrameReason::nothing_opposite)], list.frames * 9 / 10);
+  EXPECT_GT(list.reasons[static_cast<std::size_t>(FrameReason::nothing_opposite)],
+            list.frames * 9 / 10);
 }
 
 TEST(Pinch, list_goes_on_where_it_stopped) {

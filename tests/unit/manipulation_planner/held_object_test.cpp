@@ -24,19 +24,25 @@ class Held : public ::testing::Test {
   /// A small table whose top is `depth` above the lowest point of the mug.
   void put_table(double depth, bool supports) {
     const Pose T_world_tool = robot_.link_pose(q_, robot_.tool_link());
-    const Pose T_world_object = make_pose(T_world_tool.translation() + Vector3(0.15, 0, -0.3));  // upright, below the hand
+    const Pose T_world_object =
+        make_pose(T_world_tool.translation() + Vector3(0.15, 0, -0.3));  // upright, below the hand
     held_.T_tool_object = T_world_tool.inverse() * T_world_object;
     place_ = T_world_object.translation();
     lowest_ = 1e9;
-    for (const Vector3& p : mug_.mesh.vertices) lowest_ = std::min(lowest_, (T_world_object * p).z());
-    scene_.boxes = {{"table", make_pose({place_.x(), place_.y(), lowest_ + depth - 0.01}), {0.3, 0.3, 0.02}, supports}};
+    for (const Vector3& p : mug_.mesh.vertices)
+      lowest_ = std::min(lowest_, (T_world_object * p).z());
+    scene_.boxes = {{"table",
+                     make_pose({place_.x(), place_.y(), lowest_ + depth - 0.01}),
+                     {0.3, 0.3, 0.02},
+                     supports}};
     world_.set_scene(scene_);
     world_.set_attachment(held_, {});
   }
 
   RobotModel robot_{RobotModel::load(kDeploy / "robots/jido/jido.txtpb")};
   ObjectModel mug_{ObjectModel::load(kDeploy / "objects/mug/mug.txtpb")};
-  CollisionWorld world_{robot_, [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; }};
+  CollisionWorld world_{
+      robot_, [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; }};
   Vector q_ = robot_.rest_configuration();
   Scene scene_;
   Attachment held_;
@@ -54,7 +60,8 @@ TEST_F(Held, the_hand_may_touch_what_it_holds) {
 
 TEST_F(Held, the_same_object_not_held_and_not_allowed_is_an_obstacle) {
   scene_.objects[0].holder = Holder::surface;
-  scene_.objects[0].T_world_object = robot_.link_pose(q_, robot_.tool_link()) * make_pose({0.02, 0.0, 0.08});
+  scene_.objects[0].T_world_object =
+      robot_.link_pose(q_, robot_.tool_link()) * make_pose({0.02, 0.0, 0.08});
   world_.set_scene(scene_);
   const CollisionVerdict verdict = world_.check(q_);
   EXPECT_FALSE(verdict.free);

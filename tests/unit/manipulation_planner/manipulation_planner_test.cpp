@@ -17,10 +17,12 @@ TEST(ManipulationPlanner, the_hand_opens_on_its_way_which_is_planned_for_it_open
   for (int i = 0; i < 5; ++i) rig.cycle();
   EXPECT_EQ(rig.execution.motion, MotionState::running);
   EXPECT_EQ(rig.execution.hand, HandState::moving);
-  EXPECT_NEAR(RobotModel::part(rig.last_path.start, rig.robot->require_group("hand"))[0], closed + 0.1, 1e-9);
+  EXPECT_NEAR(RobotModel::part(rig.last_path.start, rig.robot->require_group("hand"))[0],
+              closed + 0.1, 1e-9);
   rig.opening = 200;
   for (int i = 0; i < 150; ++i) rig.cycle();
-  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0) << "with the hand half open";
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0)
+      << "with the hand half open";
   rig.run_until("reaching the object");
   EXPECT_EQ(rig.execution.hand, HandState::idle);
 }
@@ -41,7 +43,9 @@ TEST(ManipulationPlanner, a_motion_that_is_held_back_again_and_again_is_planned_
   rig.run_until("approach");
   const auto blocked = [&] {
     const auto& refusals = rig.planner.status().refusals;
-    return std::any_of(refusals.begin(), refusals.end(), [](const Refusal& r) { return r.reason.starts_with("the path is blocked"); });
+    return std::any_of(refusals.begin(), refusals.end(), [](const Refusal& r) {
+      return r.reason.starts_with("the path is blocked");
+    });
   };
   const double along = rig.along;
   for (int i = 0; i < 200 && !blocked(); ++i) {
@@ -81,7 +85,8 @@ TEST(ManipulationPlanner, gives_within_reach_of_the_person_and_engages_them_only
   EXPECT_TRUE(within_reach(rig.people.people[0], rig.planner.status().exchange_point));
   EXPECT_FALSE(rig.planner.status().holding);
   EXPECT_EQ(rig.phases.back(), "retreat");
-  EXPECT_NE(std::find(rig.allowed.back().begin(), rig.allowed.back().end(), "anna"), rig.allowed.back().end());
+  EXPECT_NE(std::find(rig.allowed.back().begin(), rig.allowed.back().end(), "anna"),
+            rig.allowed.back().end());
 }
 
 TEST(ManipulationPlanner, an_offer_nobody_takes_fails_with_their_name) {
@@ -92,7 +97,8 @@ TEST(ManipulationPlanner, an_offer_nobody_takes_fails_with_their_name) {
   rig.start(ActionKind::give);
   rig.run(60);
   EXPECT_EQ(rig.planner.status().state, ActionState::failed);
-  EXPECT_NE(rig.planner.status().reason.find("anna did not take mug"), std::string::npos) << rig.planner.status().reason;
+  EXPECT_NE(rig.planner.status().reason.find("anna did not take mug"), std::string::npos)
+      << rig.planner.status().reason;
   EXPECT_TRUE(rig.planner.status().holding);
 }
 
@@ -109,7 +115,8 @@ TEST(ManipulationPlanner, from_a_person_it_touches_it_draws_back_first) {
   Rig rig;
   rig.touched = "anna";
   rig.touching_posture = rig.q;
-  const Vector3 torso = rig.people.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const Vector3 torso =
+      rig.people.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   const double before = (rig.tool().translation() - torso).norm();
   rig.start(ActionKind::go_to);
   double farthest = before;
@@ -149,13 +156,15 @@ TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_wh
   rig.share = 0.5;  // somebody has come near
   runs(0.6);
   const auto& counts = rig.planner.replan_counts();
-  ASSERT_EQ(rig.commands.size(), 2u) << counts.checks << " checks, " << counts.refused << " refused";
+  ASSERT_EQ(rig.commands.size(), 2u)
+      << counts.checks << " checks, " << counts.refused << " refused";
   EXPECT_GT(left() + 0.6, before + 0.15);
   rig.share = 0.97;  // and has gone
   const double slow = left();
   EXPECT_GT(slow, 1.5) << "the test needs a longer way";
   runs(0.6);
-  ASSERT_EQ(rig.commands.size(), 3u) << counts.checks << " checks, " << counts.refused << " refused";
+  ASSERT_EQ(rig.commands.size(), 3u)
+      << counts.checks << " checks, " << counts.refused << " refused";
   EXPECT_LT(left() + 0.6, slow - 0.08);
   EXPECT_EQ(rig.planner.replan_counts().retimed, 2u);
   for (const double jump : rig.jumps) EXPECT_LT(jump, 1e-9);
@@ -165,7 +174,8 @@ TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_wh
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
 }
 
-TEST(ManipulationPlanner, a_motion_reported_under_another_number_is_stopped_before_the_next_attempt) {
+TEST(ManipulationPlanner,
+     a_motion_reported_under_another_number_is_stopped_before_the_next_attempt) {
   Rig rig;
   rig.people.people.clear();
   rig.scene.boxes.clear();
@@ -246,7 +256,8 @@ TEST(ManipulationPlanner, what_slips_out_of_the_hand_ends_the_action_with_that_r
   }
 }
 
-TEST(ManipulationPlanner, cancelled_in_mid_motion_it_says_so_stops_the_arm_and_takes_the_next_action) {
+TEST(ManipulationPlanner,
+     cancelled_in_mid_motion_it_says_so_stops_the_arm_and_takes_the_next_action) {
   Rig rig;
   rig.moves = true;
   rig.q[rig.robot->require_group("arm").axes[0]] += 1.0;
@@ -307,10 +318,12 @@ TEST(ManipulationPlanner, places_what_it_holds_on_the_surface) {
   Rig rig;
   Vector at_grasp = rig.q;  // as the rig answers
   at_grasp[rig.robot->require_group("arm").axes[0]] += 0.2;
-  const Vector3 mug = rig.robot->link_pose(at_grasp, rig.robot->tool_link()).translation() - Vector3(0, 0, 0.3);
+  const Vector3 mug =
+      rig.robot->link_pose(at_grasp, rig.robot->tool_link()).translation() - Vector3(0, 0, 0.3);
   rig.scene.objects[0].T_world_object = make_pose(mug);
   rig.grasped_as_it_stands = true;
-  rig.scene.boxes[0] = {"table", make_pose({mug.x(), mug.y(), mug.z() - 0.16}), {0.5, 0.5, 0.1}, true};
+  rig.scene.boxes[0] = {
+      "table", make_pose({mug.x(), mug.y(), mug.z() - 0.16}), {0.5, 0.5, 0.1}, true};
   rig.start(ActionKind::pick);
   rig.run(30);
   rig.start(ActionKind::place);

@@ -18,20 +18,22 @@ inline config::ManipulationPlannerSettings settings() {
   return s;
 }
 
-// Plays the planners and the controller: every request is answered at once unless the test says otherwise, every trajectory reaches its
-// end.
+// Plays the planners and the controller: every request is answered at once unless the test says
+// otherwise, every trajectory reaches its end.
 class Rig {
  public:
   Rig()
       : robot(std::make_shared<RobotModel>(RobotModel::load(robot_description("jido")))),
         mug(ObjectModel::load(object_description("mug"))),
         planner(
-            settings(), robot, [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
+            settings(), robot,
+            [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
     q = robot->rest_configuration();
     scene.robot_known = true;
     scene.T_world_base = Pose::Identity();
     scene.boxes.push_back({"table", make_pose({0.7, -0.6, 0.35}), {0.6, 0.6, 0.7}, true});
-    scene.objects.push_back({"mug", "mug", make_pose({0.7, -0.6, 0.75}), Holder::surface, "table", 0});
+    scene.objects.push_back(
+        {"mug", "mug", make_pose({0.7, -0.6, 0.75}), Holder::surface, "table", 0});
     Person anna;
     anna.id = "anna";
     anna.joints = standing_body({1.45, 0, 0}, 3.14159, 1.75);
@@ -51,7 +53,9 @@ class Rig {
   }
 
   void run(double duration) {
-    for (double t = 0; t < duration && (t < 0.1 || planner.status().state == ActionState::running); t += 0.02) cycle();
+    for (double t = 0; t < duration && (t < 0.1 || planner.status().state == ActionState::running);
+         t += 0.02)
+      cycle();
   }
 
   void run_until(const std::string& phase) {
@@ -110,8 +114,10 @@ class Rig {
     grasp.approach_joints[1] += 0.1;
     grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(q, robot->require_group("hand"));
     grasp.pregrasp_joints[0] += opens_by;
-    grasp.T_object_hand = scene.objects[0].T_world_object.inverse() * scene.T_world_base *
-                          robot->link_pose(RobotModel::with(q, robot->require_group("arm"), grasp.arm_joints), robot->tool_link());
+    grasp.T_object_hand =
+        scene.objects[0].T_world_object.inverse() * scene.T_world_base *
+        robot->link_pose(RobotModel::with(q, robot->require_group("arm"), grasp.arm_joints),
+                         robot->tool_link());
     if (!grasps.empty())
       reply.grasps = grasps;
     else if (grasps_exist)
@@ -128,13 +134,15 @@ class Rig {
     reply.id = request.id;
     reply.solved = path_requests > failing_paths;
     const bool allowed_to_touch =
-        std::find(request.allowed_contacts.begin(), request.allowed_contacts.end(), touched) != request.allowed_contacts.end();
+        std::find(request.allowed_contacts.begin(), request.allowed_contacts.end(), touched) !=
+        request.allowed_contacts.end();
     if (!touched.empty() && !allowed_to_touch && (request.start - touching_posture).norm() < 1e-9) {
       reply.solved = false;
       reply.start_touches = touched;
     }
     reply.reason = "goal 0 in collision: link forearm and box table";
-    reply.path = {RobotModel::part(request.start, robot->require_group("arm")), request.goals.front()};
+    reply.path = {RobotModel::part(request.start, robot->require_group("arm")),
+                  request.goals.front()};
     if (!request.running.empty()) {
       const bool same_goal = (request.goals.front() - request.running.back()).norm() < 1e-9;
       reply.outcome = same_goal ? PathOutcome::kept : PathOutcome::replanned;
@@ -157,7 +165,8 @@ class Rig {
       reply.speeds = Vector::Constant(static_cast<Eigen::Index>(zones.size()), share);
       return planner.on(reply);
     }
-    for (int i = 0; i < target.size(); ++i) reply.trajectory.axes.push_back({{target[i], 0, 0}, {{1.0, 0.0}}});
+    for (int i = 0; i < target.size(); ++i)
+      reply.trajectory.axes.push_back({{target[i], 0, 0}, {{1.0, 0.0}}});
     planner.on(reply);
   }
   void obey(const TrajectoryCommand& command) {
@@ -174,8 +183,9 @@ class Rig {
       if (command.switch_at > 0) {
         const double offset = way.duration() - latest;
         way = cut(way, 0, command.switch_at + offset);
-        jumps.push_back((way.at(way.duration()).position - command.trajectory.at(0).position).norm() +
-                        (way.at(way.duration()).velocity - command.trajectory.at(0).velocity).norm());
+        jumps.push_back(
+            (way.at(way.duration()).position - command.trajectory.at(0).position).norm() +
+            (way.at(way.duration()).velocity - command.trajectory.at(0).velocity).norm());
         append(way, command.trajectory);
       } else {
         way = command.trajectory;
@@ -193,14 +203,16 @@ class Rig {
   }
   void obey(const HandCommand& command) {
     execution.hand_command = command.id;
-    execution.hand = command.action == HandAction::grasp             ? (grasp_holds ? HandState::grasped : HandState::empty)
+    execution.hand = command.action == HandAction::grasp
+                         ? (grasp_holds ? HandState::grasped : HandState::empty)
                      : command.action == HandAction::release_on_pull ? HandState::grasped
                      : opens_for > 0                                 ? HandState::moving
                                                                      : HandState::idle;
     opening = opens_for;
     if (command.action == HandAction::grasp && grasp_holds) {
       if (object_comes) scene.objects[0].holder = Holder::robot;
-      T_tool_mug = grasped_as_it_stands ? Pose(tool().inverse() * scene.objects[0].T_world_object) : make_pose({0.08, 0.02, 0.23});
+      T_tool_mug = grasped_as_it_stands ? Pose(tool().inverse() * scene.objects[0].T_world_object)
+                                        : make_pose({0.08, 0.02, 0.23});
     }
   }
   void hold_out() {
@@ -239,7 +251,8 @@ class Rig {
   int path_requests{0}, failing_paths{0}, stops{0}, led_over{0};
   PathRequest last_path;
   std::vector<Grasp> grasps;  // of the planner's answers; empty: one that is near the arm
-  bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, object_comes{true}, person_takes{true};
+  bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true},
+      object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
   int opens_for{}, opening{};  // the hand, told to move: cycles that it takes, and that are left

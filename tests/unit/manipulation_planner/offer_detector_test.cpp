@@ -39,7 +39,9 @@ class OfferDetectorTest : public testing::Test {
     detector_.update(p_hand_);
   }
   bool is_offered() const { return detector_.find("", "", p_hand_).has_value(); }
-  BodyJoint& torso() { return people_.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))]; }
+  BodyJoint& torso() {
+    return people_.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))];
+  }
 
   Scene scene_;
   HumanState people_;

@@ -38,7 +38,9 @@ class OnlineReplannerTest : public testing::Test {
     KinematicLimits limits = robot_->comfort_limits();
     const std::vector<int>& axes = arm().axes;
     limits = {limits.velocity(axes), limits.acceleration(axes), limits.jerk(axes)};
-    return smooth(waypoints, limits, {}, {}, std::vector<SpeedZones>(waypoints.size() - 1, SpeedZones{{1, 1}})).trajectory;
+    return smooth(waypoints, limits, {}, {},
+                  std::vector<SpeedZones>(waypoints.size() - 1, SpeedZones{{1, 1}}))
+        .trajectory;
   }
   void report(std::uint64_t command, MotionState state) {
     execution_.trajectory = command;
@@ -166,7 +168,8 @@ TEST_F(OnlineReplannerTest, switches_to_another_path_in_time_and_without_a_jump)
   const double switch_time = 0.3 + parts_.settings.replan_time();
   EXPECT_NEAR(command.switch_at, switch_time, 1e-9);
   const MotionState3 before = whole_.at(switch_time), after = command.trajectory.at(0);
-  EXPECT_LT((before.position - after.position).norm() + (before.velocity - after.velocity).norm(), 1e-9);
+  EXPECT_LT((before.position - after.position).norm() + (before.velocity - after.velocity).norm(),
+            1e-9);
   report(command.id, MotionState::running);
   cycle();
   ASSERT_TRUE(check_.done());

@@ -12,12 +12,14 @@ using rig::settings;
 
 class OtpSearchTest : public ::testing::Test {
  protected:
-  OtpSearch find(const LayersNow& layers = {}, const std::vector<config::PersonProfile>& people = {}) {
+  OtpSearch find(const LayersNow& layers = {},
+                 const std::vector<config::PersonProfile>& people = {}) {
     auto many = settings();
     many.set_w_preference(0.4);
     for (const config::PersonProfile& profile : people) *many.add_people() = profile;
     many.set_exchange_goals(20);
-    const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug, T_tool_mug = make_pose({0.08, 0.02, 0.23});
+    const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+               T_tool_mug = make_pose({0.08, 0.02, 0.23});
     const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}};
     return find_otp(*rig_.robot, query, rig_.q, many);
   }
@@ -29,18 +31,23 @@ TEST_F(OtpSearchTest, places_under_a_table_are_none) {
   const OtpSearch before = find();
   ASSERT_FALSE(before.poses.empty()) << before.reason;
   const double middle = before.poses.front().T_world_object.translation().z();
-  rig_.scene.boxes.push_back({"high table", make_pose({0.95, 0, middle + 0.1}), {0.9, 2, 0.04}, true});
+  rig_.scene.boxes.push_back(
+      {"high table", make_pose({0.95, 0, middle + 0.1}), {0.9, 2, 0.04}, true});
   const OtpSearch search = find();
-  for (const OtpPose& pose : search.poses) EXPECT_GT(pose.T_world_object.translation().z(), middle + 0.1) << "under or in the table";
+  for (const OtpPose& pose : search.poses)
+    EXPECT_GT(pose.T_world_object.translation().z(), middle + 0.1) << "under or in the table";
 }
 
 TEST_F(OtpSearchTest, is_where_the_profile_of_the_person_says) {
   const auto across_and_away = [&](const config::PersonProfile& profile) {
     const OtpSearch search = find({}, {profile});
     EXPECT_FALSE(search.poses.empty()) << search.reason;
-    const auto joint = [&](const char* name) { return anna_.joints[static_cast<std::size_t>(body_joint_index(name))].position; };
+    const auto joint = [&](const char* name) {
+      return anna_.joints[static_cast<std::size_t>(body_joint_index(name))].position;
+    };
     const Vector3 from_torso = search.poses.front().T_world_object.translation() - joint("torso");
-    return std::pair(from_torso.dot((joint("l_shoulder") - joint("r_shoulder")).normalized()), from_torso.head<2>().norm());
+    return std::pair(from_torso.dot((joint("l_shoulder") - joint("r_shoulder")).normalized()),
+                     from_torso.head<2>().norm());
   };
   config::PersonProfile profile;
   profile.set_id(anna_.id);
@@ -69,18 +76,21 @@ TEST_F(OtpSearchTest, behind_a_wall_there_is_none_and_the_reason_says_so) {
 TEST_F(OtpSearchTest, keeps_off_what_a_layer_from_outside_forbids_and_costs) {
   const OtpSearch before = find();
   ASSERT_FALSE(before.poses.empty());
-  const Vector3 best = before.poses.front().T_world_object.translation(), room(3, 3, 3), near(0.12, 0.12, 0.12);
+  const Vector3 best = before.poses.front().T_world_object.translation(), room(3, 3, 3),
+                near(0.12, 0.12, 0.12);
   for (const std::uint8_t value : {std::uint8_t{254}, std::uint8_t{255}}) {
     LayersNow layers;
-    layers.outside = {
-        std::make_shared<const CostGrid>(test::box_layer("crowd", best - room, best + room, best - near, best + near, value, 5))};
+    layers.outside = {std::make_shared<const CostGrid>(
+        test::box_layer("crowd", best - room, best + room, best - near, best + near, value, 5))};
     const OtpSearch search = find(layers);
     ASSERT_FALSE(search.poses.empty()) << search.reason;
-    EXPECT_FALSE(((search.poses.front().T_world_object.translation() - best).cwiseAbs() - near).maxCoeff() < 0);
+    EXPECT_FALSE(
+        ((search.poses.front().T_world_object.translation() - best).cwiseAbs() - near).maxCoeff() <
+        0);
   }
   LayersNow everywhere;
-  everywhere.outside = {
-      std::make_shared<const CostGrid>(test::box_layer("crowd", best - room, best + room, best - room, best + room, 255, 1))};
+  everywhere.outside = {std::make_shared<const CostGrid>(
+      test::box_layer("crowd", best - room, best + room, best - room, best + room, 255, 1))};
   const OtpSearch nowhere = find(everywhere);
   EXPECT_TRUE(nowhere.poses.empty());
   EXPECT_NE(nowhere.reason.find("forbidden by a cost layer"), std::string::npos) << nowhere.reason;
@@ -89,7 +99,8 @@ TEST_F(OtpSearchTest, keeps_off_what_a_layer_from_outside_forbids_and_costs) {
 TEST_F(OtpSearchTest, poses_are_sorted_apart_and_cost_what_they_are_said_to_cost) {
   const OtpSearch search = find();
   ASSERT_GT(search.poses.size(), 1u) << search.reason;
-  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug, T_tool_mug = make_pose({0.08, 0.02, 0.23});
+  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+             T_tool_mug = make_pose({0.08, 0.02, 0.23});
   const LayersNow layers;
   auto many = settings();
   many.set_w_preference(0.4);
@@ -104,7 +115,8 @@ TEST_F(OtpSearchTest, poses_are_sorted_apart_and_cost_what_they_are_said_to_cost
     EXPECT_LT((T_reached.translation() - pose.T_world_object.translation()).norm(), 1e-3);
     for (std::size_t k = 0; k < i; ++k) {
       EXPECT_LE(search.poses[k].cost, pose.cost);
-      const Vector3 between = search.poses[k].T_world_object.translation() - pose.T_world_object.translation();
+      const Vector3 between =
+          search.poses[k].T_world_object.translation() - pose.T_world_object.translation();
       EXPECT_GE(between.norm(), 0.05);
     }
   }
@@ -113,7 +125,8 @@ TEST_F(OtpSearchTest, poses_are_sorted_apart_and_cost_what_they_are_said_to_cost
 TEST_F(OtpSearchTest, a_finger_in_the_direction_of_the_pull_makes_a_pose_impossible) {
   const OtpSearch search = find();
   ASSERT_FALSE(search.poses.empty()) << search.reason;
-  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug, T_tool_mug = make_pose({0.08, 0.02, 0.23});
+  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+             T_tool_mug = make_pose({0.08, 0.02, 0.23});
   const LayersNow layers;
   const Pose& T_best = search.poses.front().T_world_object;
   const Vector3 torso = anna_.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
@@ -136,7 +149,8 @@ TEST_F(OtpSearchTest, only_a_hand_that_pinches_bars_directions) {
 TEST_F(OtpSearchTest, arm_comfort_comes_from_the_map_of_that_person) {
   const OtpSearch before = find();
   const Vector3 best = before.poses.front().T_world_object.translation(), room(1, 1, 1);
-  Costmap map = test::box_layer("arm_comfort", best - room, best + room, best - room, best + room, 255, 1);
+  Costmap map =
+      test::box_layer("arm_comfort", best - room, best + room, best - room, best + room, 255, 1);
   LayersNow layers;
   map.person = "ben";
   layers.comfort = std::make_shared<const CostGrid>(map);

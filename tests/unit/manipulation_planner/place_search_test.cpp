@@ -19,11 +19,14 @@ class Placing : public testing::Test {
   }
   std::vector<Pose> places(std::size_t max_places = 50) const {
     const PlacingScene in{robot_, scene_, people_, library_};
-    return free_places(in, "mug", scene_.boxes.front(), scene_.objects.front().T_world_object, max_places);
+    return free_places(in, "mug", scene_.boxes.front(), scene_.objects.front().T_world_object,
+                       max_places);
   }
 
-  /// Returns a configuration whose palm is above the table with the mug below it, turned by `R_world_mug`.
-  Vector held_above_table(CollisionWorld& world, const Eigen::Matrix3d& R_world_mug, Attachment& held) const {
+  /// Returns a configuration whose palm is above the table with the mug below it, turned by
+  /// `R_world_mug`.
+  Vector held_above_table(CollisionWorld& world, const Eigen::Matrix3d& R_world_mug,
+                          Attachment& held) const {
     std::mt19937 random(5);
     Vector q = robot_.rest_configuration();
     for (;;) {
@@ -36,19 +39,24 @@ class Placing : public testing::Test {
       T_mug.linear() = R_world_mug;
       held.T_tool_object = T.inverse() * T_mug;
       world.set_attachment(held, {"mug"});
-      if ((T_mug.translation() - Vector3(0.7, 0, 0.9)).cwiseAbs().maxCoeff() < 0.1 && world.is_free(q)) return q;
+      if ((T_mug.translation() - Vector3(0.7, 0, 0.9)).cwiseAbs().maxCoeff() < 0.1 &&
+          world.is_free(q))
+        return q;
     }
   }
 
   RobotModel robot_ = RobotModel::load(robot_description("jido"));
   ObjectModel mug_ = ObjectModel::load(object_description("mug"));
-  ObjectLibrary library_ = [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; };
+  ObjectLibrary library_ = [this](const std::string& name) {
+    return name == "mug" ? &mug_ : nullptr;
+  };
   Scene scene_;
   HumanState people_;
 };
 
 TEST_F(Placing, lies_on_the_surface_clear_of_its_edge_and_of_what_stands_there) {
-  scene_.objects.push_back({"other", "mug", make_pose({0.7, 0.1, 0.75}), Holder::surface, "table", 0});
+  scene_.objects.push_back(
+      {"other", "mug", make_pose({0.7, 0.1, 0.75}), Holder::surface, "table", 0});
   const std::vector<Pose> found = places();
   ASSERT_GT(found.size(), 5u);
   for (const Pose& T : found) {
@@ -91,10 +99,16 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
     const auto posture = putting.at(T, q, q, held);
     if (!posture) continue;
     ++reached;
-    const Vector at = RobotModel::with(q, arm, posture->arm_at), above = RobotModel::with(q, arm, posture->arm_above);
-    EXPECT_LT(((robot_.link_pose(at, robot_.tool_link()) * held.T_tool_object).translation() - T.translation()).norm(), 1e-3);
+    const Vector at = RobotModel::with(q, arm, posture->arm_at),
+                 above = RobotModel::with(q, arm, posture->arm_above);
+    EXPECT_LT(((robot_.link_pose(at, robot_.tool_link()) * held.T_tool_object).translation() -
+               T.translation())
+                  .norm(),
+              1e-3);
     EXPECT_NEAR(posture->T_world_object.linear().col(2).z(), 1, 1e-9);
-    EXPECT_NEAR((robot_.link_pose(above, robot_.tool_link()) * held.T_tool_object).translation().z(), T.translation().z() + 0.1, 1e-3);
+    EXPECT_NEAR(
+        (robot_.link_pose(above, robot_.tool_link()) * held.T_tool_object).translation().z(),
+        T.translation().z() + 0.1, 1e-3);
     EXPECT_TRUE(world.check(at).free);
     EXPECT_TRUE(world.check(above).free);
   }
@@ -115,9 +129,11 @@ TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
   const Vector q = held_above_table(world, upside_down, held);
   const Group& arm = robot_.require_group("arm");
   Putting upright(world, robot_, arm, scene_.T_world_base, {places()}, 0.1);
-  EXPECT_TRUE(upright.anywhere(q, q, held, 1).empty()) << "the hand would be below the mug, in the table";
+  EXPECT_TRUE(upright.anywhere(q, q, held, 1).empty())
+      << "the hand would be below the mug, in the table";
 
-  Putting lying(world, robot_, arm, scene_.T_world_base, lying_places(places(), mug_, PlacingSettings{}.min_tipping), 0.1);
+  Putting lying(world, robot_, arm, scene_.T_world_base,
+                lying_places(places(), mug_, PlacingSettings{}.min_tipping), 0.1);
   const std::vector<PlacingConfiguration> found = lying.anywhere(q, q, held, 5);
   ASSERT_FALSE(found.empty()) << lying.objections();
   for (const PlacingConfiguration& posture : found) {
@@ -130,7 +146,10 @@ TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
     EXPECT_LT(std::abs(com.x() - 0.75), 0.3 - 0.03);
     EXPECT_LT(std::abs(com.y()), 0.5 - 0.03);
     const Vector at = RobotModel::with(q, arm, posture.arm_at);
-    EXPECT_LT(((robot_.link_pose(at, robot_.tool_link()) * held.T_tool_object).translation() - T.translation()).norm(), 1e-3);
+    EXPECT_LT(((robot_.link_pose(at, robot_.tool_link()) * held.T_tool_object).translation() -
+               T.translation())
+                  .norm(),
+              1e-3);
     EXPECT_TRUE(world.check(at).free);
   }
 }

@@ -18,7 +18,8 @@ TEST(ManipulationPlanner, takes_what_a_person_holds_out_and_engages_them_only_wh
   bool engaged = false;
   for (int i = 0; i < 1000 && rig.planner.status().state == ActionState::running; ++i) {
     rig.cycle();
-    if (phase_text(rig.planner.status()) == "reaching the object") engaged = rig.planner.status().exchange_engaged;
+    if (phase_text(rig.planner.status()) == "reaching the object")
+      engaged = rig.planner.status().exchange_engaged;
   }
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
   EXPECT_TRUE(engaged);
@@ -36,7 +37,8 @@ Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
   const Eigen::AngleAxisd tilt(from_below ? 0.0 : std::numbers::pi, Vector3::UnitY());
   grasp.T_object_hand = make_pose(-0.28 * (tilt * Vector3::UnitZ()), Eigen::Quaterniond(tilt));
   const auto joints =
-      rig.robot->inverse(arm, rig.scene.objects[0].T_world_object * grasp.T_object_hand, rig.robot->rest_configuration(), {});
+      rig.robot->inverse(arm, rig.scene.objects[0].T_world_object * grasp.T_object_hand,
+                         rig.robot->rest_configuration(), {});
   EXPECT_TRUE(joints) << "the arm does not reach it from " << (from_below ? "below" : "above");
   grasp.arm_joints = joints.value_or(RobotModel::part(rig.q, arm));
   grasp.approach_joints = grasp.arm_joints;
@@ -53,13 +55,16 @@ TEST(ManipulationPlanner, what_is_taken_can_be_put_down_where_that_is_possible_a
     rig.grasped_as_it_stands = true;
     rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
     const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
-    rig.q = RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
+    rig.q =
+        RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
     rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, somewhere};
     rig.start(ActionKind::receive);
     rig.run_until("reaching the object");
     rig.cycle();
-    ASSERT_EQ(phase_text(rig.planner.status()), "reaching the object") << rig.planner.status().reason;
-    const bool from_above = rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+    ASSERT_EQ(phase_text(rig.planner.status()), "reaching the object")
+        << rig.planner.status().reason;
+    const bool from_above =
+        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
     EXPECT_EQ(from_above, somewhere) << "the hand below it is nearer, and cannot put it on a table";
     rig.run(30);
     EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
@@ -104,7 +109,8 @@ TEST(ManipulationPlanner, an_offer_whose_measure_trembles_does_not_end) {
     EXPECT_TRUE(rig.planner.status().exchange_engaged) << "in cycle " << i;
   }
   EXPECT_NE(phase_text(rig.planner.status()), "watching for an offer");
-  EXPECT_TRUE(rig.planner.status().refusals.empty()) << rig.planner.status().refusals.front().reason;
+  EXPECT_TRUE(rig.planner.status().refusals.empty())
+      << rig.planner.status().refusals.front().reason;
 }
 
 TEST(ManipulationPlanner, an_offer_that_is_shifted_is_followed_while_the_arm_moves) {
@@ -131,7 +137,8 @@ TEST(ManipulationPlanner, foresees_when_the_object_changes_hands) {
   double at_first = 0, closed_at = 0, foreseen_at = 0;
   for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
     rig.cycle();
-    const double left = rig.planner.status().time_to_handover, now = to_seconds(rig.now.time_since_epoch());
+    const double left = rig.planner.status().time_to_handover,
+                 now = to_seconds(rig.now.time_since_epoch());
     const std::string phase = phase_text(rig.planner.status());
     const bool waits = phase == "watching for an offer" || phase == "clear the offer area";
     EXPECT_FALSE(waits && std::isfinite(left)) << phase;
@@ -155,7 +162,8 @@ TEST(ManipulationPlanner, what_is_put_into_the_open_hand_on_its_way_is_held_at_o
   Vector grasping = rig.q;
   grasping[rig.robot->require_group("arm").axes.front()] += 0.2;  // as the rig answers
   rig.T_tool_mug =
-      (rig.scene.T_world_base * rig.robot->link_pose(grasping, rig.robot->tool_link())).inverse() * rig.scene.objects[0].T_world_object;
+      (rig.scene.T_world_base * rig.robot->link_pose(grasping, rig.robot->tool_link())).inverse() *
+      rig.scene.objects[0].T_world_object;
   rig.start(ActionKind::receive);
   rig.run_until("approach");
   for (int i = 0; i < 5; ++i) rig.cycle();
@@ -187,7 +195,8 @@ TEST(ManipulationPlanner, who_steps_toward_the_hand_that_is_near_is_stepped_back
   rig.moves = true;
   rig.share = 0.15;
   rig.hold_out();
-  rig.scene.objects[0].T_world_object.translation() = rig.tool().translation() + Vector3(0.35, 0, 0);
+  rig.scene.objects[0].T_world_object.translation() =
+      rig.tool().translation() + Vector3(0.35, 0, 0);
   rig.start(ActionKind::receive);
   rig.run_until("approach");
   const auto step = [&rig](double speed) {
@@ -201,7 +210,8 @@ TEST(ManipulationPlanner, who_steps_toward_the_hand_that_is_near_is_stepped_back
   step(0.0);
   rig.run_until("reaching the object");
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "stepping back"), 1);
-  EXPECT_EQ(phase_text(rig.planner.status()), "reaching the object") << "it comes again: " << rig.planner.status().reason;
+  EXPECT_EQ(phase_text(rig.planner.status()), "reaching the object")
+      << "it comes again: " << rig.planner.status().reason;
 }
 
 TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
@@ -216,8 +226,10 @@ TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
   ASSERT_EQ(phase_text(rig.planner.status()), "clear the offer area");
   for (int i = 0; i < 5; ++i) rig.cycle();
   rig.hold_out();
-  for (int i = 0; i < 50 && phase_text(rig.planner.status()) == "clear the offer area"; ++i) rig.cycle();
-  EXPECT_NE(phase_text(rig.planner.status()), "clear the offer area") << "it goes all the way though she waits";
+  for (int i = 0; i < 50 && phase_text(rig.planner.status()) == "clear the offer area"; ++i)
+    rig.cycle();
+  EXPECT_NE(phase_text(rig.planner.status()), "clear the offer area")
+      << "it goes all the way though she waits";
 }
 
 TEST(ManipulationPlanner, where_fingers_are_in_the_way_of_the_hand_it_does_not_go) {
@@ -229,7 +241,8 @@ TEST(ManipulationPlanner, where_fingers_are_in_the_way_of_the_hand_it_does_not_g
     Vector at = rig.q;
     at[rig.robot->require_group("arm").axes.front()] += 0.2;  // as the rig answers
     const Vector3 p = rig.robot->link_pose(at, rig.robot->tool_link()).translation();
-    for (const char* joint : {"r_hand", "r_wrist"}) anna.joints[static_cast<std::size_t>(body_joint_index(joint))].position = p;
+    for (const char* joint : {"r_hand", "r_wrist"})
+      anna.joints[static_cast<std::size_t>(body_joint_index(joint))].position = p;
     rig.cycle();
   }
   EXPECT_EQ(rig.planner.status().state, ActionState::failed);

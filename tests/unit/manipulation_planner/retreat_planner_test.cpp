@@ -23,7 +23,8 @@ class RetreatPlannerTest : public testing::Test {
     double away = 2.0;
     do {
       away -= 0.005;
-      people = test::person_at({hand.x() + away * std::cos(direction), hand.y() + away * std::sin(direction), 0.0});
+      people = test::person_at(
+          {hand.x() + away * std::cos(direction), hand.y() + away * std::sin(direction), 0.0});
     } while (distance(rest) > gap);
   }
 

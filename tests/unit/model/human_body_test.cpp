@@ -18,7 +18,8 @@ Person person_at(const Vector3& feet, double yaw, double stature = 1.75) {
 
 ObservedPerson observe(const Person& person, const std::vector<std::string>& names) {
   ObservedPerson seen;
-  for (const auto& name : names) seen.joints.push_back({name, person.joints.at(body_joint_index(name)).position, 0.9});
+  for (const auto& name : names)
+    seen.joints.push_back({name, person.joints.at(body_joint_index(name)).position, 0.9});
   return seen;
 }
 
@@ -29,7 +30,8 @@ double off(const std::vector<BodyJoint>& joints, const Person& person, const std
 
 bool inside(const BodyCapsule& c, const Vector3& p) {
   const Vector3 d = c.b - c.a;
-  const double t = d.squaredNorm() > 0 ? std::clamp((p - c.a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+  const double t =
+      d.squaredNorm() > 0 ? std::clamp((p - c.a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
   return (p - c.a - t * d).norm() <= c.radius + 1e-9;
 }
 
@@ -37,7 +39,8 @@ TEST(HumanBody, joints_are_in_order_and_left_is_left) {
   const Person p = person_at({1, 2, 0}, 0);
   ASSERT_EQ(p.joints.size(), kBodyJoints.size());
   for (std::size_t i = 0; i < kBodyJoints.size(); ++i) EXPECT_EQ(p.joints[i].name, kBodyJoints[i]);
-  EXPECT_GT(p.joints[body_joint_index("l_shoulder")].position.y(), p.joints[body_joint_index("r_shoulder")].position.y());
+  EXPECT_GT(p.joints[body_joint_index("l_shoulder")].position.y(),
+            p.joints[body_joint_index("r_shoulder")].position.y());
   EXPECT_EQ(body_joint_index("tail"), -1);
 }
 
@@ -60,7 +63,8 @@ TEST(HumanBody, inflation_grows_every_capsule) {
   const auto before = body_capsules(p);
   p.inflation = 0.1;
   const auto after = body_capsules(p);
-  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(after[i].radius, before[i].radius + 0.1, 1e-12);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_NEAR(after[i].radius, before[i].radius + 0.1, 1e-12);
 }
 
 TEST(HumanBody, nobody_has_no_capsules) { EXPECT_TRUE(body_capsules(Person{}).empty()); }
@@ -75,8 +79,10 @@ TEST(FitBody, complete_observations_are_kept) {
 
 TEST(FitBody, trunk_and_head_place_the_unseen_rest) {
   const Person truth = person_at({1.2, -0.4, 0}, -2.9);
-  const auto fitted = fit_body(observe(truth, {"head", "neck", "torso", "l_shoulder", "r_shoulder"}), nullptr, 1.75);
-  for (const auto& joint : truth.joints) EXPECT_LT(off(fitted, truth, joint.name), 0.02) << joint.name;
+  const auto fitted = fit_body(
+      observe(truth, {"head", "neck", "torso", "l_shoulder", "r_shoulder"}), nullptr, 1.75);
+  for (const auto& joint : truth.joints)
+    EXPECT_LT(off(fitted, truth, joint.name), 0.02) << joint.name;
 }
 
 TEST(FitBody, one_joint_and_the_gaze_are_enough_to_stand) {
@@ -96,9 +102,11 @@ TEST(FitBody, unseen_elbow_bends_by_size_and_unseen_hand_follows_the_forearm) {
   const Vector3 wrist = shoulder + Vector3(0.4, 0.05, -0.15);
   seen.joints.push_back({"r_wrist", wrist, 0.8});
   const auto fitted = fit_body(seen, nullptr, 1.75);
-  const Vector3 elbow = fitted[body_joint_index("r_elbow")].position, hand = fitted[body_joint_index("r_hand")].position;
+  const Vector3 elbow = fitted[body_joint_index("r_elbow")].position,
+                hand = fitted[body_joint_index("r_hand")].position;
   const auto bone = [&](const char* a, const char* b) {
-    return (truth.joints[body_joint_index(a)].position - truth.joints[body_joint_index(b)].position).norm();
+    return (truth.joints[body_joint_index(a)].position - truth.joints[body_joint_index(b)].position)
+        .norm();
   };
   EXPECT_NEAR((elbow - shoulder).norm(), bone("r_shoulder", "r_elbow"), 0.01);
   EXPECT_NEAR((elbow - wrist).norm(), bone("r_elbow", "r_wrist"), 0.01);
@@ -113,7 +121,8 @@ TEST(FitBody, previous_body_keeps_what_is_no_longer_seen) {
   wrist = elbow + (wrist - elbow).norm() * Vector3(0.8, 0, 0.6);
   Person now = previous;
   for (auto& joint : now.joints) joint.position += Vector3(0.1, 0, 0);
-  const auto fitted = fit_body(observe(now, {"head", "torso", "l_shoulder", "r_shoulder"}), &previous, 1.75);
+  const auto fitted =
+      fit_body(observe(now, {"head", "torso", "l_shoulder", "r_shoulder"}), &previous, 1.75);
   EXPECT_LT(off(fitted, now, "r_wrist"), 0.02);
 }
 
@@ -137,13 +146,17 @@ TEST(FitBody, every_subset_gives_a_finite_body_that_keeps_what_was_seen) {
     ObservedPerson seen;
     for (const auto& joint : truth.joints)
       if (engine() % 3 == 0)
-        seen.joints.push_back({joint.name, joint.position + Vector3(noise(engine), noise(engine), noise(engine)), 0.5});
+        seen.joints.push_back(
+            {joint.name, joint.position + Vector3(noise(engine), noise(engine), noise(engine)),
+             0.5});
     const auto fitted = fit_body(seen, trial % 2 == 0 ? nullptr : &truth, truth.stature);
     if (seen.joints.empty()) continue;
     ASSERT_EQ(fitted.size(), kBodyJoints.size());
-    for (const auto& joint : fitted) EXPECT_TRUE(joint.position.allFinite()) << "trial " << trial << " seed " << seed;
+    for (const auto& joint : fitted)
+      EXPECT_TRUE(joint.position.allFinite()) << "trial " << trial << " seed " << seed;
     for (const auto& joint : seen.joints)
-      EXPECT_EQ(fitted[body_joint_index(joint.name)].position, joint.position) << "trial " << trial << " seed " << seed;
+      EXPECT_EQ(fitted[body_joint_index(joint.name)].position, joint.position)
+          << "trial " << trial << " seed " << seed;
   }
 }
 
@@ -158,7 +171,8 @@ TEST(SimplifiedBody, is_a_cylinder_on_the_floor_and_a_head) {
 
 TEST(ComfortableReach, is_before_the_shoulder_and_below_it) {
   const Person p = person_at({0, 0, 0}, M_PI);
-  const Vector3 shoulder = p.joints[body_joint_index("r_shoulder")].position, reach = comfortable_reach(p, Side::right);
+  const Vector3 shoulder = p.joints[body_joint_index("r_shoulder")].position,
+                reach = comfortable_reach(p, Side::right);
   EXPECT_LT(reach.x(), shoulder.x() - 0.3);
   EXPECT_LT(reach.z(), shoulder.z() - 0.1);
   EXPECT_GT(reach.z(), 0.9);
@@ -180,7 +194,8 @@ TEST(HoldingHand, its_capsule_ends_in_the_palm_and_the_other_stays_stretched) {
   };
   const Person bent = with_fingers_bent(anna, at(anna, "r_hand") + Vector3(0.05, 0, 0));
   EXPECT_LT((tip(bent, BodyPart::hand_right) - at(anna, "r_hand")).norm(), 1e-9);
-  EXPECT_GT((tip(anna, BodyPart::hand_right) - at(anna, "r_hand")).norm(), 0.03) << "stretched fingers reach beyond the palm";
+  EXPECT_GT((tip(anna, BodyPart::hand_right) - at(anna, "r_hand")).norm(), 0.03)
+      << "stretched fingers reach beyond the palm";
   EXPECT_EQ(tip(bent, BodyPart::hand_left), tip(anna, BodyPart::hand_left));
   Person lacking = anna;
   std::erase_if(lacking.joints, [](const BodyJoint& joint) { return joint.name == "r_wrist"; });

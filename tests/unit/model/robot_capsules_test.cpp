@@ -13,7 +13,8 @@ namespace {
 
 double depth(const LinkCapsule& c, const Vector3& p) {
   const Vector3 d = c.b - c.a;
-  const double t = d.squaredNorm() > 0 ? std::clamp((p - c.a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+  const double t =
+      d.squaredNorm() > 0 ? std::clamp((p - c.a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
   return (p - c.a - t * d).norm() - c.radius;
 }
 
@@ -21,11 +22,15 @@ std::vector<Vector3> surface_points(const Shape& shape) {
   std::vector<Vector3> out;
   if (const auto* box = std::get_if<Box>(&shape)) {
     for (int i = 0; i < 125; ++i)
-      out.push_back(Vector3(i % 5, (i / 5) % 5, i / 25).cwiseQuotient(Vector3::Constant(4)).cwiseProduct(box->size) - box->size / 2);
+      out.push_back(Vector3(i % 5, (i / 5) % 5, i / 25)
+                        .cwiseQuotient(Vector3::Constant(4))
+                        .cwiseProduct(box->size) -
+                    box->size / 2);
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     for (int i = 0; i < 64; ++i)
       for (double z : {-0.5, 0.0, 0.5})
-        out.emplace_back(cylinder->radius * std::cos(i * M_PI / 32), cylinder->radius * std::sin(i * M_PI / 32), z * cylinder->length);
+        out.emplace_back(cylinder->radius * std::cos(i * M_PI / 32),
+                         cylinder->radius * std::sin(i * M_PI / 32), z * cylinder->length);
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     for (int axis = 0; axis < 3; ++axis) out.push_back(sphere->radius * Vector3::Unit(axis));
   } else if (const auto* mesh = std::get_if<MeshPtr>(&shape)) {
@@ -42,7 +47,8 @@ TEST(RobotCapsules, contain_every_point_of_the_shapes) {
       for (const auto& p : surface_points(placed.shape)) {
         double least = 1;
         for (const auto& c : capsules)
-          if (c.link == static_cast<int>(link)) least = std::min(least, depth(c, placed.T_parent_shape * p));
+          if (c.link == static_cast<int>(link))
+            least = std::min(least, depth(c, placed.T_parent_shape * p));
         EXPECT_LE(least, 1e-6) << robot.links()[link].name;
       }
 }
@@ -51,7 +57,8 @@ struct Setting {
   RobotModel robot = RobotModel::load(robot_description("jido"));
   std::vector<LinkCapsule> capsules = robot_capsules(robot);
   std::vector<Pose> T;
-  Pose T_world_base = make_pose({0.1, 0.2, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3::UnitZ())));
+  Pose T_world_base =
+      make_pose({0.1, 0.2, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3::UnitZ())));
   HumanState people;
   Setting() {
     robot.forward(robot.rest_configuration(), T);
@@ -60,7 +67,9 @@ struct Setting {
     person.joints = standing_body({1.6, 0.4, 0}, M_PI, 1.75);
     people.people.push_back(person);
   }
-  Separation find(const SeparationExemption& exception = {}) const { return separation(capsules, T, T_world_base, people, exception); }
+  Separation find(const SeparationExemption& exception = {}) const {
+    return separation(capsules, T, T_world_base, people, exception);
+  }
 };
 
 TEST(Separation, is_the_least_over_all_pairs) {
@@ -70,7 +79,8 @@ TEST(Separation, is_the_least_over_all_pairs) {
   for (const auto& body : body_capsules(s.people.people[0]))
     for (const auto& c : s.capsules) {
       const Pose T = s.T_world_base * s.T[c.link];
-      least = std::min(least, std::sqrt(nearest_points(T * c.a, T * c.b, body.a, body.b, p, q)) - c.radius - body.radius);
+      least = std::min(least, std::sqrt(nearest_points(T * c.a, T * c.b, body.a, body.b, p, q)) -
+                                  c.radius - body.radius);
     }
   const auto found = s.find();
   EXPECT_NEAR(found.distance, least, 1e-12);
@@ -94,7 +104,8 @@ TEST(Separation, shrinks_by_the_inflation) {
 
 TEST(Separation, is_negative_inside_the_person) {
   Setting s;
-  for (auto& joint : s.people.people[0].joints) joint.position = s.T_world_base * s.T[s.robot.tool_link()].translation();
+  for (auto& joint : s.people.people[0].joints)
+    joint.position = s.T_world_base * s.T[s.robot.tool_link()].translation();
   EXPECT_LT(s.find().distance, 0);
 }
 

@@ -1,5 +1,6 @@
-// Cartesian planning for Jido beside its table with the elbow angle active: random postures to tool poses that the arm can reach. What
-// comes back is judged by forward kinematics and an exact collision check of its own. HANDSEL_QUERIES: how many; the label full plans 100.
+// Cartesian planning for Jido beside its table with the elbow angle active: random postures to tool
+// poses that the arm can reach. What comes back is judged by forward kinematics and an exact
+// collision check of its own. HANDSEL_QUERIES: how many; the label full plans 100.
 #include "components/path_planner/cartesian.hpp"
 
 #include <algorithm>
@@ -43,7 +44,8 @@ class Cartesian : public ::testing::Test {
     while (true) {
       const Vector q = random_posture();
       bool same = true;
-      for (const std::size_t middle : {1, 3, 5}) same = same && q[arm_.axes[middle]] * start[arm_.axes[middle]] > 0;
+      for (const std::size_t middle : {1, 3, 5})
+        same = same && q[arm_.axes[middle]] * start[arm_.axes[middle]] > 0;
       if (same) return q;
     }
   }
@@ -61,7 +63,8 @@ class Cartesian : public ::testing::Test {
       largest_ = std::max(largest_, joints);
       ASSERT_LE(joints, settings_.largest_step + 1e-9) << "a jump";
       const Vector3 between = 0.5 * (tool(a).translation() + tool(b).translation());
-      ASSERT_LT((tool(0.5 * (a + b)).translation() - between).norm(), 0.005) << "the tool leaves its way between two samples";
+      ASSERT_LT((tool(0.5 * (a + b)).translation() - between).norm(), 0.005)
+          << "the tool leaves its way between two samples";
       ASSERT_TRUE(exact_.check(b).free);
       ASSERT_TRUE(exact_.check(0.5 * (a + b)).free);
       for (int axis : arm_.axes) {
@@ -87,7 +90,8 @@ class Cartesian : public ::testing::Test {
     return result;
   }
 
-  const RobotModel robot_{RobotModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/robots/jido/jido.txtpb")};
+  const RobotModel robot_{RobotModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) /
+                                           "deploy/robots/jido/jido.txtpb")};
   const Group& arm_{robot_.require_group("arm")};
   CollisionWorld world_{robot_, nullptr}, exact_{robot_, nullptr};
   HumanCost cost_{robot_, {}};
@@ -109,10 +113,13 @@ TEST_F(Cartesian, reaches_poses_with_the_elbow_active_and_no_joint_jumps) {
     if (!result.solved) continue;
     ++solved;
     for (std::size_t i = 1; i < result.nodes.size(); ++i)
-      turned = std::max(turned, std::abs(std::remainder(result.nodes[i].elbow - result.nodes[0].elbow, 2 * M_PI)));
+      turned = std::max(turned, std::abs(std::remainder(
+                                    result.nodes[i].elbow - result.nodes[0].elbow, 2 * M_PI)));
   }
-  std::printf("seed %u: %d of %d solved, largest joint step between samples %.3f rad, elbow turned by up to %.2f rad\n", kSeed, solved,
-              queries, largest_, turned);
+  std::printf(
+      "seed %u: %d of %d solved, largest joint step between samples %.3f rad, elbow turned by up "
+      "to %.2f rad\n",
+      kSeed, solved, queries, largest_, turned);
   EXPECT_GE(solved * 100, queries * 95);
   EXPECT_GT(turned, 0.1);
 }
@@ -130,7 +137,8 @@ TEST_F(Cartesian, goals_on_other_branches_are_reached_through_the_joints) {
     over += result.in_joints > 0;
     ASSERT_LT(result.in_joints, result.samples.size());
   }
-  std::printf("seed %u: %d of %d goals anywhere reached, %d over another branch\n", kSeed, solved, queries, over);
+  std::printf("seed %u: %d of %d goals anywhere reached, %d over another branch\n", kSeed, solved,
+              queries, over);
   EXPECT_GE(solved * 100, queries * 90);
   EXPECT_GT(over, 0);
 }
@@ -155,7 +163,9 @@ TEST_F(Cartesian, heeds_a_person_and_moves_hand_and_head_too) {
 
 TEST_F(Cartesian, says_why_not) {
   CartesianProblem problem;
-  const auto reason = [&] { return plan_cartesian(robot_, world_, cost_, problem, settings_).reason; };
+  const auto reason = [&] {
+    return plan_cartesian(robot_, world_, cost_, problem, settings_).reason;
+  };
   EXPECT_THAT(reason(), HasSubstr("start"));
   problem.start = robot_.rest_configuration();
   problem.T_root_goal = make_pose({5, 0, 1});
@@ -174,7 +184,8 @@ TEST_F(Cartesian, says_why_not) {
   HumanCost cost(planar, {});
   CartesianProblem other;
   other.start = Vector::Zero(3);
-  EXPECT_THAT(plan_cartesian(planar, world, cost, other, settings_).reason, HasSubstr("group \"arm\""));
+  EXPECT_THAT(plan_cartesian(planar, world, cost, other, settings_).reason,
+              HasSubstr("group \"arm\""));
 }
 
 TEST_F(Cartesian, the_same_seed_gives_the_same_path) {

@@ -1,4 +1,5 @@
-// A platform that drives, alone and with its arm: the model, what people think of it, paths, and requests on LocalBus.
+// A platform that drives, alone and with its arm: the model, what people think of it, paths, and
+// requests on LocalBus.
 #include <cstdlib>
 #include <random>
 
@@ -16,7 +17,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path kJido = std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb";
+const std::filesystem::path kJido =
+    std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb";
 constexpr double kRoam = 3.0;
 
 class DrivingJido : public ::testing::Test {
@@ -52,20 +54,26 @@ class DrivingJido : public ::testing::Test {
     world_.set_obstacles(all);
     exact_.set_obstacles(all);
   }
-  static Obstacle box(const char* id, const Vector3& middle, const Vector3& size) { return {id, {Box{size}, make_pose(middle)}}; }
+  static Obstacle box(const char* id, const Vector3& middle, const Vector3& size) {
+    return {id, {Box{size}, make_pose(middle)}};
+  }
   /// Every centimeter and half degree, by FCL alone.
   void expect_free_and_inside(const Problem& p, const Result& result) {
     const std::vector<Vector>& path = result.path;
     std::size_t judged = 0;
     for (std::size_t i = 1; i < path.size(); ++i) {
-      const int pieces = static_cast<int>(std::ceil((path[i] - path[i - 1]).cwiseAbs().maxCoeff() / 0.005)) + 1;
+      const int pieces =
+          static_cast<int>(std::ceil((path[i] - path[i - 1]).cwiseAbs().maxCoeff() / 0.005)) + 1;
       for (int k = 0; k <= pieces; ++k, ++judged) {
         Vector q = p.start;
         for (std::size_t axis = 0; axis < p.axes.size(); ++axis) {
           const auto c = static_cast<Eigen::Index>(axis);
-          q[p.axes[axis]] = path[i - 1][c] + (static_cast<double>(k) / pieces) * (path[i][c] - path[i - 1][c]);
-          ASSERT_GE(q[p.axes[axis]], mobile().axes()[static_cast<std::size_t>(p.axes[axis])].lower - 1e-9);
-          ASSERT_LE(q[p.axes[axis]], mobile().axes()[static_cast<std::size_t>(p.axes[axis])].upper + 1e-9);
+          q[p.axes[axis]] =
+              path[i - 1][c] + (static_cast<double>(k) / pieces) * (path[i][c] - path[i - 1][c]);
+          ASSERT_GE(q[p.axes[axis]],
+                    mobile().axes()[static_cast<std::size_t>(p.axes[axis])].lower - 1e-9);
+          ASSERT_LE(q[p.axes[axis]],
+                    mobile().axes()[static_cast<std::size_t>(p.axes[axis])].upper + 1e-9);
           ASSERT_GE(q[p.axes[axis]], p.room->first[c] - 1e-9);
           ASSERT_LE(q[p.axes[axis]], p.room->second[c] + 1e-9);
         }
@@ -92,17 +100,21 @@ TEST_F(DrivingJido, the_links_are_where_the_standing_robot_has_them) {
       q[i] = std::uniform_real_distribution<double>(axis.lower, axis.upper)(random);
     }
     std::uniform_real_distribution<double> place(-5, 5);
-    const Pose T_world_base = make_pose({place(random), place(random), 0},
-                                        Eigen::Quaterniond(Eigen::AngleAxisd(std::remainder(place(random), 2 * M_PI), Vector3::UnitZ())));
+    const Pose T_world_base =
+        make_pose({place(random), place(random), 0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(std::remainder(place(random), 2 * M_PI),
+                                                       Vector3::UnitZ())));
     fixed().forward(q, standing);
     mobile().forward(with_platform(q, T_world_base), platform_motion);
     ASSERT_EQ(platform_motion.size(), standing.size() + 3);
     for (std::size_t link = 0; link < standing.size(); ++link) {
       EXPECT_EQ(mobile().links()[link + 3].name, fixed().links()[link].name);
-      EXPECT_TRUE(platform_motion[link + 3].isApprox(T_world_base * standing[link], 1e-9)) << fixed().links()[link].name;
+      EXPECT_TRUE(platform_motion[link + 3].isApprox(T_world_base * standing[link], 1e-9))
+          << fixed().links()[link].name;
     }
     CollisionWorld alone(fixed(), nullptr);
-    EXPECT_EQ(exact_.is_free(with_platform(q, T_world_base)), alone.is_free(q)) << "the robot against itself";
+    EXPECT_EQ(exact_.is_free(with_platform(q, T_world_base)), alone.is_free(q))
+        << "the robot against itself";
   }
   for (std::size_t a = 0; a < standing.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
@@ -114,7 +126,8 @@ TEST_F(DrivingJido, the_links_are_where_the_standing_robot_has_them) {
 TEST_F(DrivingJido, people_mind_what_comes_near_comes_from_behind_and_stands_in_their_way) {
   EXPECT_EQ(platform_safety_cost(0.0, 1.3), 1.0);
   EXPECT_EQ(platform_safety_cost(1.3, 1.3), 0.0);
-  for (double d = 0.01; d < 1.3; d += 0.01) EXPECT_LT(platform_safety_cost(d, 1.3), platform_safety_cost(d - 0.01, 1.3));
+  for (double d = 0.01; d < 1.3; d += 0.01)
+    EXPECT_LT(platform_safety_cost(d, 1.3), platform_safety_cost(d - 0.01, 1.3));
   people_ = test::person_at({0, 0, 0});  // looks along -x
   navigation_.set_people(people_);
   EXPECT_EQ(navigation_(-3, 0, 0), 0.0);
@@ -122,7 +135,8 @@ TEST_F(DrivingJido, people_mind_what_comes_near_comes_from_behind_and_stands_in_
   EXPECT_GT(before, 0.0);
   EXPECT_GT(behind, before + 0.02);
   EXPECT_GT(navigation_(-0.9, 0, 0), before);
-  EXPECT_NEAR(navigation_(0.5, 1.1, 0.3), navigation_(0.5, -1.1, -0.3), 1e-6) << "left and right are the same";
+  EXPECT_NEAR(navigation_(0.5, 1.1, 0.3), navigation_(0.5, -1.1, -0.3), 1e-6)
+      << "left and right are the same";
   for (BodyJoint& joint : people_.people[0].joints) joint.velocity = Vector3(0, 1.0, 0);
   NavigationCost walking(mobile(), {});
   walking.set_people(people_);
@@ -132,8 +146,10 @@ TEST_F(DrivingJido, people_mind_what_comes_near_comes_from_behind_and_stands_in_
 }
 
 TEST_F(DrivingJido, the_platform_goes_through_a_door) {
-  obstacles({box("wall_left", {1.5, 1.6, 0.6}, {0.2, 2.2, 1.2}), box("wall_right", {1.5, -1.6, 0.6}, {0.2, 2.2, 1.2})});
-  const Problem p = problem("platform", at(0, -1, 1.5), {Vector3(3, 1, -M_PI + 0.1), Vector3(1.5, 1.6, 0)});
+  obstacles({box("wall_left", {1.5, 1.6, 0.6}, {0.2, 2.2, 1.2}),
+             box("wall_right", {1.5, -1.6, 0.6}, {0.2, 2.2, 1.2})});
+  const Problem p =
+      problem("platform", at(0, -1, 1.5), {Vector3(3, 1, -M_PI + 0.1), Vector3(1.5, 1.6, 0)});
   const Result result = plan(mobile(), world_, cost_, p, {});
   ASSERT_TRUE(result.solved) << result.reason;
   EXPECT_EQ(result.goal, 0u);
@@ -162,11 +178,13 @@ TEST_F(DrivingJido, it_keeps_away_from_a_person_it_could_drive_past) {
 }
 
 TEST_F(DrivingJido, the_whole_robot_is_one_request) {
-  obstacles({box("table", {2.5, 0, 0.36}, {0.7, 1.2, 0.72}), box("shelf", {1.2, 1.2, 0.8}, {0.4, 0.8, 1.6})});
+  obstacles({box("table", {2.5, 0, 0.36}, {0.7, 1.2, 0.72}),
+             box("shelf", {1.2, 1.2, 0.8}, {0.4, 0.8, 1.6})});
   people_ = test::person_at({2.2, -1.6, 0});
   Problem p = problem("robot", at(0, 0.5, 0.4), {});
   const Pose T_world_tip = mobile().link_pose(at(1.5, -0.3, 0.2), mobile().tool_link());
-  const PoseGoals reached = reach_with_platform(mobile(), world_, {{T_world_tip, Vector3::Zero(), 0}}, p.start, 3);
+  const PoseGoals reached =
+      reach_with_platform(mobile(), world_, {{T_world_tip, Vector3::Zero(), 0}}, p.start, 3);
   ASSERT_FALSE(reached.goals.empty()) << reached.reason;
   p.goals = reached.goals;
   drive(mobile(), navigation_, kRoam, p);
@@ -174,8 +192,12 @@ TEST_F(DrivingJido, the_whole_robot_is_one_request) {
   ASSERT_TRUE(result.solved) << result.reason;
   ASSERT_EQ(result.path.back().size(), 10);
   Vector end = p.start;
-  for (std::size_t i = 0; i < p.axes.size(); ++i) end[p.axes[i]] = result.path.back()[static_cast<Eigen::Index>(i)];
-  EXPECT_LT((mobile().link_pose(end, mobile().tool_link()).translation() - T_world_tip.translation()).norm(), 1e-3);
+  for (std::size_t i = 0; i < p.axes.size(); ++i)
+    end[p.axes[i]] = result.path.back()[static_cast<Eigen::Index>(i)];
+  EXPECT_LT(
+      (mobile().link_pose(end, mobile().tool_link()).translation() - T_world_tip.translation())
+          .norm(),
+      1e-3);
   expect_free_and_inside(p, result);
 }
 
@@ -190,7 +212,8 @@ TEST_F(DrivingJido, a_request_on_the_bus_starts_where_the_robot_stands) {
   Scene scene;
   scene.robot_known = true;
   scene.robot_position = fixed().rest_configuration();
-  scene.T_world_base = make_pose({1, -2, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(3.0, Vector3::UnitZ())));
+  scene.T_world_base =
+      make_pose({1, -2, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(3.0, Vector3::UnitZ())));
   scene.boxes.push_back({"table", make_pose({2.5, -2, 0.36}), {0.7, 1.2, 0.72}, true});
   Bus& spark = network.add("spark");
   const auto scene_out = spark.advertise<Scene>();
@@ -203,14 +226,16 @@ TEST_F(DrivingJido, a_request_on_the_bus_starts_where_the_robot_stands) {
   Bus& client = network.add("manipulation_planner");
   const auto out = client.advertise<PathRequest>();
   std::vector<PathReply> replies;
-  client.subscribe<PathReply>([&](const PathReply& reply, const Receipt&) { replies.push_back(reply); });
+  client.subscribe<PathReply>(
+      [&](const PathReply& reply, const Receipt&) { replies.push_back(reply); });
   std::uint64_t number = 0;
   const auto ask = [&](PathRequest r) {
     const std::size_t before = replies.size();
     r.id = {2, ++number};
     network.run_for(std::chrono::milliseconds(200));
     out->publish(r);
-    EXPECT_TRUE(network.run_until([&] { return replies.size() > before; }, network.now() + std::chrono::seconds(30)));
+    EXPECT_TRUE(network.run_until([&] { return replies.size() > before; },
+                                  network.now() + std::chrono::seconds(30)));
     return replies.empty() ? PathReply{} : replies.back();
   };
   PathRequest r;

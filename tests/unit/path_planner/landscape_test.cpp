@@ -11,7 +11,8 @@ TEST(Landscape, trees_follow_the_valleys_from_start_and_goal) {
   ASSERT_EQ(found.answer["trees"].size(), 2u);
   for (const auto& tree : found.answer["trees"]) {
     EXPECT_EQ(tree[0][2], -1);
-    for (std::size_t i = 1; i < tree.size(); ++i) EXPECT_LT(tree[i][2].get<int>(), static_cast<int>(i));
+    for (std::size_t i = 1; i < tree.size(); ++i)
+      EXPECT_LT(tree[i][2].get<int>(), static_cast<int>(i));
   }
   EXPECT_EQ(found.answer["path"].front(), nlohmann::json({-0.85, -0.75}));
   EXPECT_EQ(found.answer["path"].back(), nlohmann::json({0.85, 0.8}));

@@ -39,7 +39,9 @@ class LivePath : public ::testing::Test {
     world_.set_people(people);
     cost_.set_people(people);
   }
-  ReplanResult go() { return continue_path({robot_, world_, cost_}, problem_, running_, settings_, live_, hooks_); }
+  ReplanResult go() {
+    return continue_path({robot_, world_, cost_}, problem_, running_, settings_, live_, hooks_);
+  }
   void expect_sound(const Result& result) { test::expect_sound(result, problem_, world_); }
 
   RobotModel robot_{test::planar_arm()};
@@ -79,7 +81,8 @@ TEST_F(LivePath, what_came_into_it_is_led_around) {
   ASSERT_FALSE(world_.check_motion(running_[0], running_[1]).free);
   for (problem_.seed = 1; problem_.seed <= 20; ++problem_.seed) {
     const ReplanResult result = go();
-    EXPECT_THAT(result.outcome, ::testing::AnyOf(ReplanOutcome::repaired, ReplanOutcome::replanned));
+    EXPECT_THAT(result.outcome,
+                ::testing::AnyOf(ReplanOutcome::repaired, ReplanOutcome::replanned));
     EXPECT_EQ(result.before, std::numeric_limits<double>::infinity());
     expect_sound(result.result);
   }
@@ -94,7 +97,8 @@ TEST_F(LivePath, it_gets_cheaper_for_a_person_who_came) {
     double first = -1, last = 0;
     for (int k = 0; k < 5; ++k) {
       problem_.seed += 100;
-      const ReplanResult result = continue_path({robot_, world_, cost_}, problem_, path, settings_, live_);
+      const ReplanResult result =
+          continue_path({robot_, world_, cost_}, problem_, path, settings_, live_);
       if (result.outcome == ReplanOutcome::kept)
         EXPECT_EQ(result.after, result.before);
       else
@@ -123,7 +127,8 @@ TEST_F(LivePath, what_cannot_be_saved_is_planned_anew_and_what_cannot_be_planned
   const ReplanResult anew = go();
   EXPECT_EQ(anew.outcome, ReplanOutcome::replanned);
   expect_sound(anew.result);
-  const double x = 0.4 * (std::cos(1.0) + std::cos(1.3) + std::cos(1.6)), y = 0.4 * (std::sin(1.0) + std::sin(1.3) + std::sin(1.6));
+  const double x = 0.4 * (std::cos(1.0) + std::cos(1.3) + std::cos(1.6)),
+               y = 0.4 * (std::sin(1.0) + std::sin(1.3) + std::sin(1.6));
   put_wall({x, y, 1.1});
   const ReplanResult none = go();
   EXPECT_EQ(none.outcome, ReplanOutcome::blocked);

@@ -72,9 +72,11 @@ TEST_F(Planning, every_planner_finds_a_way) {
   Scene scene;
   scene.boxes.push_back({"wall", make_pose({0.75, 0, 1.1}), {0.3, 0.06, 0.4}, false});
   world_.set_scene(scene);
-  for (PlannerKind kind : {PlannerKind::rrt, PlannerKind::rrt_connect, PlannerKind::trrt, PlannerKind::bitrrt})
+  for (PlannerKind kind :
+       {PlannerKind::rrt, PlannerKind::rrt_connect, PlannerKind::trrt, PlannerKind::bitrrt})
     for (const bool stock : {false, true}) {
-      if (stock && kind == PlannerKind::trrt) continue;  // OMPL's cools so fast that it often finds nothing
+      if (stock && kind == PlannerKind::trrt)
+        continue;  // OMPL's cools so fast that it often finds nothing
       problem_.planner = kind;
       problem_.stock = stock;
       problem_.budget = 600000;
@@ -109,27 +111,33 @@ TEST_F(Planning, ours_are_planners_of_ompl) {
     const ob::PlannerPtr planner = std::make_shared<BatchPlanner>(si, space, kind, 3);
     planner->setProblemDefinition(definition);
     planner->setup();
-    ASSERT_EQ(planner->solve(ob::PlannerTerminationCondition([&] { return space.exhausted(); })), ob::PlannerStatus::EXACT_SOLUTION);
+    ASSERT_EQ(planner->solve(ob::PlannerTerminationCondition([&] { return space.exhausted(); })),
+              ob::PlannerStatus::EXACT_SOLUTION);
     ASSERT_TRUE(definition->hasExactSolution());
     ob::PlannerData data(si);
     planner->getPlannerData(data);
     EXPECT_GT(data.numVertices(), 2u);
     EXPECT_EQ(data.numStartVertices(), 1u);
-    const auto& states = definition->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates();
+    const auto& states =
+        definition->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates();
     std::vector<Vector> path;
     for (const ob::State* state : states)
-      path.push_back(Eigen::Map<const Vector>(state->as<ob::RealVectorStateSpace::StateType>()->values, 3));
+      path.push_back(
+          Eigen::Map<const Vector>(state->as<ob::RealVectorStateSpace::StateType>()->values, 3));
     EXPECT_EQ(path.front(), problem_.start);
     EXPECT_EQ(path.back(), problem_.goals[0]);
-    for (std::size_t i = 1; i < path.size(); ++i) EXPECT_TRUE(world_.check_motion(path[i - 1], path[i], 0.002).free);
+    for (std::size_t i = 1; i < path.size(); ++i)
+      EXPECT_TRUE(world_.check_motion(path[i - 1], path[i], 0.002).free);
     planner->clear();
-    EXPECT_FALSE(planner->solve(ob::PlannerTerminationCondition([] { return true; })) == ob::PlannerStatus::EXACT_SOLUTION)
+    EXPECT_FALSE(planner->solve(ob::PlannerTerminationCondition([] { return true; })) ==
+                 ob::PlannerStatus::EXACT_SOLUTION)
         << "stops at once";
   }
 }
 
 TEST_F(Planning, the_same_seed_gives_the_same_path_also_after_other_plans) {
-  for (PlannerKind kind : {PlannerKind::rrt, PlannerKind::rrt_connect, PlannerKind::trrt, PlannerKind::bitrrt}) {
+  for (PlannerKind kind :
+       {PlannerKind::rrt, PlannerKind::rrt_connect, PlannerKind::trrt, PlannerKind::bitrrt}) {
     problem_.planner = kind;
     problem_.seed = 5;
     const Result first = solve();

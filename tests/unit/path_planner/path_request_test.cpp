@@ -1,5 +1,5 @@
-// Requests of every kind at the path planner on LocalBus: postures, poses, regions, kept upright, Cartesian, beside a head; and what makes
-// no sense.
+// Requests of every kind at the path planner on LocalBus: postures, poses, regions, kept upright,
+// Cartesian, beside a head; and what makes no sense.
 #include <cstdlib>
 #include <filesystem>
 
@@ -18,7 +18,8 @@ namespace {
 using ::testing::HasSubstr;
 
 const RobotModel& jido() {
-  static const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  static const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   return robot;
 }
 
@@ -31,7 +32,8 @@ class PathRequests : public ::testing::Test {
     context_.settings = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
     scene_.robot_known = true;
     scene_.robot_position = jido().rest_configuration();
-    scene_.T_world_base = make_pose({1.5, -0.5, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.8, Vector3::UnitZ())));
+    scene_.T_world_base =
+        make_pose({1.5, -0.5, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.8, Vector3::UnitZ())));
     Bus& spark = network_.add("spark");
     scene_out_ = spark.advertise<Scene>();
     people_out_ = spark.advertise<HumanState>();
@@ -42,7 +44,8 @@ class PathRequests : public ::testing::Test {
     node_ = std::make_unique<Node>(network_.add("path_planner"), context_);
     Bus& client = network_.add("manipulation_planner");
     request_out_ = client.advertise<PathRequest>();
-    client.subscribe<PathReply>([this](const PathReply& reply, const Receipt&) { replies_.push_back(reply); });
+    client.subscribe<PathReply>(
+        [this](const PathReply& reply, const Receipt&) { replies_.push_back(reply); });
     network_.run_for(std::chrono::milliseconds(200));
   }
 
@@ -58,7 +61,8 @@ class PathRequests : public ::testing::Test {
   PathReply ask(const PathRequest& r) {
     const std::size_t before = replies_.size();
     request_out_->publish(r);
-    EXPECT_TRUE(network_.run_until([&] { return replies_.size() > before; }, network_.now() + std::chrono::seconds(30)));
+    EXPECT_TRUE(network_.run_until([&] { return replies_.size() > before; },
+                                   network_.now() + std::chrono::seconds(30)));
     return replies_.empty() ? PathReply{} : replies_.back();
   }
   /// The arm moved a bit from rest, and where its tip is then, in the world.
@@ -68,7 +72,8 @@ class PathRequests : public ::testing::Test {
     return q;
   }
   Pose tip(const Vector& arm_q) const {
-    return scene_.T_world_base * jido().link_pose(RobotModel::with(jido().rest_configuration(), arm_, arm_q), arm_.tip);
+    return scene_.T_world_base *
+           jido().link_pose(RobotModel::with(jido().rest_configuration(), arm_, arm_q), arm_.tip);
   }
 
   LocalNetwork network_;
@@ -106,7 +111,8 @@ TEST_F(PathRequests, a_pose_a_set_of_them_and_a_region_are_reached) {
   const PathReply of_region = ask(r);
   ASSERT_TRUE(of_region.solved) << of_region.reason;
   const Pose within = near.T_world_tip.inverse() * tip(of_region.path.back());
-  for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(within.translation()[axis]), near.slack[axis] + 1e-4);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_LE(std::abs(within.translation()[axis]), near.slack[axis] + 1e-4);
   EXPECT_LE(Eigen::AngleAxisd(within.linear()).angle(), near.turn + 1e-3);
 
   r = request();
@@ -122,7 +128,8 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
   CollisionWorld world(jido(), context_.objects);
   world.set_scene(scene_);
   const Vector3 p_tip = tip(RobotModel::part(middle, arm_)).translation();
-  const Vector3 out = (p_tip - scene_.T_world_base.translation()).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const Vector3 out =
+      (p_tip - scene_.T_world_base.translation()).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const auto head_at = [&](double away) {
     Person person;
     person.id = "anna";
@@ -133,7 +140,9 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
     people_.people = {person};
     people_.covered = true;
   };
-  const auto room = [&](const Vector& q) { return keep_clear_of_heads(world, people_, 0.5, q, {q}); };
+  const auto room = [&](const Vector& q) {
+    return keep_clear_of_heads(world, people_, 0.5, q, {q});
+  };
   double away = 0.1;
   for (head_at(away); room(middle) < 0.1; away += 0.02) head_at(away);
   ASSERT_GT(room(start), 0.3);
@@ -146,7 +155,10 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
     double out_of = 1.0;
     for (std::size_t i = 1; i < reply.path.size(); ++i)
       for (int k = 0; k <= 50; ++k)
-        out_of = std::min(out_of, room(RobotModel::with(start, arm_, reply.path[i - 1] + 0.02 * k * (reply.path[i] - reply.path[i - 1]))));
+        out_of = std::min(
+            out_of,
+            room(RobotModel::with(
+                start, arm_, reply.path[i - 1] + 0.02 * k * (reply.path[i] - reply.path[i - 1]))));
     return out_of;
   };
   const PathReply around = ask(r);
@@ -167,14 +179,19 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
 
 TEST_F(PathRequests, what_is_held_stays_upright_in_the_world) {
   // On a base that leans, up is not the z axis of the robot.
-  scene_.T_world_base = make_pose({0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3::UnitX())));
+  scene_.T_world_base =
+      make_pose({0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3::UnitX())));
   network_.run_for(std::chrono::milliseconds(200));
   PathRequest r = request();
   r.upright = true;
-  r.upright_axis = (scene_.T_world_base * jido().link_pose(r.start, jido().tool_link())).linear().transpose() * Vector3::UnitZ();
+  r.upright_axis =
+      (scene_.T_world_base * jido().link_pose(r.start, jido().tool_link())).linear().transpose() *
+      Vector3::UnitZ();
   r.max_tilt = 0.25;
   const auto leans = [&](const Vector& arm_q) {
-    const Pose T_world_tool = scene_.T_world_base * jido().link_pose(RobotModel::with(r.start, arm_, arm_q), jido().tool_link());
+    const Pose T_world_tool =
+        scene_.T_world_base *
+        jido().link_pose(RobotModel::with(r.start, arm_, arm_q), jido().tool_link());
     return std::acos(std::clamp((T_world_tool.linear() * r.upright_axis)[2], -1.0, 1.0));
   };
   TipGoal aside;
@@ -185,7 +202,9 @@ TEST_F(PathRequests, what_is_held_stays_upright_in_the_world) {
   ASSERT_TRUE(reply.solved) << reply.reason;
   double most = 0;
   for (std::size_t i = 1; i < reply.path.size(); ++i)
-    for (int k = 0; k <= 100; ++k) most = std::max(most, leans(reply.path[i - 1] + 0.01 * k * (reply.path[i] - reply.path[i - 1])));
+    for (int k = 0; k <= 100; ++k)
+      most =
+          std::max(most, leans(reply.path[i - 1] + 0.01 * k * (reply.path[i] - reply.path[i - 1])));
   EXPECT_LE(most, r.max_tilt + 1e-6);
 
   r.id = request().id;
@@ -209,8 +228,10 @@ TEST_F(PathRequests, in_the_cartesian_space_the_head_may_move_along) {
   ASSERT_TRUE(reply.solved) << reply.reason;
   ASSERT_EQ(reply.path.back().size(), static_cast<Eigen::Index>(arm_.axes.size()) + 1);
   EXPECT_NEAR(reply.path.back().tail<1>()[0], 0.4, 1e-9);
-  EXPECT_LT((goal.T_world_tip.inverse() * tip(reply.path.back().head(7))).translation().norm(), 1e-4);
-  for (std::size_t i = 1; i < reply.path.size(); ++i) EXPECT_LE((reply.path[i] - reply.path[i - 1]).cwiseAbs().maxCoeff(), 0.1 + 1e-9);
+  EXPECT_LT((goal.T_world_tip.inverse() * tip(reply.path.back().head(7))).translation().norm(),
+            1e-4);
+  for (std::size_t i = 1; i < reply.path.size(); ++i)
+    EXPECT_LE((reply.path[i] - reply.path[i - 1]).cwiseAbs().maxCoeff(), 0.1 + 1e-9);
 }
 
 TEST_F(PathRequests, a_live_one_goes_on_along_the_path_that_runs) {

@@ -83,7 +83,8 @@ class PathNode : public Nodes {
     return r;
   }
   bool wait(std::size_t replies) {
-    return network_.run_until([&] { return heard_.messages.size() >= replies; }, network_.now() + seconds(20));
+    return network_.run_until([&] { return heard_.messages.size() >= replies; },
+                              network_.now() + seconds(20));
   }
   std::unique_ptr<path_planner::Node> node_;
   std::unique_ptr<Publisher<PathRequest>> request_out_;
@@ -171,7 +172,8 @@ TEST_F(PathNode, what_is_cancelled_is_answered_at_once_and_planned_no_more) {
   EXPECT_EQ(heard_.messages.size(), 4u);
 }
 
-/// The way of the arm's end from one side to the other, and somebody outside who would rather it did not go straight.
+/// The way of the arm's end from one side to the other, and somebody outside who would rather it
+/// did not go straight.
 class PathNodeAndOutsider : public PathNode {
  protected:
   PathNodeAndOutsider() {
@@ -193,14 +195,17 @@ class PathNodeAndOutsider : public PathNode {
   static Costmap hill() {
     Costmap map = crowd(0);
     for (std::size_t i = 0; i < map.values.size(); ++i) {
-      const double x = static_cast<double>(i % map.nx), y = static_cast<double>(i / map.nx % map.ny);
-      const double away = (map.origin + map.resolution * Vector3(x, y, 0) - Vector3(1.2, 0, -0.3)).head<2>().norm();
+      const double x = static_cast<double>(i % map.nx),
+                   y = static_cast<double>(i / map.nx % map.ny);
+      const double away =
+          (map.origin + map.resolution * Vector3(x, y, 0) - Vector3(1.2, 0, -0.3)).head<2>().norm();
       map.values[i] = static_cast<std::uint8_t>(254 * std::max(0.0, 1 - away / 0.5));
     }
     return map;
   }
   static Costmap crowd(std::uint8_t value) {
-    return test::box_layer("crowd", {0, -1.4, -0.3}, {1.4, 1.4, 0.3}, {0.9, -0.25, -0.3}, {1.4, 0.25, 0.3}, value, 3.0);
+    return test::box_layer("crowd", {0, -1.4, -0.3}, {1.4, 1.4, 0.3}, {0.9, -0.25, -0.3},
+                           {1.4, 0.25, 0.3}, value, 3.0);
   }
   /// The layer's cost along a path [rad], and whether it forbids a place of it.
   std::pair<double, bool> along(const PathReply& reply, const Costmap& layer) const {
@@ -343,7 +348,8 @@ TEST_F(CheckerNode, answers_queries) {
   query.id = {4, 4};
   query.states = {Vector3(0, 0, 0), Vector3(1.2, 0, 0)};
   query_out->publish(query);
-  ASSERT_TRUE(network_.run_until([&] { return !verdicts.messages.empty(); }, network_.now() + seconds(2)));
+  ASSERT_TRUE(
+      network_.run_until([&] { return !verdicts.messages.empty(); }, network_.now() + seconds(2)));
   EXPECT_EQ(verdicts.messages[0].id, query.id);
   EXPECT_EQ(verdicts.messages[0].free, (std::vector<std::uint8_t>{0, 1}));
 }
@@ -364,14 +370,17 @@ TEST_F(CheckerNode, queries_beyond_the_quota_are_refused_with_the_reason_and_lat
     query.id = {i, 1};
     query_out->publish(query);
   }
-  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 50; }, network_.now() + seconds(5)));
-  const auto refused = std::count_if(verdicts.messages.begin(), verdicts.messages.end(), [](const StateVerdict& verdict) {
-    return verdict.reason.find("16 queries wait already") != std::string::npos;
-  });
+  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 50; },
+                                 network_.now() + seconds(5)));
+  const auto refused = std::count_if(
+      verdicts.messages.begin(), verdicts.messages.end(), [](const StateVerdict& verdict) {
+        return verdict.reason.find("16 queries wait already") != std::string::npos;
+      });
   EXPECT_EQ(refused, 34);
   query.id = {99, 1};
   query_out->publish(query);
-  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 51; }, network_.now() + seconds(5)));
+  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 51; },
+                                 network_.now() + seconds(5)));
   EXPECT_EQ(verdicts.messages.back().free.front(), 1);
   network_.run_for(milliseconds(300));
   ASSERT_EQ(health.left_out.size(), 1u);
@@ -390,14 +399,16 @@ TEST_F(CheckerNode, a_layer_from_outside_raises_the_cost_ahead) {
   EXPECT_EQ(forecasts_.messages.back().cost, 0.0);
   Bus& outsider = network_.add("crowd_estimator");
   const auto layer_out = outsider.advertise<Costmap>();
-  layer_out->publish(test::box_layer("crowd", {0, -1.4, -0.3}, {1.4, 1.4, 0.3}, {0.9, -0.25, -0.3}, {1.4, 0.25, 0.3}, 254, 0.5));
+  layer_out->publish(test::box_layer("crowd", {0, -1.4, -0.3}, {1.4, 1.4, 0.3}, {0.9, -0.25, -0.3},
+                                     {1.4, 0.25, 0.3}, 254, 0.5));
   network_.run_for(milliseconds(300));
   EXPECT_NEAR(forecasts_.messages.back().cost, 0.5, 1e-6);
   network_.run_for(milliseconds(1500));
   EXPECT_EQ(forecasts_.messages.back().cost, 0.0) << "not sent again within a second";
 }
 
-TEST_F(CheckerNode, a_large_batch_is_answered_in_order_and_a_query_that_makes_no_sense_with_a_reason) {
+TEST_F(CheckerNode,
+       a_large_batch_is_answered_in_order_and_a_query_that_makes_no_sense_with_a_reason) {
   Bus& client = network_.add("handsel");
   auto query_out = client.advertise<StateQuery>();
   Heard<StateVerdict> verdicts;
@@ -407,7 +418,8 @@ TEST_F(CheckerNode, a_large_batch_is_answered_in_order_and_a_query_that_makes_no
   query.id = {4, 4};
   for (int i = 0; i < 2000; ++i) query.states.push_back(Vector3(-1.5 + 0.0015 * i, 0, 0));
   query_out->publish(query);
-  ASSERT_TRUE(network_.run_until([&] { return !verdicts.messages.empty(); }, network_.now() + seconds(5)));
+  ASSERT_TRUE(
+      network_.run_until([&] { return !verdicts.messages.empty(); }, network_.now() + seconds(5)));
   const StateVerdict& batch = verdicts.messages[0];
   ASSERT_EQ(batch.free.size(), query.states.size());
   for (std::size_t i = 0; i < query.states.size(); ++i) {
@@ -424,7 +436,8 @@ TEST_F(CheckerNode, a_large_batch_is_answered_in_order_and_a_query_that_makes_no
   query.id = {4, 6};
   query.states.clear();
   query_out->publish(query);
-  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 3; }, network_.now() + seconds(5)));
+  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 3; },
+                                 network_.now() + seconds(5)));
   EXPECT_EQ(verdicts.messages[1].free, (std::vector<std::uint8_t>{0, 0}));
   EXPECT_THAT(verdicts.messages[1].reason, HasSubstr("7 axes"));
   EXPECT_TRUE(verdicts.messages[2].free.empty());
@@ -435,7 +448,8 @@ TEST_F(Nodes, the_cost_map_follows_the_person_ten_times_a_second) {
   costmap::Node node(network_.add("costmap"), context_);
   Bus& reader = network_.add("path_planner");
   std::map<std::string, std::vector<Costmap>> maps;
-  reader.subscribe<Costmap>([&](const Costmap& map, const Receipt&) { maps[map.layer].push_back(map); });
+  reader.subscribe<Costmap>(
+      [&](const Costmap& map, const Receipt&) { maps[map.layer].push_back(map); });
   network_.run_for(seconds(1));
   EXPECT_TRUE(maps.empty()) << "nobody is there";
   put_person({1.5, 0, 0});
@@ -443,7 +457,8 @@ TEST_F(Nodes, the_cost_map_follows_the_person_ten_times_a_second) {
   for (const char* layer : kOwnLayers) {
     ASSERT_FALSE(maps[layer].empty()) << layer;
     EXPECT_EQ(maps[layer][0].person, "anna");
-    EXPECT_LE(maps[layer].size(), 4u) << "a still person needs no new maps, but repeats for who comes late";
+    EXPECT_LE(maps[layer].size(), 4u)
+        << "a still person needs no new maps, but repeats for who comes late";
     EXPECT_EQ(maps[layer].back().revision, maps[layer].front().revision);
   }
   maps.clear();

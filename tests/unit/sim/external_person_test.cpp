@@ -1,4 +1,5 @@
-// A person moved from outside: follows what it is told, takes what is offered near its hand, pulls with limited force, keeps it.
+// A person moved from outside: follows what it is told, takes what is offered near its hand, pulls
+// with limited force, keeps it.
 #include <gtest/gtest.h>
 
 #include "common/base/errors.hpp"
@@ -13,7 +14,8 @@ Vector start() { return opened(jido().rest_configuration()); }
 
 config::Scenario with_visitor() {
   config::Scenario scenario = mug_in_hand();
-  for (int i = 0; i < jido().dof(); ++i) (*scenario.mutable_start())[jido().axes()[static_cast<std::size_t>(i)].name] = start()[i];
+  for (int i = 0; i < jido().dof(); ++i)
+    (*scenario.mutable_start())[jido().axes()[static_cast<std::size_t>(i)].name] = start()[i];
   config::PersonDescription* person = add_person(scenario, config::EXTERNAL);
   person->set_external("tracker");
   person->set_correction(0.2);
@@ -26,7 +28,8 @@ HumanObservation seen(const Vector3& hand) {
   out.source = "tracker";
   ObservedPerson person;
   person.body = "b7";
-  for (const BodyJoint& joint : standing_body(Vector3(in_hand().x() + 0.55, in_hand().y(), 0), M_PI, 1.75))
+  for (const BodyJoint& joint :
+       standing_body(Vector3(in_hand().x() + 0.55, in_hand().y(), 0), M_PI, 1.75))
     if (joint.name != "r_hand" && joint.name != "r_wrist" && joint.name != "r_elbow")
       person.joints.push_back({joint.name, joint.position, 1.0});
   person.joints.push_back({"r_hand", hand, 1.0});
@@ -34,7 +37,9 @@ HumanObservation seen(const Vector3& hand) {
   return out;
 }
 
-Vector3 hand_of(const SimWorld& world) { return world.person(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position; }
+Vector3 hand_of(const SimWorld& world) {
+  return world.person(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position;
+}
 
 TEST(ExternalPerson, follows_its_source_and_no_other) {
   SimWorld world(jido(), library(), with_visitor(), SimSettings{}, 1);
@@ -60,7 +65,8 @@ TEST(ExternalPerson, follows_its_source_and_no_other) {
   world.observe(other);
   driver.hold(0.2);
   EXPECT_GT((hand_of(world) - first).norm(), 0.25);
-  EXPECT_EQ(world.control({0, SimAction::person_dart, "anna", 1.0}), "there is no person anna") << "it is not the simulator that moves it";
+  EXPECT_EQ(world.control({0, SimAction::person_dart, "anna", 1.0}), "there is no person anna")
+      << "it is not the simulator that moves it";
   EXPECT_EQ(world.control({0, SimAction::person_freeze, "anna", 0}), "");
 }
 
@@ -69,7 +75,8 @@ TEST(ExternalPerson, comes_from_one_moment_to_the_next_without_a_push) {
   Driver driver(world, start());
   driver.hold(0.3);
   HumanObservation far = seen(in_hand() + Vector3(0.45, 0, 0));
-  for (ObservedJoint& joint : far.people[0].joints) joint.position += Vector3(-3.0, 0.1, 0);  // beyond the robot
+  for (ObservedJoint& joint : far.people[0].joints)
+    joint.position += Vector3(-3.0, 0.1, 0);  // beyond the robot
   double fastest = 0;
   RobotState state;
   const auto watch = [&] {
@@ -93,7 +100,8 @@ TEST(ExternalPerson, takes_what_is_offered_and_pulls_until_the_robot_lets_go) {
   driver.move(closed(start()), 1.5);
   driver.move(raised(driver.q()), 2.0);
   ASSERT_TRUE(world.robot_grips());
-  EXPECT_EQ(world.person_phase(0), PersonPhase::watching) << "a hand that is not there takes nothing";
+  EXPECT_EQ(world.person_phase(0), PersonPhase::watching)
+      << "a hand that is not there takes nothing";
 
   const Vector3 near = world.T_world_object("mug").translation() + Vector3(0.14, 0, 0.03);
   for (int i = 1; i <= 20; ++i) {
@@ -133,7 +141,8 @@ TEST(ExternalPerson, takes_what_is_offered_and_pulls_until_the_robot_lets_go) {
   EXPECT_EQ(world.person_phase(0), PersonPhase::keeping);
   EXPECT_EQ(truth_of(world).carrier, "human");
   EXPECT_FALSE(truth_of(world).dropped);
-  EXPECT_LT((hand_of(world) - near - Vector3(0.12, 0, 0)).norm(), 0.05) << "the led hand is back where it is told to be";
+  EXPECT_LT((hand_of(world) - near - Vector3(0.12, 0, 0)).norm(), 0.05)
+      << "the led hand is back where it is told to be";
 }
 
 TEST(ExternalPerson, needs_a_source_of_its_own) {

@@ -1,4 +1,5 @@
-// Recorded people: BVH and CSV files of others and of our own, bodies of other sizes, and files that cannot be read.
+// Recorded people: BVH and CSV files of others and of our own, bodies of other sizes, and files
+// that cannot be read.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -23,7 +24,9 @@ std::string contents(const fs::path& file) {
   return out.str();
 }
 
-fs::path ours(const std::string& name) { return fs::path(HANDSEL_SOURCE_DIR) / "tests/fuzz/corpus" / name; }
+fs::path ours(const std::string& name) {
+  return fs::path(HANDSEL_SOURCE_DIR) / "tests/fuzz/corpus" / name;
+}
 
 fs::path bvh_folder() {
   const char* data = std::getenv("HANDSEL_DATA");
@@ -54,7 +57,8 @@ TEST(Bvh, joint_positions_are_those_of_a_third_party_tool) {
   while (std::getline(header, cell, ',')) {
     if (!cell.empty() && cell.back() == '\r') cell.pop_back();
     const auto dot = cell.rfind('.');
-    columns.emplace_back(dot == std::string::npos ? -1 : bvh.find(cell.substr(0, dot)), cell.back() - 'x');
+    columns.emplace_back(dot == std::string::npos ? -1 : bvh.find(cell.substr(0, dot)),
+                         cell.back() - 'x');
   }
   int compared = 0;
   double worst = 0;
@@ -66,7 +70,8 @@ TEST(Bvh, joint_positions_are_those_of_a_third_party_tool) {
     for (const auto& [j, axis] : columns) {
       std::getline(row, cell, ',');
       if (j < 0) continue;
-      worst = std::max(worst, std::abs(points[static_cast<std::size_t>(j)][axis] - std::stod(cell)));
+      worst =
+          std::max(worst, std::abs(points[static_cast<std::size_t>(j)][axis] - std::stod(cell)));
       ++compared;
     }
   }
@@ -90,7 +95,8 @@ TEST(Bvh, every_file_of_others_is_read_and_is_a_body) {
     EXPECT_LT(r.stature, 2.1) << name;
     const BodyPoints& first = r.frames.front();
     EXPECT_GT(first[joint("head")].z(), 1.2) << name;
-    EXPECT_GT(first[joint("l_shoulder")].y(), first[joint("r_shoulder")].y()) << name << ": left is left of someone who faces +x";
+    EXPECT_GT(first[joint("l_shoulder")].y(), first[joint("r_shoulder")].y())
+        << name << ": left is left of someone who faces +x";
     EXPECT_NEAR(first[joint("waist")].head<2>().norm(), 0, 1e-9) << name;
     double lowest = 1e9, travel = 0;
     for (const BodyPoints& frame : r.frames) {
@@ -106,7 +112,8 @@ TEST(Bvh, every_file_of_others_is_read_and_is_a_body) {
 }
 
 TEST(Recordings, of_our_corpus_reach_with_the_right_hand) {
-  for (const char* name : {"csv/good_reach.csv", "bvh/good_cm.bvh", "bvh/good_inches.bvh", "bvh/good_no_unit.bvh", "bvh/good_prefix.bvh"}) {
+  for (const char* name : {"csv/good_reach.csv", "bvh/good_cm.bvh", "bvh/good_inches.bvh",
+                           "bvh/good_no_unit.bvh", "bvh/good_prefix.bvh"}) {
     const Recording r = load_recording(ours(name));
     EXPECT_EQ(r.taking, Side::right) << name;
     EXPECT_NEAR(r.stature, 1.75, 0.2) << name;
@@ -123,7 +130,9 @@ TEST(Recordings, uneven_times_are_resampled) {
 
 /// A bent arm at the same share of its reach, the same direction, feet on the floor.
 TEST(Retarget, keeps_feet_on_the_floor_bones_of_the_new_body_and_the_reach) {
-  const auto length = [](const BodyPoints& p, const char* a, const char* b) { return (p[joint(a)] - p[joint(b)]).norm(); };
+  const auto length = [](const BodyPoints& p, const char* a, const char* b) {
+    return (p[joint(a)] - p[joint(b)]).norm();
+  };
   std::vector<fs::path> files{ours("csv/good_reach.csv"), ours("bvh/good_cm.bvh")};
   if (!bvh_folder().empty()) files.push_back(bvh_folder() / "cmu_12_01_walk.bvh");
   for (const fs::path& file : files) {
@@ -132,7 +141,9 @@ TEST(Retarget, keeps_feet_on_the_floor_bones_of_the_new_body_and_the_reach) {
       const Recording to = retarget(from, stature);
       const auto model = standing_body(Vector3::Zero(), 0, stature);
       const auto wanted = [&](const char* a, const char* b) {
-        return (model[static_cast<std::size_t>(joint(a))].position - model[static_cast<std::size_t>(joint(b))].position).norm();
+        return (model[static_cast<std::size_t>(joint(a))].position -
+                model[static_cast<std::size_t>(joint(b))].position)
+            .norm();
       };
       double lowest = 1e9;
       for (std::size_t f = 0; f < to.frames.size(); f += 3) {
@@ -147,7 +158,8 @@ TEST(Retarget, keeps_feet_on_the_floor_bones_of_the_new_body_and_the_reach) {
           ASSERT_NEAR(length(p, a, b), wanted(a, b), 1e-6) << a << " " << file << " frame " << f;
         const auto share = [&](const BodyPoints& x) {
           return length(x, "r_shoulder", "r_hand") /
-                 (length(x, "r_shoulder", "r_elbow") + length(x, "r_elbow", "r_wrist") + length(x, "r_wrist", "r_hand"));
+                 (length(x, "r_shoulder", "r_elbow") + length(x, "r_elbow", "r_wrist") +
+                  length(x, "r_wrist", "r_hand"));
         };
         ASSERT_NEAR(share(p), share(q), 0.03) << file << " frame " << f;
         const Vector3 d = (p[joint("r_hand")] - p[joint("r_shoulder")]).normalized(),
@@ -155,7 +167,8 @@ TEST(Retarget, keeps_feet_on_the_floor_bones_of_the_new_body_and_the_reach) {
         ASSERT_GT(d.dot(e), 0.999) << file << " frame " << f;
       }
       EXPECT_NEAR(lowest, 0.039 * stature, 0.01);
-      EXPECT_NEAR(to.frames.front()[joint("head")].z() / from.frames.front()[joint("head")].z(), stature / from.stature, 0.12);
+      EXPECT_NEAR(to.frames.front()[joint("head")].z() / from.frames.front()[joint("head")].z(),
+                  stature / from.stature, 0.12);
     }
   }
 }
@@ -178,7 +191,8 @@ TEST(BadRecordings, are_refused_in_one_sentence_with_file_and_line) {
       {"csv/header_only.csv", "header_only.csv:1: needs at least two rows of positions"},
       {"bvh/zero_frame_time.bvh", "Frame Time: must be above 0.0001 and at most 1 second"},
       {"bvh/unknown_channel.bvh",
-       "unknown_channel.bvh:5: channel \"Wrotation\" is unknown; there are Xposition ... Zposition, Xrotation ... Zrotation"},
+       "unknown_channel.bvh:5: channel \"Wrotation\" is unknown; there are Xposition ... "
+       "Zposition, Xrotation ... Zrotation"},
       {"bvh/fewer_frames.bvh", "the motion ends in frame 21 of 25 announced by Frames:"},
       {"bvh/more_frames.bvh", "there is more motion than the 15 frames of 54 values announced"},
       {"bvh/truncated_hierarchy.bvh", "expected CHANNELS, found"},
@@ -187,13 +201,18 @@ TEST(BadRecordings, are_refused_in_one_sentence_with_file_and_line) {
       {"bvh/one_frame.bvh", "one frame is a posture, not a motion"},
       {"bvh/deep.bvh", "the hierarchy is deeper than 128"},
   };
-  for (const auto& [file, text] : expected) EXPECT_NE(sentence(file).find(text), std::string::npos) << file << ": " << sentence(file);
+  for (const auto& [file, text] : expected)
+    EXPECT_NE(sentence(file).find(text), std::string::npos) << file << ": " << sentence(file);
 }
 
 TEST(BadRecordings, wrong_units_are_told_by_the_bodys_size) {
-  EXPECT_NE(sentence("csv/millimetres.csv").find("millimetres.csv:2: from waist to head the body measures 650.0"), std::string::npos)
+  EXPECT_NE(sentence("csv/millimetres.csv")
+                .find("millimetres.csv:2: from waist to head the body measures 650.0"),
+            std::string::npos)
       << sentence("csv/millimetres.csv");
-  EXPECT_NE(sentence("csv/millimetres.csv").find("which looks like millimetres; positions must be in metres"), std::string::npos);
+  EXPECT_NE(sentence("csv/millimetres.csv")
+                .find("which looks like millimetres; positions must be in metres"),
+            std::string::npos);
   EXPECT_NE(sentence("csv/centimetres.csv").find("looks like centimetres"), std::string::npos);
   EXPECT_NE(sentence("csv/giant.csv").find("no person's"), std::string::npos);
   EXPECT_NE(sentence("csv/milliseconds.csv").find("is time in seconds?"), std::string::npos);

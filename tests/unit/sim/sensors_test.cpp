@@ -32,8 +32,9 @@ SensorSettings plain() {
 }
 
 /// Everything handed over in `seconds`, with `due` as the instant it was collected.
-Stream watch(const SensorSettings& settings, const std::vector<Person>& people, double seconds, std::uint64_t seed = 3,
-             const std::vector<SightBox>& boxes = {}, const std::vector<SightCapsule>& robot = {}) {
+Stream watch(const SensorSettings& settings, const std::vector<Person>& people, double seconds,
+             std::uint64_t seed = 3, const std::vector<SightBox>& boxes = {},
+             const std::vector<SightCapsule>& robot = {}) {
   HumanSensor sensor(settings, seed);
   Sight sight;
   for (const Person& person : people) {
@@ -43,7 +44,8 @@ Stream watch(const SensorSettings& settings, const std::vector<Person>& people, 
   sight.boxes = boxes;
   sight.robot = robot;
   Stream out, now_due;
-  const auto steps = static_cast<int>(std::lround((seconds + settings.latency + settings.jitter) * 1000));
+  const auto steps =
+      static_cast<int>(std::lround((seconds + settings.latency + settings.jitter) * 1000));
   for (int i = 0; i < steps; ++i) {
     const double now = i * 0.001;
     if (now < seconds && sensor.due(now)) sensor.observe(now, sight);
@@ -88,7 +90,8 @@ TEST(Sensors, latency_and_jitter_are_those_of_the_stream_and_order_is_kept) {
     ASSERT_GT(d.seen, before);
     before = d.seen;
   }
-  const double n = static_cast<double>(stream.size()), mean = sum / n, deviation = std::sqrt(squares / n - mean * mean);
+  const double n = static_cast<double>(stream.size()), mean = sum / n,
+               deviation = std::sqrt(squares / n - mean * mean);
   EXPECT_NEAR(mean, 0.06, 0.002);
   EXPECT_NEAR(deviation, 0.02 / std::sqrt(3.0), 0.001) << "uniform within the jitter";
   EXPECT_GE(least, 0.04 - 1e-9);
@@ -102,7 +105,8 @@ TEST(Sensors, noise_has_the_standard_deviation_asked) {
   double squares = 0, n = 0;
   for (const auto& d : watch(s, {anna}, 20)) {
     for (std::size_t j = 0; j < anna.joints.size(); ++j, n += 3)
-      squares += (d.message.people.at(0).joints.at(j).position - anna.joints[j].position).squaredNorm();
+      squares +=
+          (d.message.people.at(0).joints.at(j).position - anna.joints[j].position).squaredNorm();
   }
   EXPECT_NEAR(std::sqrt(squares / n), 0.01, 0.0003);
 }
@@ -112,10 +116,12 @@ TEST(Sensors, drop_outs_are_the_share_asked_and_independent) {
   s.rate = 100;
   s.dropout = 0.2;
   const Stream stream = watch(s, {person_at("anna", 1.4, 0)}, 200);
-  EXPECT_NEAR(1 - static_cast<double>(stream.size()) / 20000, 0.2, 0.012) << "4 standard deviations";
+  EXPECT_NEAR(1 - static_cast<double>(stream.size()) / 20000, 0.2, 0.012)
+      << "4 standard deviations";
   int pairs = 0;  // two lost in a row
   for (std::size_t i = 1; i < stream.size(); ++i)
-    pairs += std::max(0, static_cast<int>(std::lround((stream[i].seen - stream[i - 1].seen) * 100)) - 2);
+    pairs +=
+        std::max(0, static_cast<int>(std::lround((stream[i].seen - stream[i - 1].seen) * 100)) - 2);
   EXPECT_NEAR(pairs / 20000.0, 0.04, 0.008);
 }
 
@@ -159,17 +165,20 @@ TEST(Sensors, gaze_is_missing_by_the_share_asked_or_comes_alone_or_not_at_all) {
   SensorSettings s = plain();
   s.gaze_dropout = 0.4;
   double with = 0, all = 0;
-  for (const auto& d : watch(s, {person_at("anna", 1.4, 0)}, 60)) ++all, with += d.message.people.at(0).has_gaze;
+  for (const auto& d : watch(s, {person_at("anna", 1.4, 0)}, 60))
+    ++all, with += d.message.people.at(0).has_gaze;
   EXPECT_NEAR(with / all, 0.6, 0.05);
 
   s = plain();
   s.gaze = GazeOutput::none;
-  for (const auto& d : watch(s, {person_at("anna", 1.4, 0)}, 1)) EXPECT_FALSE(d.message.people.at(0).has_gaze);
+  for (const auto& d : watch(s, {person_at("anna", 1.4, 0)}, 1))
+    EXPECT_FALSE(d.message.people.at(0).has_gaze);
   s.gaze = GazeOutput::only;
   for (const auto& d : watch(s, {person_at("anna", 1.4, 0)}, 1)) {
     EXPECT_TRUE(d.message.people.at(0).has_gaze);
     EXPECT_TRUE(d.message.people.at(0).joints.empty());
-    EXPECT_EQ(d.message.coverage.high, Vector3::Zero()) << "a gaze tracker does not say that nobody is there";
+    EXPECT_EQ(d.message.coverage.high, Vector3::Zero())
+        << "a gaze tracker does not say that nobody is there";
   }
 }
 
@@ -244,7 +253,8 @@ TEST(Sensors, one_that_is_carried_sees_what_is_before_it_and_claims_nothing) {
     HumanSensor sensor(s, 3);
     Stream seen;
     EXPECT_TRUE(sensor.due(0));
-    sensor.carry_to(make_pose(Vector3(0, 0, 1.4), Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3::UnitZ()))));
+    sensor.carry_to(make_pose(Vector3(0, 0, 1.4),
+                              Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3::UnitZ()))));
     sensor.observe(0, sight);
     sensor.collect(1, seen);
     EXPECT_EQ(seen.at(0).message.coverage.low, seen.at(0).message.coverage.high);
@@ -279,7 +289,8 @@ TEST(Sensors, in_the_world_the_head_sees_where_it_looks) {
       for (const ObservedPerson& person : d.message.people) count += person.has_gaze;
     return count;
   };
-  const Vector3 p_camera = jido().link_pose(jido().rest_configuration(), jido().link_index("camera")).translation();
+  const Vector3 p_camera =
+      jido().link_pose(jido().rest_configuration(), jido().link_index("camera")).translation();
   const Vector3 to_anna = in_hand() + Vector3(1.0, 0, 0) - p_camera;
   const double toward = std::atan2(to_anna.y(), to_anna.x());
   EXPECT_GE(gazes(toward), 5);
@@ -301,7 +312,8 @@ TEST(Sensors, identity_swaps_happen_as_often_as_asked_and_places_stay) {
   }
   EXPECT_NEAR(swaps, 100, 35);
   std::set<std::string> names;
-  for (const auto& d : watch(s, {person_at("anna", 1.4, 1)}, 60)) names.insert(d.message.people.at(0).body);
+  for (const auto& d : watch(s, {person_at("anna", 1.4, 1)}, 60))
+    names.insert(d.message.people.at(0).body);
   EXPECT_GT(names.size(), 10u) << "a single body gets new names";
 }
 
@@ -313,9 +325,13 @@ TEST(Sensors, faults_in_time_do_what_they_say) {
     s.faults = {{kind, 1.0, 0.5, {0, 0.7, 0}, 0.25}};
     return watch(s, {anna}, 2);
   };
-  const auto during = [](const Delivery<HumanObservation>& d) { return d.due - 0.04 > 1.0 - 1e-6 && d.due - 0.04 < 1.5 - 1e-6; };
+  const auto during = [](const Delivery<HumanObservation>& d) {
+    return d.due - 0.04 > 1.0 - 1e-6 && d.due - 0.04 < 1.5 - 1e-6;
+  };
   for (const auto& d : with(SensorFaultKind::gap)) EXPECT_FALSE(during(d));
-  const auto nose = [](const Delivery<HumanObservation>& d) { return d.message.people.at(0).joints.at(0).position; };
+  const auto nose = [](const Delivery<HumanObservation>& d) {
+    return d.message.people.at(0).joints.at(0).position;
+  };
   const auto changes = [&](const Stream& stream) {
     std::pair<int, int> out{0, 0};  // of content, of the instant shown, during the fault
     for (std::size_t i = 1; i < stream.size(); ++i) {
@@ -327,12 +343,15 @@ TEST(Sensors, faults_in_time_do_what_they_say) {
   };
   EXPECT_EQ(changes(with(SensorFaultKind::frozen)), (std::pair{0, 14}));
   EXPECT_EQ(changes(with(SensorFaultKind::repeated)), (std::pair{0, 0}));
-  EXPECT_EQ(changes(with(SensorFaultKind::late)).first, 0 + changes(with(SensorFaultKind::late)).second);
+  EXPECT_EQ(changes(with(SensorFaultKind::late)).first,
+            0 + changes(with(SensorFaultKind::late)).second);
   double latest = 0;
   for (const auto& d : with(SensorFaultKind::late)) latest = std::max(latest, d.due - d.seen);
   EXPECT_NEAR(latest, 0.29, 0.002);
-  for (const auto& d : with(SensorFaultKind::teleport)) EXPECT_NEAR(nose(d).y(), during(d) ? 0.7 : 0.0, 0.05);
-  for (const auto& d : with(SensorFaultKind::swap)) EXPECT_EQ(d.message.people.at(0).body == "anna", !during(d));
+  for (const auto& d : with(SensorFaultKind::teleport))
+    EXPECT_NEAR(nose(d).y(), during(d) ? 0.7 : 0.0, 0.05);
+  for (const auto& d : with(SensorFaultKind::swap))
+    EXPECT_EQ(d.message.people.at(0).body == "anna", !during(d));
   for (const auto& d : with(SensorFaultKind::blind)) EXPECT_EQ(d.message.people.empty(), during(d));
 }
 
@@ -381,13 +400,15 @@ TEST(Sensors, a_disturbance_comes_and_goes_while_it_runs) {
     EXPECT_EQ(d.message.coverage.low.x(), s.coverage.low.x() + 100);
   }
   healthy();
-  for (const auto& d : disturbed({SensorFaultKind::late, now, 9, Vector3::Zero(), 0.5})) EXPECT_NEAR(d.due - d.seen, 0.5 + s.latency, 1e-9);
+  for (const auto& d : disturbed({SensorFaultKind::late, now, 9, Vector3::Zero(), 0.5}))
+    EXPECT_NEAR(d.due - d.seen, 0.5 + s.latency, 1e-9);
   healthy();
   for (int again = 0; again < 2; ++again) {
     const Stream frozen = disturbed({SensorFaultKind::frozen, now, 9});
     ASSERT_GT(frozen.size(), 10u);
     EXPECT_NE(frozen.front().seen, frozen.back().seen) << "with new stamps";
-    EXPECT_EQ(frozen.front().message.people.at(0).joints.at(0).position, frozen.back().message.people.at(0).joints.at(0).position);
+    EXPECT_EQ(frozen.front().message.people.at(0).joints.at(0).position,
+              frozen.back().message.people.at(0).joints.at(0).position);
     EXPECT_GT(frozen.front().seen, now - 0.6) << "not a picture of an earlier disturbance";
     healthy();
   }
@@ -402,14 +423,16 @@ TEST(Sensors, the_same_seed_gives_the_same_stream) {
   s.burst_rate = 0.2;
   s.burst_length = 0.2;
   const std::vector<Person> people{person_at("anna", 1.4, 1), person_at("bert", 1.4, -1)};
-  const Stream a = watch(s, people, 10, 5), b = watch(s, people, 10, 5), other = watch(s, people, 10, 6);
+  const Stream a = watch(s, people, 10, 5), b = watch(s, people, 10, 5),
+               other = watch(s, people, 10, 6);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].due, b[i].due);
     EXPECT_EQ(a[i].message.people[0].body, b[i].message.people[0].body);
     EXPECT_EQ(a[i].message.people[0].joints[0].position, b[i].message.people[0].joints[0].position);
   }
-  EXPECT_TRUE(a.size() != other.size() || a[0].message.people[0].joints[0].position != other[0].message.people[0].joints[0].position);
+  EXPECT_TRUE(a.size() != other.size() || a[0].message.people[0].joints[0].position !=
+                                              other[0].message.people[0].joints[0].position);
 }
 
 TEST(Sensors, in_the_world_the_robots_own_arm_hides_the_person_from_a_source_behind_it) {
@@ -440,7 +463,8 @@ TEST(Sensors, in_the_world_the_robots_own_arm_hides_the_person_from_a_source_beh
   EXPECT_LT(joints["hidden"], joints["open"]);
 }
 
-std::string refusal(const std::function<void(config::SensorDescription&)>& spoil, bool of_people = true) {
+std::string refusal(const std::function<void(config::SensorDescription&)>& spoil,
+                    bool of_people = true) {
   config::Scenario scenario;
   scenario.set_name("s");
   auto* sensor = of_people ? scenario.add_human_sensors() : scenario.add_object_sensors();
@@ -458,18 +482,25 @@ std::string refusal(const std::function<void(config::SensorDescription&)>& spoil
 TEST(Sensors, settings_that_make_no_sense_are_refused_in_one_sentence) {
   using D = config::SensorDescription;
   EXPECT_EQ(refusal([](D&) {}), "");
-  EXPECT_EQ(refusal([](D& d) { d.set_rate(0); }), "scenario s: sensor camera: rate is 0, must be between 1 and 1000");
-  EXPECT_EQ(refusal([](D& d) { d.set_dropout(1.5); }), "scenario s: sensor camera: dropout is 1.5, must be between 0 and 0.999");
+  EXPECT_EQ(refusal([](D& d) { d.set_rate(0); }),
+            "scenario s: sensor camera: rate is 0, must be between 1 and 1000");
+  EXPECT_EQ(refusal([](D& d) { d.set_dropout(1.5); }),
+            "scenario s: sensor camera: dropout is 1.5, must be between 0 and 0.999");
   EXPECT_NE(refusal([](D& d) { d.set_rate(std::nan("")); }), "");
-  EXPECT_EQ(refusal([](D& d) { d.set_occlusion(true); }), "scenario s: sensor camera: occlusion, range and field of view need its pose");
-  EXPECT_NE(refusal([](D& d) { d.add_joints("nose"); }).find("no REP-155 joint"), std::string::npos);
-  EXPECT_NE(refusal([](D& d) { d.set_swap_rate(1); }, false).find("for sensors of people"), std::string::npos);
+  EXPECT_EQ(refusal([](D& d) { d.set_occlusion(true); }),
+            "scenario s: sensor camera: occlusion, range and field of view need its pose");
+  EXPECT_NE(refusal([](D& d) { d.add_joints("nose"); }).find("no REP-155 joint"),
+            std::string::npos);
+  EXPECT_NE(refusal([](D& d) { d.set_swap_rate(1); }, false).find("for sensors of people"),
+            std::string::npos);
   EXPECT_EQ(refusal([](D& d) {
               d.set_link("camera");
               d.set_fov_horizontal(1);
             }),
             "");
-  EXPECT_NE(refusal([](D& d) { d.set_link("nose"); }).find("carried by nose, which is no link of jido"), std::string::npos);
+  EXPECT_NE(
+      refusal([](D& d) { d.set_link("nose"); }).find("carried by nose, which is no link of jido"),
+      std::string::npos);
   EXPECT_NE(refusal([](D& d) {
               d.set_link("camera");
               d.mutable_coverage_low();

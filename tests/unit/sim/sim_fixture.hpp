@@ -1,4 +1,5 @@
-// A small world for tests: Jido at rest, a mug on a column within its fingers, and perhaps a person before it.
+// A small world for tests: Jido at rest, a mug on a column within its fingers, and perhaps a person
+// before it.
 #pragma once
 
 #include <cstdlib>
@@ -10,7 +11,9 @@
 
 namespace handsel::sim::test {
 
-inline std::filesystem::path deploy() { return std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy"; }
+inline std::filesystem::path deploy() {
+  return std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
+}
 
 inline const RobotModel& jido() {
   static const RobotModel model = RobotModel::load(deploy() / "robots/jido/jido.txtpb");
@@ -22,12 +25,17 @@ inline const HandModel& sah() {
 }
 inline const ObjectLibrary& library() {
   static const ObjectModel mug = ObjectModel::load(deploy() / "objects/mug/mug.txtpb");
-  static const ObjectLibrary objects = [](const std::string& name) { return name == "mug" ? &mug : nullptr; };
+  static const ObjectLibrary objects = [](const std::string& name) {
+    return name == "mug" ? &mug : nullptr;
+  };
   return objects;
 }
 
 /// The mug's centre within the fingers at the rest posture, world.
-inline Vector3 in_hand() { return jido().link_pose(jido().rest_configuration(), jido().tool_link()) * Vector3(0.055, 0.0, 0.19); }
+inline Vector3 in_hand() {
+  return jido().link_pose(jido().rest_configuration(), jido().tool_link()) *
+         Vector3(0.055, 0.0, 0.19);
+}
 
 inline config::Scenario mug_in_hand() {
   config::Scenario scenario;
@@ -53,7 +61,8 @@ inline config::Scenario mug_in_hand() {
 }
 
 /// Someone 0.55 m beyond the mug, facing the robot.
-inline config::PersonDescription* add_person(config::Scenario& scenario, config::PersonBehaviour behaviour) {
+inline config::PersonDescription* add_person(config::Scenario& scenario,
+                                             config::PersonBehaviour behaviour) {
   auto* person = scenario.add_people();
   person->set_id("anna");
   person->set_x(in_hand().x() + 0.55);
@@ -69,7 +78,8 @@ class Driver {
   Driver(SimWorld& world, const Vector& start) : world_(world), q_(start) {}
 
   const Vector& q() const { return q_; }
-  /// All axes to `to` by a fifth-order polynomial, `seconds` long; `each` is called after every step.
+  /// All axes to `to` by a fifth-order polynomial, `seconds` long; `each` is called after every
+  /// step.
   template <class F>
   void move(const Vector& to, double seconds, F&& each) {
     const Vector from = q_;
@@ -100,7 +110,9 @@ class Driver {
   std::uint64_t sequence_{0};
 };
 
-inline Vector hand_at(Vector q, const Vector& hand) { return RobotModel::with(q, jido().require_group("hand"), hand); }
+inline Vector hand_at(Vector q, const Vector& hand) {
+  return RobotModel::with(q, jido().require_group("hand"), hand);
+}
 /// Every finger well beyond the mug's surface, so that it squeezes.
 inline Vector closed(const Vector& q) {
   Vector hand = sah().pregrasp();

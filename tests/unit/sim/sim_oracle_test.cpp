@@ -12,7 +12,8 @@ namespace {
 
 using namespace test;
 
-/// A legal stream: one axis back and forth by segments of constant jerk at 90 % of the guard limits, exact at every tick.
+/// A legal stream: one axis back and forth by segments of constant jerk at 90 % of the guard
+/// limits, exact at every tick.
 class Stream {
  public:
   explicit Stream(double share = 0.9) : share_(share) {
@@ -21,11 +22,13 @@ class Stream {
     command_.velocity = command_.acceleration = Vector::Zero(jido().dof());
   }
   const JointCommand& next() {
-    const double J = share_ * jido().guard_limits().jerk[0], A = share_ * jido().guard_limits().acceleration[0], h = 0.001;
+    const double J = share_ * jido().guard_limits().jerk[0],
+                 A = share_ * jido().guard_limits().acceleration[0], h = 0.001;
     const int third = static_cast<int>(A / (J * h));
     const int phase = (tick_++ / third) % 4;
     const double j = phase == 0 || phase == 3 ? J : -J;
-    command_.position[0] += h * (command_.velocity[0] + h * (command_.acceleration[0] / 2 + h * j / 6));
+    command_.position[0] +=
+        h * (command_.velocity[0] + h * (command_.acceleration[0] / 2 + h * j / 6));
     command_.velocity[0] += h * (command_.acceleration[0] + h * j / 2);
     command_.acceleration[0] += h * j;
     ++command_.sequence;
@@ -42,7 +45,9 @@ class Stream {
 struct Judge {
   LimitsOracle oracle{jido(), 0.02};
   double now{0};
-  void see(const JointCommand& c, std::uint64_t writer = 1) { oracle.observe(c, writer, now += 0.001, c.position); }
+  void see(const JointCommand& c, std::uint64_t writer = 1) {
+    oracle.observe(c, writer, now += 0.001, c.position);
+  }
 };
 
 TEST(LimitsOracleTest, a_legal_stream_has_no_violation_and_its_true_shares) {
@@ -122,11 +127,17 @@ std::string broken_by(const Break& mutate, int at = 500) {
 
 TEST(LimitsOracleTest, every_mutant_is_caught_by_name) {
   const KinematicLimits& limits = jido().guard_limits();
-  EXPECT_EQ(broken_by([](JointCommand& c) { c.position[0] += 1e-6; }).substr(0, 13), "position step");
+  EXPECT_EQ(broken_by([](JointCommand& c) { c.position[0] += 1e-6; }).substr(0, 13),
+            "position step");
   EXPECT_NE(broken_by([](JointCommand& c) { c.velocity[0] += 1e-3; }), "not caught");
-  EXPECT_EQ(broken_by([&](JointCommand& c) { c.acceleration[2] = 1.01 * limits.jerk[2] * 0.001; }).substr(0, 4), "jerk");
-  EXPECT_NE(broken_by([&](JointCommand& c) { c.acceleration[3] = 1.01 * limits.acceleration[3]; }), "not caught");
-  EXPECT_NE(broken_by([&](JointCommand& c) { c.velocity[4] = -1.01 * limits.velocity[4]; }), "not caught");
+  EXPECT_EQ(broken_by([&](JointCommand& c) {
+              c.acceleration[2] = 1.01 * limits.jerk[2] * 0.001;
+            }).substr(0, 4),
+            "jerk");
+  EXPECT_NE(broken_by([&](JointCommand& c) { c.acceleration[3] = 1.01 * limits.acceleration[3]; }),
+            "not caught");
+  EXPECT_NE(broken_by([&](JointCommand& c) { c.velocity[4] = -1.01 * limits.velocity[4]; }),
+            "not caught");
   EXPECT_NE(broken_by([](JointCommand& c) { c.position[5] = 9; }), "not caught");
 }
 
@@ -142,7 +153,8 @@ TEST(LimitsOracleTest, the_first_hundred_are_judged_too) {
 }
 
 /// A second stream takes over in the middle of a motion: `offset` away on one axis.
-std::uint64_t violations_across(double offset, std::uint64_t writer, bool restarts_numbers, int at) {
+std::uint64_t violations_across(double offset, std::uint64_t writer, bool restarts_numbers,
+                                int at) {
   Judge judge;
   Stream stream(0.5);
   for (int i = 0; i < at; ++i) judge.see(stream.next());
@@ -212,7 +224,9 @@ TEST(LimitsOracleTest, a_second_writer_and_a_long_gap_are_seen) {
 
 TEST(SeparationOracleTest, its_stop_agrees_with_the_stop_of_the_trajectory_room) {
   std::mt19937_64 random(20240607);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   for (int i = 0; i < 20000; ++i) {
     const double A = uniform(0.2, 10), J = uniform(1, 100), v = uniform(-3, 3), a = uniform(-A, A);
     double time = 0, distance = 0;
@@ -256,7 +270,8 @@ TEST(HandoverOracleTest, demands_lift_contact_and_a_second_alone) {
   const auto run = [](double lift, double contact, double alone, bool floor) {
     HandoverOracle oracle(0.8, false);
     const auto pass = [&](const ObjectSituation& s, double seconds) {
-      for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i) oracle.observe(s, 0.001);
+      for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i)
+        oracle.observe(s, 0.001);
     };
     ObjectSituation s;
     s.height = 0.8, s.on_surface = true;
@@ -282,7 +297,8 @@ TEST(HandoverOracleTest, what_a_person_gives_must_be_in_both_hands_then_in_the_r
   const auto run = [](double both, double alone, bool floor) {
     HandoverOracle oracle(1.0, true);
     const auto pass = [&](const ObjectSituation& s, double seconds) {
-      for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i) oracle.observe(s, 0.001);
+      for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i)
+        oracle.observe(s, 0.001);
     };
     ObjectSituation s;
     s.height = 1.0, s.human_grips = s.human_touches = true;

@@ -12,7 +12,8 @@ using namespace test;
 
 std::filesystem::path recording_folder() {
   const char* data = std::getenv("HANDSEL_DATA");
-  return data == nullptr ? std::filesystem::path() : std::filesystem::path(data) / "motion/kth_handover/handover_sample";
+  return data == nullptr ? std::filesystem::path()
+                         : std::filesystem::path(data) / "motion/kth_handover/handover_sample";
 }
 
 PersonView offer(const Vector3& where) {
@@ -42,7 +43,9 @@ TEST(SimPerson, reaches_smoothly_and_its_hand_ends_at_the_mug) {
     fastest = std::max(fastest, (hand - before).norm() / 0.001);
     before = hand;
     for (const auto& [a, b] : {std::pair{"r_shoulder", "r_elbow"}, {"r_elbow", "r_wrist"}}) {
-      const double length = (person.body().joints[joint(a)].position - person.body().joints[joint(b)].position).norm();
+      const double length =
+          (person.body().joints[joint(a)].position - person.body().joints[joint(b)].position)
+              .norm();
       ASSERT_GT(length, 0.15);
       ASSERT_LT(length, 0.40);
     }
@@ -52,7 +55,8 @@ TEST(SimPerson, reaches_smoothly_and_its_hand_ends_at_the_mug) {
   EXPECT_LT(clock, settings.reaction + 1.2 + 0.5);
   EXPECT_GT(fastest, 0.3);
   EXPECT_LT(fastest, 2.5);
-  const double gap = surface_distance(*view.object, view.T_world_object.inverse() * person.hand().T_world_body.translation());
+  const double gap = surface_distance(
+      *view.object, view.T_world_object.inverse() * person.hand().T_world_body.translation());
   EXPECT_NEAR(gap, PersonModel::kPalm, 0.013);
 }
 
@@ -62,17 +66,21 @@ TEST(SimPerson, no_joint_ever_jumps) {
     PersonSettings settings;
     settings.feet = Vector3(1.5, 0, 0);
     settings.yaw = M_PI;
-    if (recorded) settings.recording = std::make_shared<const Recording>(load_recording(recording_folder()));
+    if (recorded)
+      settings.recording = std::make_shared<const Recording>(load_recording(recording_folder()));
     settings.kind = recorded ? PersonKind::recording : PersonKind::taker;
     PersonModel person(settings);
     PersonView view = offer({0.95, -0.05, 1.05});
     for (int i = 0; i < 12000; ++i) {
-      view.held_by_robot = i < 6000;  // the hold is lost: the person ends with the hand back at rest, or with the mug
+      view.held_by_robot =
+          i <
+          6000;  // the hold is lost: the person ends with the hand back at rest, or with the mug
       person.step(0.001, view);
       if (i == 0) continue;
       for (const BodyJoint& joint : person.body().joints) {
-        ASSERT_LT(joint.velocity.norm(), 3.0) << joint.name << " at step " << i << " " << name(person.phase())
-                                              << (recorded ? " recorded" : "");
+        ASSERT_LT(joint.velocity.norm(), 3.0)
+            << joint.name << " at step " << i << " " << name(person.phase())
+            << (recorded ? " recorded" : "");
       }
     }
   }
@@ -111,8 +119,10 @@ PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool ro
   return view;
 }
 
-void live(PersonModel& person, double seconds, const Vector3& robot_hand, bool robot_holds_it = false) {
-  for (int i = 0; i < static_cast<int>(seconds * 1000); ++i) person.step(0.001, holding(person, robot_hand, robot_holds_it));
+void live(PersonModel& person, double seconds, const Vector3& robot_hand,
+          bool robot_holds_it = false) {
+  for (int i = 0; i < static_cast<int>(seconds * 1000); ++i)
+    person.step(0.001, holding(person, robot_hand, robot_holds_it));
 }
 
 TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_robot_has_it) {
@@ -144,7 +154,8 @@ TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
   const Vector3 where = free.hand().T_world_body.translation();
   EXPECT_LT(where.z(), 0.8);
   const Furniture table{make_pose({where.x() - 0.2, where.y(), 0.36}), {0.5, 0.5, 0.72}},
-      far{make_pose({where.x() - 5, 0, 0.36}), {1, 1, 2}}, shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}};
+      far{make_pose({where.x() - 5, 0, 0.36}), {1, 1, 2}},
+      shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}};
   settings.furniture = {far, shelf};
   PersonModel same(settings);
   EXPECT_EQ(same.hand().T_world_body.translation(), where);
@@ -168,7 +179,8 @@ TEST(SimPerson, who_is_ignored_comes_nearer_and_holds_it_out_anew_twice) {
   EXPECT_EQ(person.phase(), PersonPhase::offering);
 }
 
-/// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most 10 m/s^2 (StopProofSettings::people).
+/// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most
+/// 10 m/s^2 (StopProofSettings::people).
 TEST(SimPerson, a_step_nearer_is_no_faster_than_people_step) {
   PersonModel person(giver());
   Vector3 before = Vector3::Zero();
@@ -208,7 +220,8 @@ TEST(SimPerson, who_hesitates_takes_it_later_and_who_is_early_takes_it_while_it_
     PersonView view = offer({0.95, 0.05, 1.05});
     view.object_velocity = Vector3(speed, 0, 0);
     double clock = 0;
-    for (; person.phase() != PersonPhase::pulling && clock < 8; clock += 0.001) person.step(0.001, view);
+    for (; person.phase() != PersonPhase::pulling && clock < 8; clock += 0.001)
+      person.step(0.001, view);
     return clock;
   };
   BehaviourProfile hesitant, early;
@@ -252,7 +265,8 @@ TEST(SimRecording, the_taker_of_the_kth_sample_faces_forward_and_reaches_with_th
   EXPECT_EQ(recording.taking, Side::right);
   EXPECT_NEAR(recording.contact, 3.05, 0.25);
   const BodyPoints& first = recording.frames.front();
-  EXPECT_GT(first[joint("l_shoulder")].y(), first[joint("r_shoulder")].y()) << "left is left of someone who faces +x";
+  EXPECT_GT(first[joint("l_shoulder")].y(), first[joint("r_shoulder")].y())
+      << "left is left of someone who faces +x";
   EXPECT_LT(std::abs(first[joint("l_shoulder")].x() - first[joint("r_shoulder")].x()), 0.02);
   EXPECT_NEAR(first[joint("waist")].head<2>().norm(), 0, 1e-9);
   EXPECT_GT(first[joint("head")].z(), 1.3);
@@ -261,7 +275,9 @@ TEST(SimRecording, the_taker_of_the_kth_sample_faces_forward_and_reaches_with_th
   EXPECT_GT(reaching[joint("r_hand")].x(), 0.45);
 }
 
-TEST(SimRecording, the_hand_is_warped_by_at_most_ten_centimetres_in_the_last_half_second_and_the_feet_move_less_than_thirty) {
+TEST(
+    SimRecording,
+    the_hand_is_warped_by_at_most_ten_centimetres_in_the_last_half_second_and_the_feet_move_less_than_thirty) {
   if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);
@@ -274,7 +290,8 @@ TEST(SimRecording, the_hand_is_warped_by_at_most_ten_centimetres_in_the_last_hal
     return Vector3(settings.feet + Eigen::AngleAxisd(M_PI, Vector3::UnitZ()) * points[joint(name)]);
   };
   const double contact = settings.recording->contact;
-  for (const Vector3& off : {Vector3(0.02, 0.03, -0.04), Vector3(0.15, -0.1, 0.0), Vector3(0.2, 0.2, 0.25), Vector3(0.65, 0, 0)}) {
+  for (const Vector3& off : {Vector3(0.02, 0.03, -0.04), Vector3(0.15, -0.1, 0.0),
+                             Vector3(0.2, 0.2, 0.25), Vector3(0.65, 0, 0)}) {
     PersonModel person(settings);
     const PersonView view = offer(recorded_at(contact, "r_hand") + Vector3(-0.07, 0, 0) + off);
     double clock = 0, t = 0, warp = 0, step = 0;
@@ -284,7 +301,8 @@ TEST(SimRecording, the_hand_is_warped_by_at_most_ten_centimetres_in_the_last_hal
       if (person.phase() != PersonPhase::reaching) continue;
       t = std::min(t + 0.001, contact);
       const Vector3 moved = person.body().joints[joint("waist")].position - recorded_at(t, "waist");
-      const double bent = (person.hand().T_world_body.translation() - recorded_at(t, "r_hand") - moved).norm();
+      const double bent =
+          (person.hand().T_world_body.translation() - recorded_at(t, "r_hand") - moved).norm();
       if (t < contact - settings.warp_time - 0.002) {
         ASSERT_LT(bent, 0.005) << "at " << t;
       }
@@ -325,24 +343,30 @@ TEST(SimWorld, who_fetches_what_is_not_there_is_refused) {
     SimWorld(jido(), library(), scenario, SimSettings{}, 1);
     ADD_FAILURE() << "accepted";
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("person anna fetches \"vase\", which is no object of the scenario"), std::string::npos)
+    EXPECT_NE(std::string(error.what())
+                  .find("person anna fetches \"vase\", which is no object of the scenario"),
+              std::string::npos)
         << error.what();
   }
 }
 
 class BadRecording : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("recording_" + std::to_string(getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ("recording_" + std::to_string(getpid()));
   void SetUp() override {
     std::filesystem::create_directories(folder_);
-    for (const char* part : {"hip", "chest", "neck", "head", "LUArm", "RUArm", "LFArm", "RFArm", "LHand", "RHand"}) {
-      const std::string row =
-          std::string("0,") + (part[0] == 'L' ? "0.2" : "-0.2") + (part == std::string("head") ? ",1.65" : ",1") + ",0,0,0,1\n";
+    for (const char* part :
+         {"hip", "chest", "neck", "head", "LUArm", "RUArm", "LFArm", "RFArm", "LHand", "RHand"}) {
+      const std::string row = std::string("0,") + (part[0] == 'L' ? "0.2" : "-0.2") +
+                              (part == std::string("head") ? ",1.65" : ",1") + ",0,0,0,1\n";
       write(part, "x,y,z,q0,q1,q2,q3\n" + row + row);
     }
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  void write(const std::string& part, const std::string& text) { std::ofstream(folder_ / ("taker_" + part + "_pose_saved.csv")) << text; }
+  void write(const std::string& part, const std::string& text) {
+    std::ofstream(folder_ / ("taker_" + part + "_pose_saved.csv")) << text;
+  }
   std::string sentence() {
     try {
       load_recording(folder_);
@@ -361,7 +385,8 @@ TEST_F(BadRecording, names_file_line_and_fault) {
   write("neck", "x,y,z,q0,q1,q2,q3\n0,0,nan,0,0,0,1\n");
   EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: column 3 is not a finite number");
   write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,2\n");
-  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: the quaternion's length is 2.000000, must be 1");
+  EXPECT_EQ(sentence(),
+            "taker_neck_pose_saved.csv:2: the quaternion's length is 2.000000, must be 1");
   write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0\n");
   EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: expected 7 numbers separated by commas");
   write("neck", "a,b\n");
@@ -374,7 +399,9 @@ TEST_F(BadRecording, names_file_line_and_fault) {
   EXPECT_NE(sentence().find("cannot be opened"), std::string::npos);
 }
 
-TEST(SimRecording, a_missing_folder_is_missing) { EXPECT_THROW(load_recording("no/such/folder"), MissingError); }
+TEST(SimRecording, a_missing_folder_is_missing) {
+  EXPECT_THROW(load_recording("no/such/folder"), MissingError);
+}
 
 }  // namespace
 }  // namespace handsel::sim

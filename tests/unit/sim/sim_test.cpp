@@ -10,7 +10,9 @@ namespace {
 
 using namespace test;
 
-SimWorld make(const config::Scenario& scenario, std::uint64_t seed = 1) { return {jido(), library(), scenario, SimSettings{}, seed}; }
+SimWorld make(const config::Scenario& scenario, std::uint64_t seed = 1) {
+  return {jido(), library(), scenario, SimSettings{}, seed};
+}
 
 Vector start() { return opened(jido().rest_configuration()); }
 
@@ -46,11 +48,13 @@ TEST(SimServo, reports_efforts_within_the_torque_limits) {
   driver.move(to, 0.4, [&] {
     world.robot_state(state);
     for (int i = 0; i < jido().dof(); ++i)
-      ASSERT_LE(std::abs(state.effort[i]), 2 * jido().axes()[i].max_effort + 1e-9) << jido().axes()[i].name;
+      ASSERT_LE(std::abs(state.effort[i]), 2 * jido().axes()[i].max_effort + 1e-9)
+          << jido().axes()[i].name;
   });
 }
 
-TEST(SimRobotSide, stops_softly_twenty_milliseconds_after_the_last_set_point_and_resumes_with_matching_ones) {
+TEST(SimRobotSide,
+     stops_softly_twenty_milliseconds_after_the_last_set_point_and_resumes_with_matching_ones) {
   RobotSide side(jido(), start(), RobotSideSettings{});
   JointCommand c;
   c.position = start();
@@ -65,7 +69,8 @@ TEST(SimRobotSide, stops_softly_twenty_milliseconds_after_the_last_set_point_and
   const double last = now - 0.001;
   while (side.follows() && now < last + 1) side.step(now += 0.001, 0.001);
   EXPECT_EQ(side.mode(), DriveMode::enabled) << "nobody has stopped the drives";
-  EXPECT_NE(side.refusal().find("no set-point for more than 20 ms"), std::string::npos) << side.refusal();
+  EXPECT_NE(side.refusal().find("no set-point for more than 20 ms"), std::string::npos)
+      << side.refusal();
   EXPECT_NEAR(now - last, 0.021, 0.0015);
   const double A = jido().stop_limits().acceleration[0], J = jido().stop_limits().jerk[0];
   const double expected = measure_stop(0.5, 0, A, J).duration;
@@ -79,11 +84,13 @@ TEST(SimRobotSide, stops_softly_twenty_milliseconds_after_the_last_set_point_and
   }
   EXPECT_NEAR(now - began, expected, 0.003);
   const Vector held = side.position();
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(side.command(c, now += 0.001)) << "set-points that move are not at rest";
+  for (int i = 0; i < 20; ++i)
+    EXPECT_FALSE(side.command(c, now += 0.001)) << "set-points that move are not at rest";
   c.velocity.setZero();
   c.position = held;
   c.position[1] += 0.1;
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(side.command(c, now += 0.001)) << "the robot is elsewhere";
+  for (int i = 0; i < 20; ++i)
+    EXPECT_FALSE(side.command(c, now += 0.001)) << "the robot is elsewhere";
   c.position = held;
   for (int i = 0; i < 10; ++i) side.command(c, now += 0.001);
   EXPECT_TRUE(side.follows());
@@ -107,7 +114,9 @@ TEST(SimRobotSide, follows_set_points_at_the_measured_posture_though_the_held_on
   for (int i = 0; i < 2000 && !side.follows(); ++i) {
     side.command(c, now);
     side.step(now += 0.001, 0.001);
-    EXPECT_LE(std::abs(side.velocity()[3] - v), jido().stop_limits().acceleration[3] * 0.001 * (1 + 1e-6)) << "the reference does not jump";
+    EXPECT_LE(std::abs(side.velocity()[3] - v),
+              jido().stop_limits().acceleration[3] * 0.001 * (1 + 1e-6))
+        << "the reference does not jump";
     v = side.velocity()[3];
   }
   EXPECT_TRUE(side.follows());
@@ -184,22 +193,31 @@ TEST(SimGrasp, two_points_do_not_hold_but_two_patches_or_three_points_do) {
   btMultiBodyConstraintSolver solver;
   btMultiBodyDynamicsWorld dynamics(&dispatcher, &broadphase, &solver, &configuration);
   ShapeStore shapes;
-  RobotBody robot(jido(), Pose::Identity(), start(), ServoSettings{}, PadSettings{}, BodyWorld{dynamics, shapes, kRobot, kObject});
+  RobotBody robot(jido(), Pose::Identity(), start(), ServoSettings{}, PadSettings{},
+                  BodyWorld{dynamics, shapes, kRobot, kObject});
   RobotGrasp grasp(jido().tool_link(), robot, 0.2, 0.02, 0.05);
   const int palm = grasp.palm();
   const auto touch = [&](double angle, double force, double torsion) {
     const Vector3 outward(std::cos(angle), std::sin(angle), 0);
     Touch t;
     t.a = Owner::robot, t.index_a = palm, t.b = Owner::object, t.index_b = 0;
-    t.point = 0.04 * outward, t.normal = outward, t.normal_force = force, t.friction = 0.6, t.torsion = torsion;
+    t.point = 0.04 * outward, t.normal = outward, t.normal_force = force, t.friction = 0.6,
+    t.torsion = torsion;
     return t;
   };
-  EXPECT_FALSE(grasp.closed({touch(0, 5, 0), touch(M_PI, 5, 0)}, 0, Vector3::Zero())) << "it turns about the line between the points";
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0), touch(M_PI, 5, 0)}, 0, Vector3::Zero()))
+      << "it turns about the line between the points";
   EXPECT_TRUE(grasp.closed({touch(0, 5, 0.003), touch(M_PI, 5, 0.003)}, 0, Vector3::Zero()));
-  EXPECT_TRUE(grasp.closed({touch(0, 5, 0), touch(2.1, 5, 0), touch(4.2, 5, 0)}, 0, Vector3::Zero()));
-  EXPECT_FALSE(grasp.closed({touch(0, 5, 0), touch(2.1, 0.1, 0), touch(4.2, 0.1, 0)}, 0, Vector3::Zero())) << "two of them hardly touch";
-  EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(0.5, 5, 0.003), touch(-0.5, 5, 0.003)}, 0, Vector3::Zero())) << "all from one side";
-  EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(M_PI, 5, 0.003)}, 1, Vector3::Zero())) << "another object";
+  EXPECT_TRUE(
+      grasp.closed({touch(0, 5, 0), touch(2.1, 5, 0), touch(4.2, 5, 0)}, 0, Vector3::Zero()));
+  EXPECT_FALSE(
+      grasp.closed({touch(0, 5, 0), touch(2.1, 0.1, 0), touch(4.2, 0.1, 0)}, 0, Vector3::Zero()))
+      << "two of them hardly touch";
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(0.5, 5, 0.003), touch(-0.5, 5, 0.003)}, 0,
+                            Vector3::Zero()))
+      << "all from one side";
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(M_PI, 5, 0.003)}, 1, Vector3::Zero()))
+      << "another object";
 }
 
 TEST(SimGrasp, carries_the_mug_and_measures_its_weight) {
@@ -215,7 +233,8 @@ TEST(SimGrasp, carries_the_mug_and_measures_its_weight) {
   RobotState state;
   world.robot_state(state);
   EXPECT_NEAR(state.payload, library()("mug")->mass, 0.05);
-  const Vector3 force = jido().link_pose(driver.q(), jido().tool_link()).linear() * state.wrist_wrench.force;
+  const Vector3 force =
+      jido().link_pose(driver.q(), jido().tool_link()).linear() * state.wrist_wrench.force;
   EXPECT_NEAR(force.z(), -library()("mug")->mass * 9.81, 0.8);
   EXPECT_LT(std::hypot(force.x(), force.y()), 0.8);
   EXPECT_GT(state.hand_effort, 0.1);
@@ -315,7 +334,8 @@ TEST(SimWorldTest, hitting_a_table_is_a_collision_with_a_name) {
   ASSERT_TRUE(down.has_value());
   driver.move(RobotModel::with(start(), arm, *down), 1.0);
   EXPECT_GT(truth_of(world).self_or_scene_collisions, 0u);
-  EXPECT_NE(world.last_collision().find("hits column"), std::string::npos) << world.last_collision();
+  EXPECT_NE(world.last_collision().find("hits column"), std::string::npos)
+      << world.last_collision();
 }
 
 TEST(SimSensors, silence_ends_by_itself) {
@@ -368,7 +388,8 @@ TEST(SimScenario, what_is_wrong_is_named) {
   EXPECT_EQ(sentence(s), "scenario s: start names joint arm_a9, which robot jido does not have");
   s = mug_in_hand();
   s.add_disturbances()->set_action("earthquake");
-  EXPECT_NE(sentence(s).find("disturbance earthquake is unknown; there are pause, resume"), std::string::npos);
+  EXPECT_NE(sentence(s).find("disturbance earthquake is unknown; there are pause, resume"),
+            std::string::npos);
 }
 
 TEST(SimScenario, people_differ_from_trial_to_trial_and_the_same_seed_gives_the_same) {
@@ -389,7 +410,8 @@ TEST(SimScenario, people_differ_from_trial_to_trial_and_the_same_seed_gives_the_
   varies.set_sidestep(0.3);
   int there = 0, left = 0, seated = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const SceneSetup setup = set_up(s, jido(), library(), 4, {}, seed), again = set_up(s, jido(), library(), 4, {}, seed);
+    const SceneSetup setup = set_up(s, jido(), library(), 4, {}, seed),
+                     again = set_up(s, jido(), library(), 4, {}, seed);
     ASSERT_EQ(setup.people.size(), again.people.size());
     if (setup.people.empty()) continue;
     ++there;

@@ -91,10 +91,12 @@ TEST(TimeKeeper, a_starved_simulator_neither_rushes_nor_gives_up_on_others) {
   TimeKeeper keeper(settings());
   keeper.answered("spark", 1, 0);
   turn(keeper, 5, true);
-  EXPECT_LE(turn(keeper, 6, true), 6) << "steps that are late by more than max_lag are not made up for";
+  EXPECT_LE(turn(keeper, 6, true), 6)
+      << "steps that are late by more than max_lag are not made up for";
   for (double wall = 6; wall < 10; wall += 1) turn(keeper, wall, true);  // a turn a second
   keeper.answered("spark", 1, keeper.grant_number());
-  EXPECT_NEAR(to_seconds(at(10) - keeper.time()), to_seconds(keeper.waited()), 2) << "the time of a step is wall less waited";
+  EXPECT_NEAR(to_seconds(at(10) - keeper.time()), to_seconds(keeper.waited()), 2)
+      << "the time of a step is wall less waited";
 }
 
 TEST(TimeKeeper, nobodys_time_is_ever_more_than_two_periods_ahead_of_a_step) {

@@ -28,7 +28,8 @@ Person lost(const std::string& id, double x, double y, double age) {
   return person;
 }
 
-void look(PeopleTracker& tracker, const std::string& body, double x, double y, double from, double to) {
+void look(PeopleTracker& tracker, const std::string& body, double x, double y, double from,
+          double to) {
   for (double t = from; t < to; t += 0.033) {
     HumanObservation observation;
     observation.source = "camera";
@@ -57,9 +58,11 @@ TEST(Adopt, each_is_adopted_once_and_whom_this_process_has_seen_itself_is_not) {
   tracker.adopt({lost("anna", 1.5, 0, 4.0)}, at(10), at(9));
   EXPECT_EQ(tracker.clear("anna", at(10)), 1u);
   tracker.adopt({lost("anna", 1.5, 0, 5.0)}, at(11), at(9));
-  EXPECT_TRUE(tracker.state(at(11), kReach).people.empty()) << "told once more before the supervisor knew that she was cleared";
+  EXPECT_TRUE(tracker.state(at(11), kReach).people.empty())
+      << "told once more before the supervisor knew that she was cleared";
   tracker.adopt({lost("bert", 1.5, 0, 1.0)}, at(12), at(9));
-  EXPECT_TRUE(tracker.state(at(12), kReach).people.empty()) << "last seen after this process began: it knows";
+  EXPECT_TRUE(tracker.state(at(12), kReach).people.empty())
+      << "last seen after this process began: it knows";
   Person half = lost("carl", 0, 0, 9.0);
   half.joints.pop_back();
   tracker.adopt({half}, at(12), at(9));

@@ -1,4 +1,5 @@
-// Facts: each from geometry that makes it true and geometry that makes it false, the band between, and a real handover.
+// Facts: each from geometry that makes it true and geometry that makes it false, the band between,
+// and a real handover.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -27,7 +28,8 @@ config::SparkSettings shipped() {
 
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
-const Fact* find(const Facts& facts, FactKind kind, const std::string& subject, const std::string& object = "") {
+const Fact* find(const Facts& facts, FactKind kind, const std::string& subject,
+                 const std::string& object = "") {
   for (const Fact& fact : facts.facts)
     if (fact.kind == kind && fact.subject == subject && fact.object == object) return &fact;
   return nullptr;
@@ -36,12 +38,15 @@ const Fact* find(const Facts& facts, FactKind kind, const std::string& subject, 
 /// One person in front of the robot, a mug, nothing moves.
 class FactsTest : public ::testing::Test {
  protected:
-  FactsTest() : robot_(test::small_robot()), finder_(shipped(), robot_, [this](const std::string& name) { return model(name); }) {
+  FactsTest()
+      : robot_(test::small_robot()),
+        finder_(shipped(), robot_, [this](const std::string& name) { return model(name); }) {
     scene_.robot_known = true;
     scene_.robot_position = Vector::Zero(static_cast<Eigen::Index>(robot_->axes().size()));
     anna_.id = "anna";
     anna_.joints = standing_body({2.0, 0, 0}, std::numbers::pi, 1.75);
-    mug_ = SceneObject{"mug", "cube", make_pose({1.0, 0.2, 0.9}), Holder::nobody, "", 0, Vector3::Zero(), {}};
+    mug_ = SceneObject{"mug",           "cube", make_pose({1.0, 0.2, 0.9}), Holder::nobody, "", 0,
+                       Vector3::Zero(), {}};
   }
 
   const ObjectModel* model(const std::string& name) {
@@ -49,7 +54,9 @@ class FactsTest : public ::testing::Test {
     const double edge = name == "cube" ? 0.08 : name == "crate" ? 0.4 : 0;
     if (edge == 0) return nullptr;
     ObjectModel& m = models_[name];
-    for (int i = 0; i < 8; ++i) m.mesh.vertices.push_back(0.5 * edge * Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    for (int i = 0; i < 8; ++i)
+      m.mesh.vertices.push_back(0.5 * edge *
+                                Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
     return &m;
   }
 
@@ -61,7 +68,9 @@ class FactsTest : public ::testing::Test {
     return facts_ = finder_.find(scene_, people_, at(t));
   }
 
-  BodyJoint& joint(const char* name) { return anna_.joints[static_cast<std::size_t>(body_joint_index(name))]; }
+  BodyJoint& joint(const char* name) {
+    return anna_.joints[static_cast<std::size_t>(body_joint_index(name))];
+  }
   void gaze_at(const Vector3& p) {
     anna_.gaze_known = true;
     anna_.gaze_origin = joint("head").position;
@@ -103,7 +112,11 @@ TEST_F(FactsTest, a_limit_crossed_to_and_fro_by_noise_changes_nothing) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, 0.08 * limit);
   for (int k = 0; k < 300; ++k) {
-    joint("torso").velocity = {-limit * (k < 100 ? 0.6 : k < 200 ? 1.25 : 0.5) + noise(random), 0, 0};
+    joint("torso").velocity = {-limit * (k < 100   ? 0.6
+                                         : k < 200 ? 1.25
+                                                   : 0.5) +
+                                   noise(random),
+                               0, 0};
     const bool now = find(look(0.1 * k), FactKind::approaching, "anna") != nullptr;
     changes += now != before;
     before = now;
@@ -112,7 +125,8 @@ TEST_F(FactsTest, a_limit_crossed_to_and_fro_by_noise_changes_nothing) {
 }
 
 TEST_F(FactsTest, what_is_in_beside_and_far_from_what) {
-  others_ = {{"crate", "crate", make_pose({1.0, 0.2, 0.95}), Holder::nobody, "", 0, Vector3::Zero(), {}}};
+  others_ = {
+      {"crate", "crate", make_pose({1.0, 0.2, 0.95}), Holder::nobody, "", 0, Vector3::Zero(), {}}};
   look(0);
   EXPECT_TRUE(find(facts_, FactKind::inside, "mug", "crate"));
   EXPECT_FALSE(find(facts_, FactKind::inside, "crate", "mug"));
@@ -149,7 +163,8 @@ TEST_F(FactsTest, reaching_is_of_the_hand_and_not_of_the_walking_body) {
   EXPECT_FALSE(find(look(0), FactKind::reaching, "anna", "mug"));
   EXPECT_TRUE(find(facts_, FactKind::moving, "anna"));
   for (BodyJoint& j : anna_.joints) j.velocity.setZero();
-  joint("r_hand").velocity = 0.4 * (mug_.T_world_object.translation() - joint("r_hand").position).normalized();
+  joint("r_hand").velocity =
+      0.4 * (mug_.T_world_object.translation() - joint("r_hand").position).normalized();
   look(1);
   ASSERT_TRUE(find(facts_, FactKind::reaching, "anna", "mug"));
   EXPECT_NEAR(find(facts_, FactKind::reaching, "anna", "mug")->value, 0.4, 1e-9);
@@ -168,7 +183,8 @@ TEST_F(FactsTest, offered_taken_back_and_let_go) {
   mug_.velocity = {-0.3, 0, 0};
   EXPECT_TRUE(find(look(0.1), FactKind::offering, "anna", "mug"));
   mug_.velocity.setZero();
-  for (double t = 0.2; t < 1.5; t += 0.1) EXPECT_TRUE(find(look(t), FactKind::offering, "anna", "mug")) << "held out, still";
+  for (double t = 0.2; t < 1.5; t += 0.1)
+    EXPECT_TRUE(find(look(t), FactKind::offering, "anna", "mug")) << "held out, still";
   mug_.velocity = {0.3, 0, 0};
   EXPECT_TRUE(find(look(1.6), FactKind::withdrawn, "anna", "mug"));
   EXPECT_FALSE(find(look(1.9), FactKind::offering, "anna", "mug"));
@@ -211,7 +227,8 @@ TEST_F(FactsTest, who_can_reach_what) {
   EXPECT_FALSE(find(look(2), FactKind::reachable_by_robot, "mug"));
 }
 
-// ---- a real handover between two people (120 Hz, both upper bodies, an object with force sensors) ----
+// ---- a real handover between two people (120 Hz, both upper bodies, an object with force sensors)
+// ----
 
 TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
   const std::optional<test::RecordedHandover> found = test::recorded_handover();
@@ -238,15 +255,19 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
     for (const auto& [who, joints] : recorded.bodies) {
       ObservedPerson body;
       body.body = who;
-      for (const auto& [joint, frames] : joints) body.joints.push_back({joint, test::place(frames[i]), 1.0});
+      for (const auto& [joint, frames] : joints)
+        body.joints.push_back({joint, test::place(frames[i]), 1.0});
       people.people.push_back(std::move(body));
     }
     tracker.observe(people, at(t));
-    ObservedObject baton{"baton", "", Pose::Identity(), 1.0, {}, {PrimitiveKind::box, {0.45, 0.03, 0.03}}};
+    ObservedObject baton{"baton", "", Pose::Identity(),
+                         1.0,     {}, {PrimitiveKind::box, {0.45, 0.03, 0.03}}};
     const auto& row = recorded.baton[i];
-    baton.T_world_object = make_pose(test::place(row), Eigen::Quaterniond(row[6], row[3], row[4], row[5]).normalized());
-    baton.grips = {{baton.T_world_object * Vector3(-0.2, 0, 0), std::max(0.0, -recorded.giver_wrench[i][2])},
-                   {baton.T_world_object * Vector3(0.2, 0, 0), std::max(0.0, -recorded.taker_wrench[i][2])}};
+    baton.T_world_object = make_pose(
+        test::place(row), Eigen::Quaterniond(row[6], row[3], row[4], row[5]).normalized());
+    baton.grips = {
+        {baton.T_world_object * Vector3(-0.2, 0, 0), std::max(0.0, -recorded.giver_wrench[i][2])},
+        {baton.T_world_object * Vector3(0.2, 0, 0), std::max(0.0, -recorded.taker_wrench[i][2])}};
     model.observe({0, "capture", {baton}}, at(t));
     if (t + 1e-9 < next_look) continue;
     next_look += kLookEvery;

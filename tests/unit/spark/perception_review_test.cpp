@@ -1,4 +1,5 @@
-// What `handsel doctor --perception` says of samples: nothing where all is well, each fault by its name.
+// What `handsel doctor --perception` says of samples: nothing where all is well, each fault by its
+// name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,11 +32,13 @@ HumanObservation good(int frame) {
 
 struct Case {
   double rate{30}, age{0.02};
-  std::function<void(HumanObservation&, int frame, double& age)> spoil = [](HumanObservation&, int, double&) {};
+  std::function<void(HumanObservation&, int frame, double& age)> spoil = [](HumanObservation&, int,
+                                                                            double&) {};
 };
 
 std::vector<Finding> findings(const Case& c) {
-  PerceptionReview review({{Vector3(-1.3, -1.3, 0.1), Vector3(1.3, 1.3, 1.9)}, Vector3::Zero(), {"mug"}});
+  PerceptionReview review(
+      {{Vector3(-1.3, -1.3, 0.1), Vector3(1.3, 1.3, 1.9)}, Vector3::Zero(), {"mug"}});
   for (int i = 0; i < static_cast<int>(3 * c.rate); ++i) {
     const double t = i / c.rate;
     HumanObservation m = good(i);
@@ -49,7 +52,8 @@ std::vector<Finding> findings(const Case& c) {
   return review.findings();
 }
 
-void expect_only(const std::vector<Finding>& all, const std::string& subject, const std::string& words) {
+void expect_only(const std::vector<Finding>& all, const std::string& subject,
+                 const std::string& words) {
   int found = 0;
   for (const Finding& finding : all) {
     if (finding.verdict == Verdict::good) continue;
@@ -87,12 +91,17 @@ TEST(PerceptionReview, names_rates_ages_and_clocks) {
   expect_fault({.age = 0.6}, "age", "0.60 s old");
   expect_fault({.age = 30}, "clock offset", "30.000 s in the past");
   expect_fault({.age = -0.4}, "clock offset", "0.400 s in the future");
-  expect_fault({.spoil = [](HumanObservation&, int i, double& age) { age += i % 5 == 0 ? 0.15 : 0.0; }}, "jitter", "varies by 150 ms");
-  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.stamp = 0; }}, "stamp", "have no stamp");
-  expect_fault({.spoil = [](HumanObservation& m, int i, double&) { m.stamp = kNow / 1'000'000 + 33 * i; }}, "stamp",
-               "looks like milliseconds");
-  expect_fault({.spoil = [](HumanObservation& m, int i, double&) { m.stamp = 40'000'000'000 + 33'000'000 * Stamp{i}; }}, "stamp",
-               "since something was started");
+  expect_fault(
+      {.spoil = [](HumanObservation&, int i, double& age) { age += i % 5 == 0 ? 0.15 : 0.0; }},
+      "jitter", "varies by 150 ms");
+  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.stamp = 0; }}, "stamp",
+               "have no stamp");
+  expect_fault(
+      {.spoil = [](HumanObservation& m, int i, double&) { m.stamp = kNow / 1'000'000 + 33 * i; }},
+      "stamp", "looks like milliseconds");
+  expect_fault({.spoil = [](HumanObservation& m, int i,
+                            double&) { m.stamp = 40'000'000'000 + 33'000'000 * Stamp{i}; }},
+               "stamp", "since something was started");
 }
 
 TEST(PerceptionReview, names_frames_and_units) {
@@ -105,24 +114,34 @@ TEST(PerceptionReview, names_frames_and_units) {
   };
   expect_fault(frame([](const Vector3& p) { return Vector3(1000 * p); }), "frame", "millimetres");
   expect_fault(frame([](const Vector3& p) { return Vector3(100 * p); }), "frame", "centimetres");
-  expect_fault(frame([](const Vector3& p) { return Vector3(-p.y(), 1.4 - p.z(), p.x()); }), "frame", "y points down");
-  expect_fault(frame([](const Vector3& p) { return Vector3(p.x(), p.z(), -p.y()); }), "frame", "y points up");
-  expect_fault(frame([](const Vector3& p) { return Vector3(p.x(), -p.y(), -p.z()); }), "frame", "z points down");
-  expect_fault(frame([](const Vector3& p) { return Vector3(p - Vector3(0, 0, 1.2)); }), "frame", "its floor is not that");
-  expect_fault(frame([](const Vector3& p) { return Vector3(p + Vector3(40, 0, 0)); }), "reach", "out of reach");
+  expect_fault(frame([](const Vector3& p) { return Vector3(-p.y(), 1.4 - p.z(), p.x()); }), "frame",
+               "y points down");
+  expect_fault(frame([](const Vector3& p) { return Vector3(p.x(), p.z(), -p.y()); }), "frame",
+               "y points up");
+  expect_fault(frame([](const Vector3& p) { return Vector3(p.x(), -p.y(), -p.z()); }), "frame",
+               "z points down");
+  expect_fault(frame([](const Vector3& p) { return Vector3(p - Vector3(0, 0, 1.2)); }), "frame",
+               "its floor is not that");
+  expect_fault(frame([](const Vector3& p) { return Vector3(p + Vector3(40, 0, 0)); }), "reach",
+               "out of reach");
 }
 
 TEST(PerceptionReview, names_names_ids_and_standstill) {
-  expect_fault({.spoil = [](HumanObservation& m, int, double&) { each_joint(m, [](ObservedJoint& j) { j.name = "RIGHT_" + j.name; }); }},
+  expect_fault({.spoil =
+                    [](HumanObservation& m, int, double&) {
+                      each_joint(m, [](ObservedJoint& j) { j.name = "RIGHT_" + j.name; });
+                    }},
                "names", "RIGHT_head");
   expect_fault({.spoil =
                     [](HumanObservation& m, int, double&) {
                       m.people[0].joints.push_back({"nose", m.people[0].joints[0].position, 1});
                     }},
                "names", "nose");
-  expect_fault({.spoil = [](HumanObservation& m, int i, double&) { m.people[0].body = "p" + std::to_string(i); }}, "ids",
-               "90 ids to 1 people");
-  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.people = good(0).people; }}, "frozen", "the very same body");
+  expect_fault({.spoil = [](HumanObservation& m, int i,
+                            double&) { m.people[0].body = "p" + std::to_string(i); }},
+               "ids", "90 ids to 1 people");
+  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.people = good(0).people; }},
+               "frozen", "the very same body");
   expect_fault({.spoil =
                     [](HumanObservation& m, int i, double&) {
                       m.stamp = kNow + Stamp{i / 4} * 133'333'333;
@@ -135,8 +154,9 @@ TEST(PerceptionReview, names_names_ids_and_standstill) {
                       m.people[0].has_gaze = false;
                     }},
                "confidence", "below 0.05");
-  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.people[0].gaze_direction = Vector3::UnitX(); }}, "gaze",
-               "behind themselves");
+  expect_fault({.spoil = [](HumanObservation& m, int,
+                            double&) { m.people[0].gaze_direction = Vector3::UnitX(); }},
+               "gaze", "behind themselves");
   EXPECT_EQ(joint_meant("RightWrist"), "r_wrist");
   EXPECT_EQ(joint_meant("LEFT_ELBOW"), "l_elbow");
   EXPECT_EQ(joint_meant("Pelvis"), "waist");
@@ -145,7 +165,8 @@ TEST(PerceptionReview, names_names_ids_and_standstill) {
 }
 
 TEST(PerceptionReview, names_coverage) {
-  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.coverage = {}; }}, "coverage", "no volume");
+  expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.coverage = {}; }}, "coverage",
+               "no volume");
   expect_fault({.spoil =
                     [](HumanObservation& m, int, double&) {
                       m.coverage = {Vector3(0, -4, 0), Vector3(4, 4, 2.5)};
@@ -155,11 +176,15 @@ TEST(PerceptionReview, names_coverage) {
 
 TEST(PerceptionReview, names_what_is_malformed_and_what_objects_lack) {
   PerceptionReview review({{Vector3::Zero(), Vector3::Ones()}, Vector3::Zero(), {"mug"}});
-  review.on_malformed("handsel/human_observation", "HumanObservation.people[0].joints[3].position.z is not finite");
-  review.on_malformed("handsel/human_observation", "HumanObservation.people[0].joints[3].position.z is not finite");
-  expect_only(review.findings(), "malformed", "2 of 2 samples on handsel/human_observation are malformed and dropped");
+  review.on_malformed("handsel/human_observation",
+                      "HumanObservation.people[0].joints[3].position.z is not finite");
+  review.on_malformed("handsel/human_observation",
+                      "HumanObservation.people[0].joints[3].position.z is not finite");
+  expect_only(review.findings(), "malformed",
+              "2 of 2 samples on handsel/human_observation are malformed and dropped");
   PerceptionReview gaze({{Vector3::Zero(), Vector3::Ones()}, Vector3::Zero(), {"mug"}});
-  gaze.on_malformed("handsel/human_observation", "HumanObservation.people[0].gaze_direction has a norm of 2");
+  gaze.on_malformed("handsel/human_observation",
+                    "HumanObservation.people[0].gaze_direction has a norm of 2");
   expect_only(gaze.findings(), "gaze", "norm of 2");
   const auto objects = [](const std::string& model, double z) {
     PerceptionReview things({{Vector3::Zero(), Vector3::Ones()}, Vector3::Zero(), {"mug"}});
@@ -178,7 +203,8 @@ TEST(PerceptionReview, names_what_is_malformed_and_what_objects_lack) {
     return things.findings();
   };
   ASSERT_EQ(objects("mug", 0.7).size(), 1u);
-  EXPECT_EQ(objects("mug", 0.7)[0].verdict, Verdict::good) << "an object may stand still to the last bit";
+  EXPECT_EQ(objects("mug", 0.7)[0].verdict, Verdict::good)
+      << "an object may stand still to the last bit";
   expect_only(objects("mugg", 0.7), "names", "it (mugg)");
   expect_only(objects("mug", -0.6), "frame", "0.60 m under the floor");
 }

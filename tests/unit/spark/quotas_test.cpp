@@ -1,4 +1,5 @@
-// Quotas of SPARK: what is nearest and most relevant stays, the rest is counted, memory does not grow with ever-new names.
+// Quotas of SPARK: what is nearest and most relevant stays, the rest is counted, memory does not
+// grow with ever-new names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +26,8 @@ const Coverage kRoom{{-30, -30, -0.5}, {30, 30, 2.6}};
 
 config::SparkSettings shipped() {
   config::SparkSettings settings;
-  load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
+  load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
+                  settings);
   return settings;
 }
 
@@ -34,11 +36,14 @@ TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 ObservedPerson body_at(const std::string& id, double x, double y) {
   ObservedPerson body;
   body.body = id;
-  for (const auto& joint : standing_body({x, y, 0}, 0.0, 1.75)) body.joints.push_back({joint.name, joint.position, 1.0});
+  for (const auto& joint : standing_body({x, y, 0}, 0.0, 1.75))
+    body.joints.push_back({joint.name, joint.position, 1.0});
   return body;
 }
 
-HumanObservation seen(std::vector<ObservedPerson> people) { return {0, "camera", kRoom, std::move(people)}; }
+HumanObservation seen(std::vector<ObservedPerson> people) {
+  return {0, "camera", kRoom, std::move(people)};
+}
 
 ObservedObject thing(const std::string& id, const Vector3& where) {
   return {id, "", make_pose(where), 0.9, {}, {PrimitiveKind::box, {0.05, 0.05, 0.05}}};
@@ -49,7 +54,8 @@ SceneModel model(const config::SparkSettings& settings, std::vector<SceneBox> bo
 }
 
 bool has(const Scene& scene, const std::string& id) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == id; });
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const SceneObject& o) { return o.id == id; });
 }
 
 TEST(Quotas, nobody_left_out_is_nearer_than_anybody_kept) {
@@ -70,12 +76,14 @@ TEST(Quotas, nobody_left_out_is_nearer_than_anybody_kept) {
     ASSERT_EQ(left_out.count, 44u);
     double farthest = -1e9, nearest = 1e9;
     for (const Person& person : all) {
-      const bool stays = std::any_of(kept.begin(), kept.end(), [&](const Person& k) { return k.id == person.id; });
+      const bool stays =
+          std::any_of(kept.begin(), kept.end(), [&](const Person& k) { return k.id == person.id; });
       double distance = 1e9;  // of any joint from the vertical axis of the arm, counted anew
       for (const BodyJoint& joint : person.joints) {
         const Vector3 p = joint.position;
         const double over = std::max(0.0, std::max(p.z() - 1.9, 0.1 - p.z()));
-        distance = std::min(distance, std::hypot(std::hypot(p.x(), p.y()), over) - person.inflation);
+        distance =
+            std::min(distance, std::hypot(std::hypot(p.x(), p.y()), over) - person.inflation);
       }
       if (stays) farthest = std::max(farthest, distance);
       if (!stays) nearest = std::min(nearest, distance);
@@ -88,7 +96,8 @@ TEST(Quotas, nobody_left_out_is_nearer_than_anybody_kept) {
 TEST(Quotas, of_two_hundred_people_the_nearest_sixteen_are_published_and_the_others_counted) {
   PeopleTracker tracker(shipped());
   std::vector<ObservedPerson> crowd;
-  for (int i = 0; i < 200; ++i) crowd.push_back(body_at("far" + std::to_string(i), 8 + 0.6 * (i % 20), -6 + 0.6 * (i / 20)));
+  for (int i = 0; i < 200; ++i)
+    crowd.push_back(body_at("far" + std::to_string(i), 8 + 0.6 * (i % 20), -6 + 0.6 * (i / 20)));
   crowd.push_back(body_at("anna", 1.5, 0));
   std::uint32_t untracked = 0;
   for (int sample = 0; sample < 5; ++sample) {
@@ -103,7 +112,8 @@ TEST(Quotas, of_two_hundred_people_the_nearest_sixteen_are_published_and_the_oth
   ASSERT_EQ(state.people.size(), 16u);
   EXPECT_EQ(state.left_out, 16u);
   EXPECT_GT(left_out.nearest, arm_radius(kReach));
-  EXPECT_TRUE(std::any_of(state.people.begin(), state.people.end(), [](const Person& p) { return p.id == "anna"; }));
+  EXPECT_TRUE(std::any_of(state.people.begin(), state.people.end(),
+                          [](const Person& p) { return p.id == "anna"; }));
 }
 
 TEST(Quotas, a_person_known_before_a_crowd_came_is_followed_and_does_not_turn_into_a_lost_one) {
@@ -115,7 +125,8 @@ TEST(Quotas, a_person_known_before_a_crowd_came_is_followed_and_does_not_turn_in
     HumanObservation all = first;
     all.people[0] = body_at("carl", 12, 1e-3 * sample);
     for (int i = 0; i < 60; ++i)
-      all.people.push_back(body_at("near" + std::to_string(i), 3 + 0.8 * (i % 8), -3 + 0.8 * (i / 8) + 1e-3 * sample));
+      all.people.push_back(body_at("near" + std::to_string(i), 3 + 0.8 * (i % 8),
+                                   -3 + 0.8 * (i / 8) + 1e-3 * sample));
     tracker.observe(all, at(0.033 * sample), {}, &kReach);
     tracker.keep_nearest(at(0.033 * sample), kReach);
   }
@@ -151,7 +162,8 @@ TEST(Quotas, ten_thousand_bodies_over_time_leave_a_bounded_number_of_tracks) {
     std::vector<ObservedPerson> bodies;
     for (int i = 0; i < 20; ++i) {
       const int n = 20 * sample + i;
-      bodies.push_back(body_at("body" + std::to_string(n), -20 + 0.37 * (n % 107), -20 + 0.41 * (n % 97)));
+      bodies.push_back(
+          body_at("body" + std::to_string(n), -20 + 0.37 * (n % 107), -20 + 0.41 * (n % 97)));
     }
     HumanObservation observation = seen(std::move(bodies));
     observation.source = "camera" + std::to_string(sample % 50);
@@ -191,8 +203,11 @@ TEST(Quotas, what_is_held_or_wanted_stays_in_the_scene_before_what_is_near) {
   people.people.push_back(anna);
   const Vector3 hand = anna.joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position;
   scene.want("wanted");
-  std::vector<ObservedObject> things{thing("in_hand", hand), thing("wanted", {9, 9, 1}), thing("near", {0.4, 0, 1})};
-  for (int i = 0; i < 1000; ++i) things.push_back(thing("clutter" + std::to_string(i), {1.5 + 0.05 * (i % 40), 0.1 * (i / 40), 1}));
+  std::vector<ObservedObject> things{thing("in_hand", hand), thing("wanted", {9, 9, 1}),
+                                     thing("near", {0.4, 0, 1})};
+  for (int i = 0; i < 1000; ++i)
+    things.push_back(
+        thing("clutter" + std::to_string(i), {1.5 + 0.05 * (i % 40), 0.1 * (i / 40), 1}));
   scene.observe({0, "camera", {things.begin(), things.begin() + 3}}, at(0));
   scene.scene(at(0), people);
   scene.observe({0, "camera", things}, at(0.03));
@@ -205,17 +220,20 @@ TEST(Quotas, what_is_held_or_wanted_stays_in_the_scene_before_what_is_near) {
   EXPECT_EQ(scene.forgotten(), 1003u - 128u);
   double farthest = 0;
   for (const SceneObject& object : out.objects)
-    if (object.id.starts_with("clutter")) farthest = std::max(farthest, object.T_world_object.translation().head<2>().norm());
+    if (object.id.starts_with("clutter"))
+      farthest = std::max(farthest, object.T_world_object.translation().head<2>().norm());
   std::size_t nearer = 0;
   for (const ObservedObject& object : things)
-    if (object.id.starts_with("clutter")) nearer += object.T_world_object.translation().head<2>().norm() < farthest - 1e-9;
+    if (object.id.starts_with("clutter"))
+      nearer += object.T_world_object.translation().head<2>().norm() < farthest - 1e-9;
   EXPECT_LT(nearer, 64u) << "only the nearest were kept";
 }
 
 TEST(Quotas, objects_left_out_within_reach_degrade_spark) {
   SceneModel scene = model(shipped());
   std::vector<ObservedObject> things;
-  for (int i = 0; i < 100; ++i) things.push_back(thing("cup" + std::to_string(i), {0.3 + 0.003 * i, 0, 1}));
+  for (int i = 0; i < 100; ++i)
+    things.push_back(thing("cup" + std::to_string(i), {0.3 + 0.003 * i, 0, 1}));
   scene.observe({0, "camera", things}, at(0));
   scene.scene(at(0), {});
   EXPECT_THAT(scene.trouble(at(0)), HasSubstr("36 objects are left out of the scene"));
@@ -224,12 +242,15 @@ TEST(Quotas, objects_left_out_within_reach_degrade_spark) {
 
 TEST(Quotas, of_three_hundred_boxes_the_nearest_are_published) {
   std::vector<SceneBox> boxes;
-  for (int i = 0; i < 300; ++i) boxes.push_back({"box" + std::to_string(i), make_pose({0.1 * (300 - i), 0, 0.5}), {0.05, 0.05, 1}, false});
+  for (int i = 0; i < 300; ++i)
+    boxes.push_back(
+        {"box" + std::to_string(i), make_pose({0.1 * (300 - i), 0, 0.5}), {0.05, 0.05, 1}, false});
   SceneModel scene = model(shipped(), boxes);
   const Scene out = scene.scene(at(0), {});
   ASSERT_EQ(out.boxes.size(), 64u);
   EXPECT_EQ(out.left_out, 236u);
-  for (const SceneBox& box : out.boxes) EXPECT_LE(box.T_world_box.translation().x(), 6.4 + 1e-9) << box.id;
+  for (const SceneBox& box : out.boxes)
+    EXPECT_LE(box.T_world_box.translation().x(), 6.4 + 1e-9) << box.id;
   EXPECT_EQ(out.boxes.back().id, "box299");
 }
 
@@ -281,10 +302,14 @@ TEST(Quotas, a_quota_out_of_range_is_refused_with_file_line_and_key) {
     }
     return "";
   };
-  EXPECT_EQ(refusal("memory: 1\nmax_people: 17\n"), file.string() + ":2: max_people is 17; it must be from 1 to 16");
-  EXPECT_EQ(refusal("max_objects: 0\n"), file.string() + ":1: max_objects is 0; it must be from 1 to 64");
-  EXPECT_THAT(refusal("max_bodies: 16\n"), HasSubstr("max_bodies is 16; it must be above max_people and at most max_tracks"));
-  EXPECT_THAT(refusal("max_objects: 64\nmax_known_objects: 32\n"), HasSubstr("it must be at most max_known_objects"));
+  EXPECT_EQ(refusal("memory: 1\nmax_people: 17\n"),
+            file.string() + ":2: max_people is 17; it must be from 1 to 16");
+  EXPECT_EQ(refusal("max_objects: 0\n"),
+            file.string() + ":1: max_objects is 0; it must be from 1 to 64");
+  EXPECT_THAT(refusal("max_bodies: 16\n"),
+              HasSubstr("max_bodies is 16; it must be above max_people and at most max_tracks"));
+  EXPECT_THAT(refusal("max_objects: 64\nmax_known_objects: 32\n"),
+              HasSubstr("it must be at most max_known_objects"));
   EXPECT_EQ(refusal("max_people: 16\n"), "");
 }
 

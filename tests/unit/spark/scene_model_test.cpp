@@ -1,4 +1,5 @@
-// Objects as SPARK holds them: out of sight, in hands, told by two sources, under exchanged names, unknown.
+// Objects as SPARK holds them: out of sight, in hands, told by two sources, under exchanged names,
+// unknown.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,9 +16,12 @@ using ::testing::HasSubstr;
 
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
-ObservedObject mug(const std::string& id, const Vector3& where) { return {id, "mug", make_pose(where), 0.9, {}, {}}; }
+ObservedObject mug(const std::string& id, const Vector3& where) {
+  return {id, "mug", make_pose(where), 0.9, {}, {}};
+}
 
-ObservedObject unknown(const std::string& id, const Vector3& where, PrimitiveKind kind, const Vector3& size) {
+ObservedObject unknown(const std::string& id, const Vector3& where, PrimitiveKind kind,
+                       const Vector3& size) {
   return {id, "", make_pose(where), 0.9, {}, {kind, size}};
 }
 
@@ -31,11 +35,14 @@ Person person_at(const Vector3& feet) {
 class SceneObjects : public ::testing::Test {
  protected:
   SceneObjects() {
-    load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings_);
+    load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
+                    settings_);
     mug_.mass = 0.3;
-    for (int i = 0; i < 8; ++i) mug_.mesh.vertices.push_back(0.04 * Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    for (int i = 0; i < 8; ++i)
+      mug_.mesh.vertices.push_back(0.04 * Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
     model_.emplace(
-        settings_, std::make_shared<const RobotModel>(), [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+        settings_, std::make_shared<const RobotModel>(),
+        [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
         std::vector<SceneBox>{{"table", make_pose({0.7, 0, 0.35}), {1, 1, 0.7}, true}});
   }
   void see(double t, std::vector<ObservedObject> objects, const std::string& source = "camera") {
@@ -59,10 +66,12 @@ class SceneObjects : public ::testing::Test {
   HumanState people_;
 };
 
-TEST_F(SceneObjects, what_leans_on_the_fingertips_is_not_in_the_hand_what_was_in_it_may_be_farther_out) {
+TEST_F(SceneObjects,
+       what_leans_on_the_fingertips_is_not_in_the_hand_what_was_in_it_may_be_farther_out) {
   model_.emplace(
       settings_, std::make_shared<const RobotModel>(test::planar_arm()),
-      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; }, std::vector<SceneBox>{});
+      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+      std::vector<SceneBox>{});
   people_.people = {person_at({2.2, 0, 0})};
   RobotState robot;
   robot.position = Vector::Zero(3);
@@ -132,7 +141,8 @@ TEST_F(SceneObjects, of_two_sources_one_is_believed_and_the_other_takes_over) {
     see(i / 30.0, {mug("mug", {0.70, 0, 0.74})}, "left");
     see(i / 30.0 + 0.01, {mug("mug", {0.73, 0, 0.74})}, "right");
     const Scene scene = wait(i / 30.0 + 0.02, i / 30.0 + 0.02);
-    ASSERT_NEAR(find(scene, "mug")->T_world_object.translation().x(), 0.70, 1e-9) << "no moving to and fro";
+    ASSERT_NEAR(find(scene, "mug")->T_world_object.translation().x(), 0.70, 1e-9)
+        << "no moving to and fro";
     ASSERT_NEAR(find(scene, "mug")->uncertainty, 0.03, 1e-6) << "where they differ";
   }
   for (int i = 60; i < 90; ++i) see(i / 30.0 + 0.01, {mug("mug", {0.73, 0, 0.74})}, "right");
@@ -166,12 +176,18 @@ TEST_F(SceneObjects, from_the_past_is_no_news) {
   EXPECT_NEAR(find(wait(1, 1), "mug")->T_world_object.translation().x(), 0.5, 1e-9);
 }
 
-TEST_F(SceneObjects, unknown_things_enter_as_primitives_and_what_has_no_shape_is_refused_and_counted) {
+TEST_F(SceneObjects,
+       unknown_things_enter_as_primitives_and_what_has_no_shape_is_refused_and_counted) {
   see(0, {unknown("crate", {0.6, 0, 0.8}, PrimitiveKind::box, {0.2, 0.3, 0.2}),
           unknown("nothing", {0, 0, 1}, PrimitiveKind::none, Vector3::Zero()),
           unknown("flat", {0, 0, 1}, PrimitiveKind::cylinder, {0.1, 0.1, 0}),
           {"vase", "vase", make_pose({0, 0, 1}), 0.9, {}, {}},
-          {"tin", "tin", make_pose({0.5, 0.3, 0.75}), 0.9, {}, {PrimitiveKind::cylinder, {0.08, 0.08, 0.1}}}});
+          {"tin",
+           "tin",
+           make_pose({0.5, 0.3, 0.75}),
+           0.9,
+           {},
+           {PrimitiveKind::cylinder, {0.08, 0.08, 0.1}}}});
   const Scene scene = wait(0, 0);
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(find(scene, "crate")->primitive.kind, PrimitiveKind::box);
@@ -179,9 +195,9 @@ TEST_F(SceneObjects, unknown_things_enter_as_primitives_and_what_has_no_shape_is
   EXPECT_EQ(find(scene, "tin")->primitive.kind, PrimitiveKind::cylinder);
   EXPECT_EQ(find(scene, "tin")->model, "") << "nobody has described a tin";
   EXPECT_EQ(model_->refused(), 3u);
-  EXPECT_EQ(
-      model_->trouble(at(1)),
-      "object vase of source camera is of model vase, which is not described, and has no primitive with a size above 0: refused, 3 so far");
+  EXPECT_EQ(model_->trouble(at(1)),
+            "object vase of source camera is of model vase, which is not described, and has no "
+            "primitive with a size above 0: refused, 3 so far");
   EXPECT_EQ(model_->trouble(at(20)), "");
 }
 
@@ -191,9 +207,18 @@ TEST(UnknownObjects, are_obstacles_of_their_shape_and_of_where_they_may_be) {
   CollisionWorld world(arm, nullptr);
   Vector q = Vector::Zero(arm.dof());
   Scene scene;
-  scene.objects = {
-      {"crate", "", make_pose({0.8, 0, 0}), Holder::nobody, "", 0, Vector3::Zero(), {}, {PrimitiveKind::box, {0.1, 0.1, 0.1}}, 0}};
-  const auto touches = [&](PrimitiveKind kind, const Vector3& size, const Vector3& where, double uncertainty) {
+  scene.objects = {{"crate",
+                    "",
+                    make_pose({0.8, 0, 0}),
+                    Holder::nobody,
+                    "",
+                    0,
+                    Vector3::Zero(),
+                    {},
+                    {PrimitiveKind::box, {0.1, 0.1, 0.1}},
+                    0}};
+  const auto touches = [&](PrimitiveKind kind, const Vector3& size, const Vector3& where,
+                           double uncertainty) {
     scene.objects[0].primitive = {kind, size};
     scene.objects[0].T_world_object.translation() = where;
     scene.objects[0].uncertainty = uncertainty;

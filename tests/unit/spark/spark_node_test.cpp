@@ -24,7 +24,8 @@ class SparkNode : public ::testing::Test {
     setenv("HANDSEL_HOME", (std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy").c_str(), 1);
     context_.robot = test::small_robot();
     context_.settings = folder_.path();
-    std::filesystem::copy(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", folder_.path());
+    std::filesystem::copy(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
+                          folder_.path());
   }
   void start() {
     node_ = std::make_unique<spark::Node>(network_.add("spark"), context_);
@@ -34,8 +35,10 @@ class SparkNode : public ::testing::Test {
     goals_out_ = network_.add("handsel").advertise<TaskGoal>();
     Bus& reader = network_.add("supervisor");
     safety_out_ = reader.advertise<SafetyState>();
-    reader.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene, ++scenes_; });
-    reader.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
+    reader.subscribe<Scene>(
+        [this](const Scene& scene, const Receipt&) { scene_ = scene, ++scenes_; });
+    reader.subscribe<HumanState>(
+        [this](const HumanState& people, const Receipt&) { people_ = people; });
     reader.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt&) {
       if (health.component == "spark") health_ = health;
     });
@@ -139,7 +142,9 @@ TEST_F(SparkNode, a_source_that_is_always_late_is_not_live_and_its_people_are_as
 }
 
 TEST_F(SparkNode, a_camera_that_speaks_in_its_own_frame_is_brought_to_the_world) {
-  folder_.write("calibration.txtpb", R"(sources { source: "side" speaks_in: CAMERA T_world_camera { position { x: 1 y: 2 z: 0.1 } } })");
+  folder_.write(
+      "calibration.txtpb",
+      R"(sources { source: "side" speaks_in: CAMERA T_world_camera { position { x: 1 y: 2 z: 0.1 } } })");
   start();
   see_person({1, 0, 0}, 5, "side");
   ASSERT_EQ(people_.people.size(), 1u);
@@ -148,7 +153,9 @@ TEST_F(SparkNode, a_camera_that_speaks_in_its_own_frame_is_brought_to_the_world)
 }
 
 TEST_F(SparkNode, does_not_start_with_a_calibration_that_is_wrong) {
-  folder_.write("calibration.txtpb", R"(sources { source: "side" speaks_in: CAMERA T_world_camera { orientation { x: 2 } } })");
+  folder_.write(
+      "calibration.txtpb",
+      R"(sources { source: "side" speaks_in: CAMERA T_world_camera { orientation { x: 2 } } })");
   EXPECT_THROW(start(), ConfigError);
 }
 
@@ -159,16 +166,17 @@ TEST_F(SparkNode, news_of_things_come_at_once_and_refusals_are_told) {
   const int before = scenes_;
   ObjectObservation things;
   things.source = "tracker";
-  things.objects = {{"crate", "", make_pose({0.6, 0, 0.8}), 0.9, {}, {PrimitiveKind::box, {0.2, 0.3, 0.2}}},
-                    {"fog", "", make_pose({0.6, 0, 0.8}), 0.9, {}, {}}};
+  things.objects = {
+      {"crate", "", make_pose({0.6, 0, 0.8}), 0.9, {}, {PrimitiveKind::box, {0.2, 0.3, 0.2}}},
+      {"fog", "", make_pose({0.6, 0, 0.8}), 0.9, {}, {}}};
   things_out_->publish(things);
   network_.run_for(milliseconds(2));
   EXPECT_EQ(scenes_, before + 1) << "not at the period";
   ASSERT_EQ(scene_.objects.size(), 1u);
   EXPECT_EQ(scene_.objects[0].primitive.size, Vector3(0.2, 0.3, 0.2));
   network_.run_for(milliseconds(300));
-  EXPECT_THAT(health_.reason,
-              HasSubstr("object fog of source tracker has neither a model nor a primitive with a size above 0: refused, 1 so far"));
+  EXPECT_THAT(health_.reason, HasSubstr("object fog of source tracker has neither a model nor a "
+                                        "primitive with a size above 0: refused, 1 so far"));
 }
 
 }  // namespace

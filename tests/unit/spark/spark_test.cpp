@@ -35,7 +35,8 @@ const Coverage kReach{{-1, -1, 0.1}, {1, 1, 1.9}};
 ObservedPerson body_at(const std::string& id, double x, double y) {
   ObservedPerson body;
   body.body = id;
-  for (const auto& joint : standing_body({x, y, 0}, 0.0, 1.75)) body.joints.push_back({joint.name, joint.position, 1.0});
+  for (const auto& joint : standing_body({x, y, 0}, 0.0, 1.75))
+    body.joints.push_back({joint.name, joint.position, 1.0});
   return body;
 }
 
@@ -49,7 +50,9 @@ HumanObservation seen(std::vector<ObservedPerson> people, const Coverage& covera
 
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
-const BodyJoint& torso(const Person& person) { return person.joints[static_cast<std::size_t>(body_joint_index("torso"))]; }
+const BodyJoint& torso(const Person& person) {
+  return person.joints[static_cast<std::size_t>(body_joint_index("torso"))];
+}
 
 TEST(PeopleTracker, nobody_is_a_fact_only_while_the_reach_is_covered) {
   PeopleTracker tracker(settings());
@@ -63,7 +66,8 @@ TEST(PeopleTracker, nobody_is_a_fact_only_while_the_reach_is_covered) {
 
 TEST(PeopleTracker, a_walking_person_has_the_velocity_they_walk_with) {
   PeopleTracker tracker(settings());
-  for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at("b", 1.0 + 0.8 * i / 30.0, 0)}), at(i / 30.0));
+  for (int i = 0; i <= 60; ++i)
+    tracker.observe(seen({body_at("b", 1.0 + 0.8 * i / 30.0, 0)}), at(i / 30.0));
   const HumanState state = tracker.state(at(2.0), kReach);
   ASSERT_EQ(state.people.size(), 1u);
   EXPECT_NEAR(torso(state.people[0]).velocity.x(), 0.8, 0.02);
@@ -75,7 +79,8 @@ TEST(PeopleTracker, a_person_keeps_their_name_when_the_tracker_renames_the_body)
   tracker.observe(seen({body_at("7", -1.52, 0), body_at("8", 1.52, 0)}), at(0.03));
   const HumanState state = tracker.state(at(0.03), kReach);
   ASSERT_EQ(state.people.size(), 2u);
-  for (const auto& person : state.people) EXPECT_GT(torso(person).position.x() * (person.id == "anna" ? 1 : -1), 1.0);
+  for (const auto& person : state.people)
+    EXPECT_GT(torso(person).position.x() * (person.id == "anna" ? 1 : -1), 1.0);
 }
 
 TEST(PeopleTracker, a_lost_person_grows_until_their_volume_is_seen_empty) {
@@ -112,7 +117,8 @@ TEST(PeopleTracker, one_arm_only_still_makes_a_complete_body) {
   const HumanState state = tracker.state(at(0.03), kReach);
   ASSERT_EQ(state.people.size(), 1u);
   ASSERT_EQ(state.people[0].joints.size(), kBodyJoints.size());
-  for (const auto& joint : state.people[0].joints) EXPECT_TRUE(joint.position.allFinite()) << joint.name;
+  for (const auto& joint : state.people[0].joints)
+    EXPECT_TRUE(joint.position.allFinite()) << joint.name;
 }
 
 TEST(PeopleTracker, an_observation_from_the_past_changes_nothing) {
@@ -122,9 +128,11 @@ TEST(PeopleTracker, an_observation_from_the_past_changes_nothing) {
   EXPECT_NEAR(torso(tracker.state(at(1.0), kReach).people[0]).position.x(), 1.5, 0.1);
 }
 
-/// Looks at `people` at 30 Hz from `from` to `to`; every look differs a little, as of a real sensor.
-void look(PeopleTracker& tracker, std::vector<ObservedPerson> people, double from, double to, const std::string& source = "camera",
-          const Coverage& coverage = kRoom, const Obstacles& obstacles = {}) {
+/// Looks at `people` at 30 Hz from `from` to `to`; every look differs a little, as of a real
+/// sensor.
+void look(PeopleTracker& tracker, std::vector<ObservedPerson> people, double from, double to,
+          const std::string& source = "camera", const Coverage& coverage = kRoom,
+          const Obstacles& obstacles = {}) {
   int n = 0;
   for (double t = from; t <= to + 1e-9; t += 1 / 30.0) {
     HumanObservation observation = seen(people, coverage);
@@ -168,7 +176,8 @@ TEST(PeopleTracker, after_a_teleport_both_places_count_until_one_is_seen_empty) 
   ASSERT_EQ(state.people.size(), 2u);
   EXPECT_TRUE(occupied(state, {1.2, 0, 1.2}));
   EXPECT_TRUE(occupied(state, {1.2, 2.5, 1.2}));
-  EXPECT_GT(named(state, "anna")->inflation, 0.5) << "the one no longer seen may have gone anywhere";
+  EXPECT_GT(named(state, "anna")->inflation, 0.5)
+      << "the one no longer seen may have gone anywhere";
   look(tracker, {body_at("anna", 1.2, 2.5)}, 1.533, 2.4);
   state = tracker.state(at(2.4), kReach);
   ASSERT_EQ(state.people.size(), 1u) << "the old place was seen empty";
@@ -267,12 +276,14 @@ TEST(PeopleTracker, what_the_source_cannot_see_is_not_seen_empty) {
   EXPECT_EQ(with_eye.state(at(1.5), kReach).people.size(), 1u) << "she stands behind the wall";
   EXPECT_TRUE(without.state(at(1.5), kReach).people.empty());
   look(with_eye, {}, 1.533, 2.2);
-  EXPECT_TRUE(with_eye.state(at(2.2), kReach).people.empty()) << "with the wall gone the place is seen empty";
+  EXPECT_TRUE(with_eye.state(at(2.2), kReach).people.empty())
+      << "with the wall gone the place is seen empty";
 }
 
 /// Anna walks out of the room along +x at 1 m/s within two seconds.
 void walk_out(PeopleTracker& tracker, const std::string& name = "anna") {
-  for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at(name, 2.9 + i / 60.0, 0)}), at(i / 30.0));
+  for (int i = 0; i <= 60; ++i)
+    tracker.observe(seen({body_at(name, 2.9 + i / 60.0, 0)}), at(i / 30.0));
 }
 
 TEST(PeopleTracker, who_leaves_through_the_edge_grows_no_farther_than_the_edge_and_is_not_dropped) {
@@ -281,12 +292,15 @@ TEST(PeopleTracker, who_leaves_through_the_edge_grows_no_farther_than_the_edge_a
   look(tracker, {}, 2.033, 60.0);
   const HumanState state = tracker.state(at(60), kReach);
   ASSERT_EQ(state.people.size(), 1u) << "never gone silently";
-  EXPECT_LE(state.people[0].inflation, 0.51) << "for the source looks on and would see her come back";
+  EXPECT_LE(state.people[0].inflation, 0.51)
+      << "for the source looks on and would see her come back";
   EXPECT_FALSE(occupied(state, {2.9, 0, 1.2}));
   EXPECT_TRUE(state.covered);
-  EXPECT_NEAR(tracker.state(at(62), kReach).people[0].inflation, 0.5 + 2 * 1.6, 0.1) << "when it no longer looks she may come back";
+  EXPECT_NEAR(tracker.state(at(62), kReach).people[0].inflation, 0.5 + 2 * 1.6, 0.1)
+      << "when it no longer looks she may come back";
   look(tracker, {}, 62.0, 63.0);
-  EXPECT_LE(tracker.state(at(63), kReach).people[0].inflation, 0.51) << "what it looks at again is empty";
+  EXPECT_LE(tracker.state(at(63), kReach).people[0].inflation, 0.51)
+      << "what it looks at again is empty";
 }
 
 TEST(PeopleTracker, who_comes_in_through_an_edge_is_the_one_who_left) {
@@ -341,18 +355,21 @@ TEST(PeopleTracker, noisy_hands_at_rest_are_at_rest) {
   int n = 0;
   for (int i = 0; i < 300; ++i) {
     ObservedPerson body = body_at("anna", 1.4, 0);
-    for (auto& joint : body.joints) joint.position += Vector3(noise(random), noise(random), noise(random));
+    for (auto& joint : body.joints)
+      joint.position += Vector3(noise(random), noise(random), noise(random));
     tracker.observe(seen({body}), at(i / 30.0));
     if (i < 60) continue;
     const HumanState state = tracker.state(at(i / 30.0), kReach);
-    const Vector3 v = state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity;
+    const Vector3 v =
+        state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity;
     squares += v.squaredNorm() / 3;
     ++n;
   }
   EXPECT_LT(std::sqrt(squares / n), 0.12) << "reach_speed of the facts";
 }
 
-/// Somebody who stood and sets off at 9 m/s^2 to 1.1 m/s: known for what it is within three looks, and not for more.
+/// Somebody who stood and sets off at 9 m/s^2 to 1.1 m/s: known for what it is within three looks,
+/// and not for more.
 TEST(PeopleTracker, who_starts_to_walk_is_known_to_within_a_few_looks) {
   constexpr double kStart = 2, kSpeed = 1.1, kAcceleration = 9;
   for (const double deviation : {0.004, 0.01}) {
@@ -365,9 +382,12 @@ TEST(PeopleTracker, who_starts_to_walk_is_known_to_within_a_few_looks) {
       PeopleTracker tracker(settings());
       for (int i = 0; i < 70; ++i) {
         const double t = i / 30.0 - kStart, ramp = kSpeed / kAcceleration;
-        const double gone = t < 0 ? 0 : t < ramp ? 0.5 * kAcceleration * t * t : kSpeed * (t - ramp / 2);
+        const double gone = t < 0      ? 0
+                            : t < ramp ? 0.5 * kAcceleration * t * t
+                                       : kSpeed * (t - ramp / 2);
         ObservedPerson body = body_at("anna", 2.4 - gone, 0);
-        for (auto& joint : body.joints) joint.position += Vector3(noise(random), noise(random), noise(random));
+        for (auto& joint : body.joints)
+          joint.position += Vector3(noise(random), noise(random), noise(random));
         tracker.observe(seen({body}), at(i / 30.0));
         const HumanState state = tracker.state(at(i / 30.0), kReach);
         const double v = -torso(state.people.at(0)).velocity.x();
@@ -394,10 +414,13 @@ TEST(PeopleTracker, a_dart_is_known_within_a_few_looks) {
     tracker.observe(seen({body}), at(clock = 1 + i / 30.0));
   }
   const HumanState state = tracker.state(at(clock), kReach);
-  EXPECT_LT(state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity.x(), -1.2);
+  EXPECT_LT(
+      state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity.x(),
+      -1.2);
 }
 
-/// Any part of a body at 15 Hz with confidences, a gaze from elsewhere or none: a complete body, as tall as it is, near where it is.
+/// Any part of a body at 15 Hz with confidences, a gaze from elsewhere or none: a complete body, as
+/// tall as it is, near where it is.
 TEST(PeopleTracker, any_subset_of_joints_makes_a_body_of_its_own_size) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -414,7 +437,8 @@ TEST(PeopleTracker, any_subset_of_joints_makes_a_body_of_its_own_size) {
       for (const BodyJoint& joint : truth)
         if (unit(random) < 0.5)
           body.joints.push_back(
-              {joint.name, joint.position + Vector3(noise(random), noise(random), noise(random)), 0.2 + 0.8 * unit(random)});
+              {joint.name, joint.position + Vector3(noise(random), noise(random), noise(random)),
+               0.2 + 0.8 * unit(random)});
       tracker.observe(seen({body}), at(i / 15.0));
       if (unit(random) < 0.5) {
         ObservedPerson eyes;
@@ -450,9 +474,12 @@ TEST(PeopleTracker, whose_height_is_known_is_that_tall_whatever_is_seen_of_them)
     PeopleTracker tracker(known);
     ObservedPerson body;
     body.body = who;
-    for (const BodyJoint& joint : standing_body({1.0, 0.5, 0}, 0.3, 1.85)) body.joints.push_back({joint.name, joint.position, 1.0});
+    for (const BodyJoint& joint : standing_body({1.0, 0.5, 0}, 0.3, 1.85))
+      body.joints.push_back({joint.name, joint.position, 1.0});
     for (int i = 0; i < 20; ++i) tracker.observe(seen({body}), at(i / 15.0));
-    EXPECT_NEAR(tracker.state(at(1.3), kReach).people.at(0).stature, body.body == "anna" ? 1.62 : 1.85, 0.03) << who;
+    EXPECT_NEAR(tracker.state(at(1.3), kReach).people.at(0).stature,
+                body.body == "anna" ? 1.62 : 1.85, 0.03)
+        << who;
   }
 }
 
@@ -477,13 +504,16 @@ Vector3 mug_after(SceneModel& model, int looks, const std::function<Vector3(int)
 TEST(SceneModel, what_stands_still_is_known_better_than_one_look) {
   SceneModel model(settings(), std::make_shared<const RobotModel>(), ObjectLibrary{}, {});
   const Vector3 mug(0.7, -0.4, 0.77);
-  const Vector3 known = mug_after(model, 60, [&](int i) { return Vector3(mug + 0.0015 * Vector3(i % 2 ? 1 : -1, i % 3 - 1, 0)); });
+  const Vector3 known = mug_after(model, 60, [&](int i) {
+    return Vector3(mug + 0.0015 * Vector3(i % 2 ? 1 : -1, i % 3 - 1, 0));
+  });
   EXPECT_LT((known - mug).norm(), 3e-4);
 }
 
 TEST(SceneModel, what_moves_is_taken_as_seen) {
   SceneModel model(settings(), std::make_shared<const RobotModel>(), ObjectLibrary{}, {});
-  const Vector3 known = mug_after(model, 30, [](int i) { return Vector3(0.7 + 0.2 * i / 30.0, -0.4, 0.77); });
+  const Vector3 known =
+      mug_after(model, 30, [](int i) { return Vector3(0.7 + 0.2 * i / 30.0, -0.4, 0.77); });
   EXPECT_LT((known - Vector3(0.7 + 0.2 * 29 / 30.0, -0.4, 0.77)).norm(), 5e-3);
 }
 

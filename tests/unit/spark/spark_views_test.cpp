@@ -29,12 +29,14 @@ TEST(CaptureAge, counts_a_constant_delay_in_full) {
 }
 
 TEST(CaptureAge, is_never_less_than_what_the_arrivals_show_nor_than_the_least_latency) {
-  EXPECT_NEAR(capture_age(stamp_at(10), stamp_at(10), 0.4, 0.03, {0.002, {}}).age, 0.43, 1e-9) << "a clock that was set hides nothing";
+  EXPECT_NEAR(capture_age(stamp_at(10), stamp_at(10), 0.4, 0.03, {0.002, {}}).age, 0.43, 1e-9)
+      << "a clock that was set hides nothing";
   EXPECT_NEAR(capture_age(stamp_at(10), stamp_at(10), 0.0, 0.03, {0.002, {}}).age, 0.03, 1e-9);
 }
 
 TEST(CaptureAge, of_a_picture_without_a_stamp_is_known_only_if_a_latency_is_assumed) {
-  EXPECT_THAT(capture_age(0, stamp_at(10), 0.0, 0.03, {0.002, {}}).unknown, HasSubstr("assumed_latency"));
+  EXPECT_THAT(capture_age(0, stamp_at(10), 0.0, 0.03, {0.002, {}}).unknown,
+              HasSubstr("assumed_latency"));
   const CaptureAge assumed = capture_age(0, stamp_at(10), 0.0, 0.03, {0.002, 0.15});
   EXPECT_EQ(assumed.unknown, "");
   EXPECT_NEAR(assumed.age, 0.15, 1e-9);
@@ -42,7 +44,8 @@ TEST(CaptureAge, of_a_picture_without_a_stamp_is_known_only_if_a_latency_is_assu
 
 TEST(CaptureAge, of_a_picture_from_the_future_is_unknown_beyond_the_error_of_the_clock) {
   EXPECT_EQ(capture_age(stamp_at(10.01), stamp_at(10), 0.0, 0.03, {0.02, {}}).unknown, "");
-  EXPECT_THAT(capture_age(stamp_at(10.5), stamp_at(10), 0.0, 0.03, {0.02, {}}).unknown, HasSubstr("0.500 s in the future"));
+  EXPECT_THAT(capture_age(stamp_at(10.5), stamp_at(10), 0.0, 0.03, {0.02, {}}).unknown,
+              HasSubstr("0.500 s in the future"));
 }
 
 TEST(CaptureAge, takes_the_clock_of_each_source_from_the_settings) {
@@ -64,7 +67,8 @@ class Views : public testing::Test {
   ObservedPerson anna(double x = 0.5) {
     ObservedPerson body;
     body.body = "anna";
-    for (const auto& joint : standing_body({x, 0, 0}, 0.0, 1.75)) body.joints.push_back({joint.name, joint.position, 1.0});
+    for (const auto& joint : standing_body({x, 0, 0}, 0.0, 1.75))
+      body.joints.push_back({joint.name, joint.position, 1.0});
     return body;
   }
   /// One picture that arrives now.
@@ -74,7 +78,8 @@ class Views : public testing::Test {
     picture.coverage = kRoom;
     picture.people = std::move(people);
     picture.stamp = stamp;
-    const CaptureAge age = capture_age(stamp, stamp_at(now), 0.0, settings.min_latency(), clock_of(settings, "camera"));
+    const CaptureAge age = capture_age(stamp, stamp_at(now), 0.0, settings.min_latency(),
+                                       clock_of(settings, "camera"));
     if (age.unknown.empty())
       tracker.observe(picture, at(now - age.age), {}, nullptr, age.age);
     else
@@ -84,7 +89,8 @@ class Views : public testing::Test {
   /// So many seconds of new pictures.
   void look(double seconds, double delay, bool with_anna = false) {
     for (const double end = now + seconds; now < end; now += kPeriod)
-      with_anna ? see({anna(0.5 + 0.001 * std::sin(40 * now))}, stamp_at(now - delay)) : empty(delay);
+      with_anna ? see({anna(0.5 + 0.001 * std::sin(40 * now))}, stamp_at(now - delay))
+                : empty(delay);
   }
   HumanState state() { return tracker.state(at(now), kReach); }
   const SourceView view() {

@@ -41,14 +41,16 @@ TEST_F(Kept, says_what_stands_and_how_a_person_releases_it) {
   ExecutionStatus fault;
   fault.mode = Mode::fault;
   latches.on(fault, 0);
-  EXPECT_THAT(standing(latches.state()), HasSubstr("`handsel task acknowledge`, then `handsel task resume`"));
+  EXPECT_THAT(standing(latches.state()),
+              HasSubstr("`handsel task acknowledge`, then `handsel task resume`"));
 }
 
 TEST_F(Kept, a_killed_system_leaves_its_latches_and_the_next_one_says_so) {
   ASSERT_EQ(store_.save(latched(), 1), "");
   testing::internal::CaptureStderr();
   std::optional<KeptState> kept(std::in_place, folder_.path());
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("did not end in order; still in force: paused by a person"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("did not end in order; still in force: paused by a person"));
   EXPECT_TRUE(store_.read(1, 1)->safety.paused) << "the supervisor finds them";
   kept.reset();
   EXPECT_FALSE(store_.read(1, 1).has_value()) << "that one has ended in order";

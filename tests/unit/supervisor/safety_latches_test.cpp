@@ -66,7 +66,8 @@ TEST(SafetyLatches, a_pause_ends_by_a_person_only_and_every_change_has_a_new_rev
   EXPECT_EQ(latches.state().permission_revision, latches.safety().revision);
 }
 
-TEST(SafetyLatches, a_fault_ends_by_acknowledgement_only_and_old_reports_of_it_do_not_bring_it_back) {
+TEST(SafetyLatches,
+     a_fault_ends_by_acknowledgement_only_and_old_reports_of_it_do_not_bring_it_back) {
   SafetyLatches latches(fresh_state(1, 1.0));
   latches.on(fault(4), 0);
   EXPECT_TRUE(latches.safety().fault);
@@ -82,7 +83,8 @@ TEST(SafetyLatches, a_fault_ends_by_acknowledgement_only_and_old_reports_of_it_d
 }
 
 TEST(SafetyLatches, a_stop_of_the_robot_is_latched_when_it_begins_and_want_of_set_points_is_not) {
-  for (const DriveMode mode : {DriveMode::protective_stop, DriveMode::user_stop, DriveMode::emergency_stop}) {
+  for (const DriveMode mode :
+       {DriveMode::protective_stop, DriveMode::user_stop, DriveMode::emergency_stop}) {
     SafetyLatches latches(fresh_state(1, 1.0));
     latches.on(robot(DriveMode::enabled));
     latches.on(robot(mode));
@@ -93,7 +95,8 @@ TEST(SafetyLatches, a_stop_of_the_robot_is_latched_when_it_begins_and_want_of_se
     EXPECT_TRUE(latches.permits());
   }
   SafetyLatches latches(fresh_state(1, 1.0));
-  for (const DriveMode mode : {DriveMode::off, DriveMode::braked, DriveMode::enabled}) latches.on(robot(mode));
+  for (const DriveMode mode : {DriveMode::off, DriveMode::braked, DriveMode::enabled})
+    latches.on(robot(mode));
   EXPECT_TRUE(latches.permits());
 }
 
@@ -178,7 +181,8 @@ TEST(LostPeople, a_spark_that_was_there_when_they_were_last_seen_knows_whether_t
   lost.on_spark_started(at(90));
   lost.on(shown({}), at(101.1), 1);
   ASSERT_EQ(lost.people(at(101.1)).size(), 1u);
-  EXPECT_EQ(lost.people(at(101.1))[0].id, "old") << "lost before that SPARK began: it has to take them over first";
+  EXPECT_EQ(lost.people(at(101.1))[0].id, "old")
+      << "lost before that SPARK began: it has to take them over first";
 }
 
 TEST(LostPeople, the_ones_lost_last_are_kept_and_the_rest_counted) {
@@ -215,18 +219,21 @@ TEST(StateFile, gives_back_what_was_written_with_ages_as_of_now) {
   EXPECT_NEAR(s.lost[0].age, 12.5 + 11, 1e-6);
   EXPECT_EQ(s.lost[0].joints.at(0).position, Vector3(1, 2, 1.2));
   const auto back = read_state(write_state(state, 51 * kSecond), 1 * kSecond);
-  EXPECT_NEAR(std::get<DurableState>(back).safety.lost[0].age, 13.5, 1e-6) << "a clock set back makes nobody younger";
+  EXPECT_NEAR(std::get<DurableState>(back).safety.lost[0].age, 13.5, 1e-6)
+      << "a clock set back makes nobody younger";
 }
 
 TEST(StateFile, every_truncation_and_every_flipped_bit_is_refused) {
   const std::string text = write_state(full_state(), 51 * kSecond);
   for (std::size_t n = 0; n < text.size(); ++n)
-    ASSERT_TRUE(std::holds_alternative<StateDamage>(read_state(text.substr(0, n), 51 * kSecond))) << n;
+    ASSERT_TRUE(std::holds_alternative<StateDamage>(read_state(text.substr(0, n), 51 * kSecond)))
+        << n;
   for (std::size_t i = 0; i < text.size(); ++i)
     for (int bit = 0; bit < 8; ++bit) {
       std::string damaged = text;
       damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
-      ASSERT_TRUE(std::holds_alternative<StateDamage>(read_state(damaged, 51 * kSecond))) << i << " bit " << bit;
+      ASSERT_TRUE(std::holds_alternative<StateDamage>(read_state(damaged, 51 * kSecond)))
+          << i << " bit " << bit;
     }
 }
 
@@ -261,13 +268,15 @@ TEST_F(Store, the_first_start_permits_and_a_restart_finds_what_was_saved) {
 TEST_F(Store, a_damaged_file_waits_for_a_person_and_names_the_file) {
   store_.restore(fresh_, kSecond);
   for (const std::string& text :
-       {std::string(), std::string("handsel safety state 1 00000000\npaused: false\n"), std::string(2'000'000, 'x')}) {
+       {std::string(), std::string("handsel safety state 1 00000000\npaused: false\n"),
+        std::string(2'000'000, 'x')}) {
     std::ofstream(store_.file(), std::ios::trunc) << text;
     const DurableState state = store_.restore(fresh_, kSecond);
     EXPECT_TRUE(state.safety.paused && state.safety.awaits_person);
     EXPECT_THAT(state.safety.reason, HasSubstr(store_.file().string()));
     EXPECT_GT(state.safety.revision, 0u);
-    EXPECT_TRUE(store_.restore(fresh_, kSecond).safety.paused) << "and the next restart finds the wait";
+    EXPECT_TRUE(store_.restore(fresh_, kSecond).safety.paused)
+        << "and the next restart finds the wait";
     SafetyLatches latches(state);
     EXPECT_EQ(latches.resume(), "");
     EXPECT_TRUE(latches.permits());
@@ -276,7 +285,8 @@ TEST_F(Store, a_damaged_file_waits_for_a_person_and_names_the_file) {
 
 TEST_F(Store, a_folder_that_cannot_be_written_or_read_waits_for_a_person) {
   std::ofstream(folder_.path() / "file") << "not a folder";
-  for (const auto& folder : {folder_.path() / "file", folder_.path() / "file/below", std::filesystem::path("/proc/handsel")}) {
+  for (const auto& folder : {folder_.path() / "file", folder_.path() / "file/below",
+                             std::filesystem::path("/proc/handsel")}) {
     const StateStore store(folder);
     const DurableState state = store.restore(fresh_, kSecond);
     EXPECT_TRUE(state.safety.paused && state.safety.awaits_person);
@@ -292,7 +302,8 @@ TEST_F(Store, a_write_that_fails_leaves_the_state_before_it) {
   latches.pause();
   ASSERT_EQ(store_.save(latches.state(), kSecond), "");
   const std::string before = content(store_.file());
-  std::filesystem::create_directories(folder_.path() / "state/safety_state.new");  // the temporary file cannot be opened
+  std::filesystem::create_directories(
+      folder_.path() / "state/safety_state.new");  // the temporary file cannot be opened
   latches.resume();
   EXPECT_NE(store_.save(latches.state(), kSecond), "");
   EXPECT_EQ(content(store_.file()), before);

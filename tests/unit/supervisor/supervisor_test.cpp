@@ -129,7 +129,9 @@ TEST(Supervisor, a_failure_is_answered_by_its_kind) {
   EXPECT_EQ(picks, 3);
 
   TaskRig other;
-  other.fails = [&](const ActionGoal& goal) { return goal.kind == ActionKind::pick ? "no grasp for mug: none is left" : ""; };
+  other.fails = [&](const ActionGoal& goal) {
+    return goal.kind == ActionKind::pick ? "no grasp for mug: none is left" : "";
+  };
   other.run(0.5);
   other.ask(TaskKind::pick, "mug");
   ASSERT_TRUE(other.finish());
@@ -157,7 +159,8 @@ TEST(Supervisor, clears_a_table_while_somebody_takes_one_thing_away) {
   EXPECT_EQ(rig.last().state, TaskState::succeeded) << rig.last().reason;
   EXPECT_EQ(rig.last().reason, "anna took d");
   EXPECT_EQ(rig.done(),
-            "pick a, place a on shelf, pick b, place b on shelf, pick c, place c on shelf, pick e, place e on shelf, pick f, "
+            "pick a, place a on shelf, pick b, place b on shelf, pick c, place c on shelf, pick e, "
+            "place e on shelf, pick f, "
             "place f on shelf, go to rest");
   for (const auto& [object, surface] : rig.world.on) EXPECT_EQ(surface, "shelf") << object;
 }
@@ -193,25 +196,32 @@ TEST(Supervisor, what_comes_onto_the_table_meanwhile_is_cleared_too) {
 TEST(Supervisor, what_cannot_be_grasped_is_left_and_told) {
   TaskRig rig;
   rig.world.on["box"] = "table";
-  rig.fails = [](const ActionGoal& goal) { return goal.object == "box" ? "no grasp for box: too wide" : ""; };
+  rig.fails = [](const ActionGoal& goal) {
+    return goal.object == "box" ? "no grasp for box: too wide" : "";
+  };
   rig.run(2.5);
   rig.ask(TaskKind::clear, "", "", "table");
   ASSERT_TRUE(rig.finish());
   EXPECT_EQ(rig.world.on["mug"], "shelf");
   EXPECT_EQ(rig.last().state, TaskState::failed);
-  EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no grasp for box: too wide");
+  EXPECT_EQ(rig.last().reason,
+            "not all of it was done: clear box away: no grasp for box: too wide");
 }
 
 TEST(Supervisor, what_cannot_be_put_away_goes_back_and_the_rest_is_cleared) {
   TaskRig rig;
   rig.world.on["box"] = "table";
   rig.fails = [](const ActionGoal& goal) {
-    return goal.kind == ActionKind::place && goal.object == "box" && goal.surface == "shelf" ? "no free place on shelf" : "";
+    return goal.kind == ActionKind::place && goal.object == "box" && goal.surface == "shelf"
+               ? "no free place on shelf"
+               : "";
   };
   rig.run(2.5);
   rig.ask(TaskKind::clear, "", "", "table");
   ASSERT_TRUE(rig.finish());
-  EXPECT_EQ(rig.done(), "pick box, place box on shelf, place box on table, pick mug, place mug on shelf, go to rest");
+  EXPECT_EQ(
+      rig.done(),
+      "pick box, place box on shelf, place box on table, pick mug, place mug on shelf, go to rest");
   EXPECT_EQ(rig.last().state, TaskState::failed);
   EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no free place on shelf");
 }
@@ -220,13 +230,16 @@ TEST(Supervisor, a_table_is_not_clear_while_its_last_thing_is_in_the_hand) {
   TaskRig rig;
   int failures = 0;
   rig.fails = [&](const ActionGoal& goal) {
-    return goal.kind == ActionKind::place && goal.surface == "shelf" && failures++ == 0 ? "no free place on shelf" : "";
+    return goal.kind == ActionKind::place && goal.surface == "shelf" && failures++ == 0
+               ? "no free place on shelf"
+               : "";
   };
   rig.run(2.5);
   rig.ask(TaskKind::clear, "", "", "table");
   ASSERT_TRUE(rig.finish());
   EXPECT_TRUE(rig.world.in_hand().empty());
-  EXPECT_EQ(rig.last().state == TaskState::succeeded, rig.world.on["mug"] == "shelf") << rig.last().reason;
+  EXPECT_EQ(rig.last().state == TaskState::succeeded, rig.world.on["mug"] == "shelf")
+      << rig.last().reason;
 }
 
 TEST(Supervisor, receives_and_puts_down_whatever_it_is) {
@@ -275,7 +288,8 @@ TEST(Supervisor, what_is_not_there_is_refused_at_once_but_sight_is_given_a_momen
   rig.ask(TaskKind::pick, "cup");
   rig.run(0.04);
   EXPECT_EQ(rig.last().state, TaskState::refused);
-  EXPECT_NE(rig.last().reason.find("nothing called cup here; there is mug"), std::string::npos) << rig.last().reason;
+  EXPECT_NE(rig.last().reason.find("nothing called cup here; there is mug"), std::string::npos)
+      << rig.last().reason;
 }
 
 TEST(Supervisor, an_action_goal_is_repeated_until_taken_up) {
@@ -352,7 +366,8 @@ TEST(Supervisor, cancel_stops_the_action_and_ends_the_task) {
   rig.run(0.1);
   EXPECT_TRUE(rig.goals.back().cancel);
   bool cancelled = false;
-  for (const auto& status : rig.statuses) cancelled |= status.id == 1 && status.state == TaskState::cancelled;
+  for (const auto& status : rig.statuses)
+    cancelled |= status.id == 1 && status.state == TaskState::cancelled;
   EXPECT_TRUE(cancelled);
 }
 
@@ -413,7 +428,8 @@ TEST(Supervisor, a_component_that_stays_away_ends_the_task_with_its_name) {
   EXPECT_EQ(rig.last().state, TaskState::running) << "the next task goes on";
 }
 
-TEST(Permission, is_withdrawn_when_a_required_component_is_gone_but_only_after_the_trajectory_ended) {
+TEST(Permission,
+     is_withdrawn_when_a_required_component_is_gone_but_only_after_the_trajectory_ended) {
   TaskRig rig(true);
   rig.run(0.5);
   ASSERT_TRUE(rig.go.allowed);

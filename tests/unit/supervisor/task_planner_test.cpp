@@ -15,7 +15,9 @@ const Domain& shipped() {
 struct Asked {
   TaskQuery query;
   Plan plan;
-  std::string reason() const { return !query.reason.empty() ? query.reason : plan.found ? left_out(plan) : plan.reason; }
+  std::string reason() const {
+    return !query.reason.empty() ? query.reason : plan.found ? left_out(plan) : plan.reason;
+  }
   std::string steps() const {
     std::string out;
     for (const auto& action : plan.actions) out += (out.empty() ? "" : ", ") + action.text();
@@ -23,15 +25,18 @@ struct Asked {
   }
 };
 
-TaskGoal goal(TaskKind kind, const std::string& object, const std::string& human = "", const std::string& surface = "",
-              const std::string& onto = "") {
-  return {.id = 1, .kind = kind, .object = object, .human = human, .surface = surface, .onto = onto};
+TaskGoal goal(TaskKind kind, const std::string& object, const std::string& human = "",
+              const std::string& surface = "", const std::string& onto = "") {
+  return {
+      .id = 1, .kind = kind, .object = object, .human = human, .surface = surface, .onto = onto};
 }
 
-Asked ask(const TaskGoal& wanted, const TaskWorld& here, const Forbidden& forbidden = {}, const Ability& ability = {}) {
+Asked ask(const TaskGoal& wanted, const TaskWorld& here, const Forbidden& forbidden = {},
+          const Ability& ability = {}) {
   const World world = make_world(here.facts(), here.scene(), ability);
   Asked out{query_for(wanted, shipped(), world, here.scene()), {}};
-  if (out.query.reason.empty()) out.plan = make_plan(shipped(), world, out.query.task, out.query.args, forbidden, {4000, 24});
+  if (out.query.reason.empty())
+    out.plan = make_plan(shipped(), world, out.query.task, out.query.args, forbidden, {4000, 24});
   return out;
 }
 
@@ -44,22 +49,29 @@ TaskWorld mug_on_table() {
 
 TEST(TaskPlanner, gives_picks_places_and_goes) {
   TaskWorld world = mug_on_table();
-  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "bert"), world).steps(), "pick mug for bert, give mug to bert, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "bert"), world).steps(),
+            "pick mug for bert, give mug to bert, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::pick, "mug"), world).steps(), "pick mug");
-  EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "shelf"), world).steps(), "pick mug, place mug on shelf, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "shelf"), world).steps(),
+            "pick mug, place mug on shelf, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::go_to, "", "", "rest"), world).steps(), "go to rest");
   world.on.clear();
   world.held_by["mug"] = kRobotName;
-  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world).steps(), "give mug to anna, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world).steps(),
+            "give mug to anna, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::pick, "mug"), world).steps(), "");
 }
 
 TEST(TaskPlanner, of_people_an_attentive_one_is_cheapest_and_who_refused_is_not_asked_again) {
   const TaskWorld world = mug_on_table();
-  EXPECT_EQ(ask(goal(TaskKind::give, "mug"), world).steps(), "pick mug for anna, give mug to anna, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::give, "mug"), world).steps(),
+            "pick mug for anna, give mug to anna, go to rest");
   const Forbidden refused{{"give mug to anna", "anna did not take mug"}};
-  EXPECT_EQ(ask(goal(TaskKind::give, "mug"), world, refused).steps(), "pick mug for bert, give mug to bert, go to rest");
-  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world, refused).reason(), "anna did not take mug") << "who is named is meant";
+  EXPECT_EQ(ask(goal(TaskKind::give, "mug"), world, refused).steps(),
+            "pick mug for bert, give mug to bert, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world, refused).reason(),
+            "anna did not take mug")
+      << "who is named is meant";
 }
 
 TEST(TaskPlanner, receives_what_is_offered_or_whatever_comes) {
@@ -102,12 +114,14 @@ TEST(TaskPlanner, what_is_out_of_reach_is_left_where_it_is_and_told) {
   world.distance["box"] = 1.4;
   const Asked cleared = ask(goal(TaskKind::clear, "", "", "table"), world);
   EXPECT_EQ(cleared.steps(), "pick mug, place mug on shelf, go to rest");
-  EXPECT_EQ(cleared.reason(), "clear box away: box is out of the robot's reach; bring it nearer to the robot");
+  EXPECT_EQ(cleared.reason(),
+            "clear box away: box is out of the robot's reach; bring it nearer to the robot");
 }
 
 TEST(TaskPlanner, room_counts_what_is_put_there) {
   TaskWorld world;
-  world.surfaces = {{"table", {0.7, 0.7, 0.7}}, {"stool", {0.2, 0.2, 0.5}}, {"tray", {0.2, 0.4, 0.5}}};
+  world.surfaces = {
+      {"table", {0.7, 0.7, 0.7}}, {"stool", {0.2, 0.2, 0.5}}, {"tray", {0.2, 0.4, 0.5}}};
   for (const char* object : {"a", "b", "c"}) world.on[object] = "table";
   const Asked cleared = ask(goal(TaskKind::clear, "", "", "table"), world);
   std::map<std::string, int> on;
@@ -123,7 +137,8 @@ TEST(TaskPlanner, tidies_all_of_a_kind) {
   world.models = {{"cup1", "cup"}, {"cup2", "cup"}, {"cup3", "cup"}};
   EXPECT_EQ(ask(goal(TaskKind::tidy, "cup", "", "", "shelf"), world).steps(),
             "pick cup1, place cup1 on shelf, pick cup2, place cup2 on shelf, go to rest");
-  EXPECT_EQ(ask(goal(TaskKind::tidy, "box", "", "", "shelf"), world).steps(), "pick box, place box on shelf, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::tidy, "box", "", "", "shelf"), world).steps(),
+            "pick box, place box on shelf, go to rest");
 }
 
 TEST(TaskPlanner, a_full_hand_is_freed_first) {
@@ -138,18 +153,23 @@ TEST(TaskPlanner, what_somebody_else_has_is_asked_for) {
   TaskWorld world = mug_on_table();
   world.on.clear();
   world.held_by["mug"] = "bert";
-  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world).steps(), "receive mug from bert, give mug to anna, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world).steps(),
+            "receive mug from bert, give mug to anna, go to rest");
 }
 
 TEST(TaskPlanner, refuses_at_once_with_what_would_make_it_possible) {
   TaskWorld world = mug_on_table();
-  const auto says = [&](const TaskGoal& wanted, const std::string& part, const Ability& ability = {}) {
+  const auto says = [&](const TaskGoal& wanted, const std::string& part,
+                        const Ability& ability = {}) {
     const std::string reason = ask(wanted, world, {}, ability).reason();
-    EXPECT_NE(reason.find(part), std::string::npos) << "\"" << reason << "\" lacks \"" << part << "\"";
+    EXPECT_NE(reason.find(part), std::string::npos)
+        << "\"" << reason << "\" lacks \"" << part << "\"";
   };
   says(goal(TaskKind::give, "cup", "anna"), "there is nothing called cup here; there is mug");
-  says(goal(TaskKind::give, "mug", "carl"), "nobody called carl is in sight; in sight is anna, bert");
-  says(goal(TaskKind::place, "mug", "", "floor"), "floor is no surface here; there is shelf, table");
+  says(goal(TaskKind::give, "mug", "carl"),
+       "nobody called carl is in sight; in sight is anna, bert");
+  says(goal(TaskKind::place, "mug", "", "floor"),
+       "floor is no surface here; there is shelf, table");
   says(goal(TaskKind::place, "mug", "", "wall"), "wall is no surface to put things on");
   says(goal(TaskKind::clear, "", "", "table", "table"), "cannot be cleared onto itself");
   says(goal(TaskKind::tidy, "glass", "", "", "shelf"), "there is nothing called glass");
@@ -171,7 +191,8 @@ TEST(TaskPlanner, refuses_at_once_with_what_would_make_it_possible) {
   says(goal(TaskKind::pick, "mug"), "mug is too heavy for one hand", weak);
   world.surfaces["shelf"] = {0.7, 0.7, 0.7};
   weak.hands = 2;
-  EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "shelf"), world, {}, weak).steps(), "carry mug on shelf, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "shelf"), world, {}, weak).steps(),
+            "carry mug on shelf, go to rest");
   heavy.mass = 7;
   says(goal(TaskKind::place, "mug", "", "shelf"), "mug is too heavy for the robot", weak);
 }
@@ -180,7 +201,8 @@ TEST(TaskPlanner, the_same_question_has_the_same_answer) {
   TaskWorld world;
   for (int i = 0; i < 12; ++i) world.on["thing" + std::to_string(i)] = "table";
   world.surfaces["sill"] = {0.4, 1.0, 0.9};
-  const Asked first = ask(goal(TaskKind::clear, "", "", "table"), world), second = ask(goal(TaskKind::clear, "", "", "table"), world);
+  const Asked first = ask(goal(TaskKind::clear, "", "", "table"), world),
+              second = ask(goal(TaskKind::clear, "", "", "table"), world);
   EXPECT_EQ(first.steps(), second.steps());
   EXPECT_TRUE(first.plan.found);
 }
@@ -214,26 +236,35 @@ std::string error_of(std::string text, const std::string& what, const std::strin
 
 TEST(TaskDomain, a_mistake_is_named_with_file_line_and_field) {
   EXPECT_NO_THROW(parse_domain(kSound, "d.txtpb"));
-  const auto says = [](const std::string& what, const std::string& by, const std::string& where, const std::string& part) {
+  const auto says = [](const std::string& what, const std::string& by, const std::string& where,
+                       const std::string& part) {
     const std::string error = error_of(kSound, what, by);
     EXPECT_TRUE(error.starts_with(where)) << error;
     EXPECT_NE(error.find(part), std::string::npos) << error;
   };
-  says("on_surface ?o ?s", "stands_on ?o ?s", "d.txtpb:9:is", "\"stands_on\" is no predicate; there is in_contact_zone");
+  says("on_surface ?o ?s", "stands_on ?o ?s", "d.txtpb:9:is",
+       "\"stands_on\" is no predicate; there is in_contact_zone");
   says("on_surface ?o ?s", "on_surface ?o", "d.txtpb:9:is", "has 2 arguments, not 1");
-  says("on_surface ?o ?s", "on_surface ?s ?o", "d.txtpb:9:is", "wants a object where ?s is a surface");
-  says("on_surface ?o ?s", "on_surface ?x ?s", "d.txtpb:9:is", "?x is not declared here; there is ?o, ?s");
+  says("on_surface ?o ?s", "on_surface ?s ?o", "d.txtpb:9:is",
+       "wants a object where ?s is a surface");
+  says("on_surface ?o ?s", "on_surface ?x ?s", "d.txtpb:9:is",
+       "?x is not declared here; there is ?o, ?s");
   says("?s:surface", "?s:place", "d.txtpb:8:variables", "\"place\" is no type");
   says("?s:surface", "?s", "d.txtpb:8:variables", "it is written ?name:type");
   says("?s:surface", "?n:name", "d.txtpb:9:is", "?s is not declared");
-  says("variables: \"?s:surface\"", "variables: [\"?s:surface\", \"?n:name\"]", "d.txtpb:8:variables", "no condition before this binds");
-  says("up ?o\"", "fly ?o\"", "d.txtpb:10:task", "\"fly\" is neither a task nor an action; there is t, rest, up");
+  says("variables: \"?s:surface\"", "variables: [\"?s:surface\", \"?n:name\"]",
+       "d.txtpb:8:variables", "no condition before this binds");
+  says("up ?o\"", "fly ?o\"", "d.txtpb:10:task",
+       "\"fly\" is neither a task nor an action; there is t, rest, up");
   says("up ?o\"", "up\"", "d.txtpb:10:task", "has 1 arguments, not 0");
-  says("up ?o\"", "t ?o\"", "d.txtpb:10:task", "goes round in a circle before anything is done: t, t");
-  says("kind: \"go_to\"", "kind: \"fly\"", "d.txtpb:2:kind", "\"fly\" is no action of the robot; there is pick, place");
+  says("up ?o\"", "t ?o\"", "d.txtpb:10:task",
+       "goes round in a circle before anything is done: t, t");
+  says("kind: \"go_to\"", "kind: \"fly\"", "d.txtpb:2:kind",
+       "\"fly\" is no action of the robot; there is pick, place");
   says("cost: 1", "cost: -1", "d.txtpb:2:cost", "0 or more");
   says("name: \"up\"", "name: \"rest\"", "d.txtpb:3:name", "there already");
-  says("adds: \"held_by_robot ?o\"", "adds: \"not held_by_robot ?o\"", "d.txtpb:3:adds", "listed under removes");
+  says("adds: \"held_by_robot ?o\"", "adds: \"not held_by_robot ?o\"", "d.txtpb:3:adds",
+       "listed under removes");
   says("name: \"t\"", "nam: \"t\"", "d.txtpb:5:", "no field named \"nam\"");
 }
 
@@ -244,7 +275,8 @@ TEST(TaskDomain, one_that_leads_ever_deeper_ends_with_a_reason) {
   )",
                                      "d.txtpb");
   TaskWorld world;
-  const Plan plan = make_plan(domain, make_world(world.facts(), world.scene(), {}), 0, {}, {}, {4000, 24});
+  const Plan plan =
+      make_plan(domain, make_world(world.facts(), world.scene(), {}), 0, {}, {}, {4000, 24});
   EXPECT_FALSE(plan.found);
   EXPECT_NE(plan.reason.find("ever deeper"), std::string::npos) << plan.reason;
 }
@@ -257,7 +289,8 @@ TEST(TaskDomain, facts_of_its_own_hold_from_an_action_on) {
   )",
                                      "d.txtpb");
   TaskWorld world;
-  const Plan plan = make_plan(domain, make_world(world.facts(), world.scene(), {}), 0, {}, {}, {4000, 24});
+  const Plan plan =
+      make_plan(domain, make_world(world.facts(), world.scene(), {}), 0, {}, {}, {4000, 24});
   ASSERT_TRUE(plan.found) << plan.reason;
   EXPECT_EQ(plan.actions.size(), 2u);
   EXPECT_EQ(plan.cost, 4);

@@ -25,7 +25,8 @@ Samples sine(double seconds, double period) {
     MotionState3 s{Eigen::VectorXd(2), Eigen::VectorXd(2), Eigen::VectorXd(2)};
     for (int i = 0; i < 2; ++i) {
       const double w = 1 + i;
-      s.position[i] = std::sin(w * t), s.velocity[i] = w * std::cos(w * t), s.acceleration[i] = -w * w * std::sin(w * t);
+      s.position[i] = std::sin(w * t), s.velocity[i] = w * std::cos(w * t),
+      s.acceleration[i] = -w * w * std::sin(w * t);
     }
     out.times.push_back(t);
     out.states.push_back(s);
@@ -62,22 +63,27 @@ TEST(Approximate, refuses_bad_samples) {
 
 /// Sums of sines of random size and pace on several axes, exact derivatives.
 Samples random_motion(std::mt19937_64& random, int axes, double seconds, double period) {
-  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto draw = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
   Eigen::MatrixXd size(axes, 3), pace(axes, 3), phase(axes, 3);
   for (int i = 0; i < axes; ++i) {
-    for (int k = 0; k < 3; ++k) size(i, k) = draw(0.05, 0.5), pace(i, k) = draw(0.3, 3), phase(i, k) = draw(0, 6);
+    for (int k = 0; k < 3; ++k)
+      size(i, k) = draw(0.05, 0.5), pace(i, k) = draw(0.3, 3), phase(i, k) = draw(0, 6);
   }
   Samples out;
   for (int k = 0; k * period <= seconds; ++k) {
     const Eigen::ArrayXXd angle = pace.array() * (k * period) + phase.array();
     out.times.push_back(k * period);
-    out.states.push_back({(size.array() * angle.sin()).rowwise().sum(), (size.array() * pace.array() * angle.cos()).rowwise().sum(),
+    out.states.push_back({(size.array() * angle.sin()).rowwise().sum(),
+                          (size.array() * pace.array() * angle.cos()).rowwise().sum(),
                           -(size.array() * pace.array().square() * angle.sin()).rowwise().sum()});
   }
   return out;
 }
 
-void expect_within(const Approximation& a, const Samples& s, const ApproximationTolerance& tolerance, const std::string& what) {
+void expect_within(const Approximation& a, const Samples& s,
+                   const ApproximationTolerance& tolerance, const std::string& what) {
   ASSERT_TRUE(a.ok()) << a.reason;
   double x = 0, v = 0;
   for (std::size_t k = 0; k < s.times.size(); ++k) {
@@ -101,8 +107,10 @@ TEST(Approximate, random_motions_of_seven_axes_keep_the_tolerance_on_every_axis)
     expect_within(a, s, tolerance, "seed " + std::to_string(seed) + " case " + std::to_string(k));
     if (k % 2) pieces += a.pieces, compression += a.compression;
   }
-  printf("7 axes, 6 s at 250 Hz, tolerance 1e-3 rad and 1e-2 rad/s: %.1f segments an axis, %.0f times smaller\n", 3 * pieces / 20,
-         compression / 20);
+  printf(
+      "7 axes, 6 s at 250 Hz, tolerance 1e-3 rad and 1e-2 rad/s: %.1f segments an axis, %.0f times "
+      "smaller\n",
+      3 * pieces / 20, compression / 20);
 }
 
 TEST(Approximate, derivatives_of_exact_samples_are_right) {
@@ -130,7 +138,9 @@ TEST(Approximate, axes_beyond_their_limits_are_slowed_down_and_only_there) {
   double stretch = 0;
   for (int k = 0; k < 30; ++k) {
     const Samples s = random_motion(random, 4, 6, 0.004);
-    const KinematicLimits limits{Eigen::VectorXd::Constant(4, 0.6), Eigen::VectorXd::Constant(4, 1.5), Eigen::VectorXd::Constant(4, 8)};
+    const KinematicLimits limits{Eigen::VectorXd::Constant(4, 0.6),
+                                 Eigen::VectorXd::Constant(4, 1.5),
+                                 Eigen::VectorXd::Constant(4, 8)};
     const SlowedDown slowed = slow_down(s.times, s.states, limits);
     ASSERT_TRUE(slowed.ok()) << slowed.reason;
     for (std::size_t i = 0; i < slowed.times.size(); ++i) {
@@ -143,9 +153,11 @@ TEST(Approximate, axes_beyond_their_limits_are_slowed_down_and_only_there) {
     // Slower than one factor for all would be no use.
     double whole = 1;
     for (const MotionState3& m : s.states) {
-      whole = std::max({whole, m.velocity.cwiseAbs().maxCoeff() / 0.6, std::sqrt(m.acceleration.cwiseAbs().maxCoeff() / 1.5)});
+      whole = std::max({whole, m.velocity.cwiseAbs().maxCoeff() / 0.6,
+                        std::sqrt(m.acceleration.cwiseAbs().maxCoeff() / 1.5)});
     }
-    EXPECT_LT(slowed.times.back(), whole * s.times.back() * 1.1) << "seed " << seed << " case " << k;
+    EXPECT_LT(slowed.times.back(), whole * s.times.back() * 1.1)
+        << "seed " << seed << " case " << k;
     const Executable e = approximate_within(s.times, s.states, {2e-3, 2e-2}, limits);
     ASSERT_TRUE(e.approximation.ok()) << e.approximation.reason;
     ASSERT_EQ(why_not_within(e.approximation.trajectory, limits, 1e-9), "");
@@ -161,7 +173,8 @@ TEST(Approximate, axes_beyond_their_limits_are_slowed_down_and_only_there) {
 
 TEST(Approximate, hand_of_a_real_handover) {
   const char* data = std::getenv("HANDSEL_DATA");
-  const std::string path = std::string(data ? data : "") + "/motion/kth_handover/handover_sample/giver_RHand_pose_saved.csv";
+  const std::string path = std::string(data ? data : "") +
+                           "/motion/kth_handover/handover_sample/giver_RHand_pose_saved.csv";
   std::ifstream file(path);
   if (!file) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
   std::string line;
@@ -170,7 +183,8 @@ TEST(Approximate, hand_of_a_real_handover) {
   std::vector<Eigen::VectorXd> positions;
   while (std::getline(file, line)) {
     Eigen::VectorXd p(3);
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &p[0], &p[1], &p[2]) != 3 || !p.allFinite()) continue;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &p[0], &p[1], &p[2]) != 3 || !p.allFinite())
+      continue;
     times.push_back(static_cast<double>(times.size()) / 120);
     positions.push_back(p);
   }
@@ -180,15 +194,20 @@ TEST(Approximate, hand_of_a_real_handover) {
   const ApproximationTolerance tolerance{5e-3, 0.1};
   const Approximation a = approximate(times, d.samples, tolerance);
   expect_within(a, {times, d.samples}, tolerance, "hand");
-  printf("hand of the giver, %zu samples: %d segments an axis, %.1f times smaller, off by at most %.4f m and %.3f m/s\n", times.size(),
-         3 * a.pieces, a.compression, a.position_error, a.velocity_error);
+  printf(
+      "hand of the giver, %zu samples: %d segments an axis, %.1f times smaller, off by at most "
+      "%.4f m and %.3f m/s\n",
+      times.size(), 3 * a.pieces, a.compression, a.position_error, a.velocity_error);
   EXPECT_GT(a.compression, 3);
-  const KinematicLimits limits{Eigen::VectorXd::Constant(3, 0.5), Eigen::VectorXd::Constant(3, 2), Eigen::VectorXd::Constant(3, 15)};
+  const KinematicLimits limits{Eigen::VectorXd::Constant(3, 0.5), Eigen::VectorXd::Constant(3, 2),
+                               Eigen::VectorXd::Constant(3, 15)};
   const Executable e = approximate_within(times, d.samples, tolerance, limits);
   ASSERT_TRUE(e.approximation.ok()) << e.approximation.reason;
   EXPECT_EQ(why_not_within(e.approximation.trajectory, limits, 1e-9), "");
-  printf("at 0.5 m/s, 2 m/s^2, 15 m/s^3: %.1f s instead of %.1f s, slowest alpha %.2f, lengthened by %.2f\n",
-         e.approximation.trajectory.duration(), times.back(), e.slowest, e.stretch);
+  printf(
+      "at 0.5 m/s, 2 m/s^2, 15 m/s^3: %.1f s instead of %.1f s, slowest alpha %.2f, lengthened by "
+      "%.2f\n",
+      e.approximation.trajectory.duration(), times.back(), e.slowest, e.stretch);
 }
 
 }  // namespace

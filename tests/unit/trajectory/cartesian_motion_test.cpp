@@ -27,7 +27,8 @@ class CartesianWay : public ::testing::Test {
     node.T_root_tool = home_;
     node.T_root_tool.translation() += moved;
     if (turned.norm() > 0)
-      node.T_root_tool.linear() = home_.linear() * Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix();
+      node.T_root_tool.linear() =
+          home_.linear() * Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix();
     request_.nodes.push_back(node);
   }
   Vector end_of(const CartesianMotion& motion) const {
@@ -36,7 +37,8 @@ class CartesianWay : public ::testing::Test {
   }
   Pose tool(const Vector& joints) const { return chain_.forward(joints.head(7), nullptr); }
 
-  RobotModel robot_{RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
+  RobotModel robot_{
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
   const Group& arm_{robot_.require_group("arm")};
   CollisionWorld world_{robot_, nullptr};
   ik::Chain chain_{robot_, arm_, robot_.rest_configuration()};
@@ -53,14 +55,17 @@ TEST_F(CartesianWay, corners_are_rounded_and_the_tool_ends_where_it_should) {
   ASSERT_TRUE(motion.solved) << motion.reason;
   EXPECT_EQ(motion.reached, 3u);
   EXPECT_LT(motion.path.duration(), motion.duration_ptp - 0.1);
-  EXPECT_LT((tool(end_of(motion)).matrix() - request_.nodes.back().T_root_tool.matrix()).norm(), 1e-6);
+  EXPECT_LT((tool(end_of(motion)).matrix() - request_.nodes.back().T_root_tool.matrix()).norm(),
+            1e-6);
   // No faster than its limits, about whatever axis.
   constexpr double kStep = 0.01;
   const CartesianSettings settings;
   for (double t = 0; t + kStep <= motion.path.duration(); t += kStep) {
     const Pose a = motion.path.pose(t), b = motion.path.pose(t + kStep);
-    const double turn = Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
-    EXPECT_LT((b.translation() - a.translation()).cwiseAbs().maxCoeff(), kStep * settings.translation.velocity * 1.1 + 1e-9);
+    const double turn =
+        Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
+    EXPECT_LT((b.translation() - a.translation()).cwiseAbs().maxCoeff(),
+              kStep * settings.translation.velocity * 1.1 + 1e-9);
     EXPECT_LT(turn, kStep * settings.rotation.velocity * 1.1 * std::sqrt(3.0) + 1e-9);
   }
 }
@@ -71,7 +76,8 @@ TEST_F(CartesianWay, on_a_leg_the_tool_turns_about_one_axis) {
   const CartesianMotion motion = run();
   ASSERT_TRUE(motion.solved) << motion.reason;
   for (double t = 0.2; t < motion.path.duration(); t += 0.1) {
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(home_.linear().transpose() * motion.path.pose(t).linear()));
+    const Eigen::AngleAxisd turn(
+        Eigen::Matrix3d(home_.linear().transpose() * motion.path.pose(t).linear()));
     if (turn.angle() < 1e-3) continue;
     EXPECT_GT(turn.axis().dot(axis), 1 - 1e-9);
   }
@@ -103,7 +109,9 @@ TEST_F(CartesianWay, a_node_out_of_reach_ends_the_way_before_it) {
   EXPECT_FALSE(motion.solved);
   EXPECT_EQ(motion.reached, 1u);
   EXPECT_THAT(motion.reason, HasSubstr("node 2 is out of reach"));
-  EXPECT_LT((tool(end_of(motion)).translation() - request_.nodes[0].T_root_tool.translation()).norm(), 1e-6);
+  EXPECT_LT(
+      (tool(end_of(motion)).translation() - request_.nodes[0].T_root_tool.translation()).norm(),
+      1e-6);
 }
 
 TEST_F(CartesianWay, through_the_shoulder_there_is_no_way) {
@@ -152,7 +160,8 @@ TEST_F(CartesianWay, a_thing_in_the_way_ends_it_before_and_is_named) {
   to({0, 0.15, 0});
   to({0, 0.15, 0.25});
   Scene scene;
-  scene.boxes.push_back({"shelf", make_pose(home_.translation() + Vector3(0, 0.15, 0.45)), {0.5, 0.2, 0.1}, false});
+  scene.boxes.push_back(
+      {"shelf", make_pose(home_.translation() + Vector3(0, 0.15, 0.45)), {0.5, 0.2, 0.1}, false});
   world_.set_scene(scene);
   const CartesianMotion motion = run();
   EXPECT_FALSE(motion.solved);
@@ -195,7 +204,10 @@ TEST_F(CartesianWay, a_corner_that_would_collide_keeps_its_stop) {
   for (int k = 0; k < 40000 && !found; ++k) {
     Scene scene;
     scene.boxes.push_back(
-        {"pebble", make_pose(tool + Vector3(anywhere(random), anywhere(random), anywhere(random))), {0.003, 0.003, 0.003}, false});
+        {"pebble",
+         make_pose(tool + Vector3(anywhere(random), anywhere(random), anywhere(random))),
+         {0.003, 0.003, 0.003},
+         false});
     world_.set_scene(scene);
     found = !world_.is_free(middle) && all_free(stopping);
   }
@@ -217,7 +229,8 @@ TEST_F(CartesianWay, what_is_held_stays_level_or_the_way_is_refused) {
   to({0.05, 0.1, 0.05}, 1.0 * up_tool);
   const CartesianMotion level = run();
   ASSERT_TRUE(level.solved) << level.reason;
-  for (const Vector& q : level.samples) EXPECT_LT(std::acos(std::min(1.0, (tool(q).linear() * up_tool).z())), 0.02 + 1e-6);
+  for (const Vector& q : level.samples)
+    EXPECT_LT(std::acos(std::min(1.0, (tool(q).linear() * up_tool).z())), 0.02 + 1e-6);
   to({0.05, 0.1, 0.05}, Vector3(0.3, 0, 0));
   const CartesianMotion tilted = run();
   EXPECT_FALSE(tilted.solved);
@@ -232,7 +245,8 @@ TEST_F(CartesianWay, an_open_elbow_keeps_the_joints_off_their_limits) {
   const auto margin = [&](const CartesianMotion& motion) {
     double least = 10;
     for (const Vector& q : motion.samples)
-      for (int i = 0; i < 7; ++i) least = std::min({least, q[i] - chain_.lower()[i], chain_.upper()[i] - q[i]});
+      for (int i = 0; i < 7; ++i)
+        least = std::min({least, q[i] - chain_.lower()[i], chain_.upper()[i] - q[i]});
     return least;
   };
   int solved = 0;

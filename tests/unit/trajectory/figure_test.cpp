@@ -1,5 +1,6 @@
-// Draws docs/figures/corner_127.svg: three points, two straight legs at 127 degrees, V 0.1 m/s, A 0.3 m/s^2, J 0.9 m/s^3 (chapter figure
-// 18). The file in the documentation must be what this draws; HANDSEL_WRITE_FIGURES=1 writes it.
+// Draws docs/figures/corner_127.svg: three points, two straight legs at 127 degrees, V 0.1 m/s, A
+// 0.3 m/s^2, J 0.9 m/s^3 (chapter figure 18). The file in the documentation must be what this
+// draws; HANDSEL_WRITE_FIGURES=1 writes it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-const KinematicLimits kLimits{VectorXd::Constant(2, 0.1), VectorXd::Constant(2, 0.3), VectorXd::Constant(2, 0.9)};
+const KinematicLimits kLimits{VectorXd::Constant(2, 0.1), VectorXd::Constant(2, 0.3),
+                              VectorXd::Constant(2, 0.9)};
 
 std::vector<VectorXd> three_points() {
   const double turn = (180 - 127) * M_PI / 180;
@@ -50,12 +52,14 @@ using Points = std::vector<std::pair<double, double>>;
 class Drawing {
  public:
   Drawing(int width, int height) {
-    out_ << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\"" << height << "\" viewBox=\"0 0 " << width << ' '
-         << height << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
+    out_ << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\""
+         << height << "\" viewBox=\"0 0 " << width << ' ' << height
+         << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
          << kStyle;
   }
   void text(double x, double y, const std::string& s, const char* anchor = "start") {
-    out_ << "<text x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor << "\">" << s << "</text>\n";
+    out_ << "<text x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor
+         << "\">" << s << "</text>\n";
   }
   void line(const Points& points, const std::string& kind) {
     out_ << "<polyline class=\"" << kind << "\" points=\"";
@@ -79,11 +83,13 @@ struct Frame {
   std::pair<double, double> at(double x, double y) const {
     return {left + width * (x - x_lo) / (x_hi - x_lo), top + height * (y_hi - y) / (y_hi - y_lo)};
   }
-  void draw(Drawing& d, double x_step, double y_step, int digits, const std::string& across, const std::string& up) const {
+  void draw(Drawing& d, double x_step, double y_step, int digits, const std::string& across,
+            const std::string& up) const {
     for (int k = 0; x_lo + k * x_step <= x_hi + 1e-9; ++k) {
       const double x = x_lo + k * x_step;
       d.line({at(x, y_lo), at(x, y_hi)}, "grid");
-      d.text(at(x, y_lo).first, top + height + 15, Drawing::number(x, x_step < 1 ? 2 : 0), "middle");
+      d.text(at(x, y_lo).first, top + height + 15, Drawing::number(x, x_step < 1 ? 2 : 0),
+             "middle");
     }
     for (int k = 0; y_lo + k * y_step <= y_hi + 1e-9; ++k) {
       const double y = y_lo + k * y_step;
@@ -99,14 +105,17 @@ struct Frame {
 /// One curve of x and one of y over time, with the limits.
 void curves(Drawing& d, const Frame& frame, const Trajectory& t, int derivative, double limit) {
   if (limit > 0) {
-    for (const double bound : {limit, -limit}) d.line({frame.at(frame.x_lo, bound), frame.at(frame.x_hi, bound)}, "bound");
+    for (const double bound : {limit, -limit})
+      d.line({frame.at(frame.x_lo, bound), frame.at(frame.x_hi, bound)}, "bound");
   }
   for (int axis = 0; axis < 2; ++axis) {
     Points points;
     for (int k = 0; k <= 280; ++k) {
       const double time = t.duration() * k / 280;
       const MotionState3 s = t.at(time);
-      points.push_back(frame.at(time, (derivative == 0 ? s.position : derivative == 1 ? s.velocity : s.acceleration)[axis]));
+      points.push_back(frame.at(time, (derivative == 0   ? s.position
+                                       : derivative == 1 ? s.velocity
+                                                         : s.acceleration)[axis]));
     }
     d.line(points, axis == 0 ? "x" : "y");
   }
@@ -116,7 +125,8 @@ std::string draw() {
   Drawing d(860, 1010);
   const auto nodes = three_points();
   d.text(20, 24,
-         "Corner of 127\xc2\xb0 between legs of 0.5 m; V 0.1 m/s, A 0.3 m/s\xc2\xb2, J 0.9 m/s\xc2\xb3 (dashed: limits, 10 % of excess "
+         "Corner of 127\xc2\xb0 between legs of 0.5 m; V 0.1 m/s, A 0.3 m/s\xc2\xb2, J 0.9 "
+         "m/s\xc2\xb3 (dashed: limits, 10 % of excess "
          "allowed)");
   const Frame corner{80, 60, 560, 336, 0.40, 0.60, -0.02, 0.10};
   corner.draw(d, 0.02, 0.02, 2, "x [m]", "y [m], near the node");
@@ -126,20 +136,24 @@ std::string draw() {
     Points points;
     for (int i = 0; i <= 2000; ++i) {
       const VectorXd p = r.trajectory.at(r.trajectory.duration() * i / 2000).position;
-      if (p[0] >= corner.x_lo && p[0] <= corner.x_hi && p[1] <= corner.y_hi) points.push_back(corner.at(p[0], p[1]));
+      if (p[0] >= corner.x_lo && p[0] <= corner.x_hi && p[1] <= corner.y_hi)
+        points.push_back(corner.at(p[0], p[1]));
     }
     const std::string kind = "t" + std::to_string(k);
     d.line(points, kind);
     const double y = 90 + 36.0 * static_cast<double>(k);
     d.line({{660, y - 4}, {684, y - 4}}, kind);
-    d.text(692, y, "\xcf\x84 = " + Drawing::number(kTaus[k]) + " s: " + Drawing::number(r.trajectory.duration()) + " s");
+    d.text(692, y,
+           "\xcf\x84 = " + Drawing::number(kTaus[k]) +
+               " s: " + Drawing::number(r.trajectory.duration()) + " s");
     d.text(692, y + 15, std::string(name(r.corners[0].method)));
   }
   for (const double tau : {0.0, 1.0}) {
     const double left = tau == 0 ? 80 : 500;
     const Trajectory t = run(tau).trajectory;
     const std::string of = tau == 0 ? " of x and y, \xcf\x84 = 0" : " of x and y, \xcf\x84 = 1 s";
-    const Frame position{left, 470, 330, 110, 0, 12, 0, 0.8}, velocity{left, 660, 330, 110, 0, 12, -0.12, 0.12},
+    const Frame position{left, 470, 330, 110, 0, 12, 0, 0.8},
+        velocity{left, 660, 330, 110, 0, 12, -0.12, 0.12},
         acceleration{left, 850, 330, 110, 0, 12, -0.4, 0.4};
     position.draw(d, 2, 0.2, 1, "t [s]", "position [m]" + of);
     velocity.draw(d, 2, 0.06, 2, "t [s]", "velocity [m/s]" + of);
@@ -156,7 +170,8 @@ std::string draw() {
 }
 
 TEST(Corner127, drawing_in_the_documentation_is_what_the_code_draws) {
-  const std::string path = std::string(HANDSEL_SOURCE_DIR) + "/docs/figures/corner_127.svg", drawn = draw();
+  const std::string path = std::string(HANDSEL_SOURCE_DIR) + "/docs/figures/corner_127.svg",
+                    drawn = draw();
   if (std::getenv("HANDSEL_WRITE_FIGURES")) std::ofstream(path) << drawn;
   std::ifstream file(path);
   ASSERT_TRUE(file) << path << " is missing";
@@ -171,7 +186,8 @@ TEST(Corner127, drawing_in_the_documentation_is_what_the_code_draws) {
     while (words_a >> x) {
       ASSERT_TRUE(words_b >> y) << "line " << line;
       double xa, ya, xb, yb;
-      if (std::sscanf(x.c_str(), "%lf,%lf", &xa, &ya) == 2 && std::sscanf(y.c_str(), "%lf,%lf", &xb, &yb) == 2) {
+      if (std::sscanf(x.c_str(), "%lf,%lf", &xa, &ya) == 2 &&
+          std::sscanf(y.c_str(), "%lf,%lf", &xb, &yb) == 2) {
         ASSERT_NEAR(xa, xb, 0.021) << "line " << line;
         ASSERT_NEAR(ya, yb, 0.021) << "line " << line;
       } else {

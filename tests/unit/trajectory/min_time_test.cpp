@@ -24,7 +24,8 @@ TEST(MinTime, equals_the_slow_solver_on_random_cases) {
   for (int k = 0; k < count; ++k) {
     const Case c = cases.next();
     AxisProfile p;
-    ASSERT_EQ(solve_axis(c.from, c.to, c.limits, p), AxisOutcome::ok) << "seed " << seed << " case " << k << ' ' << c;
+    ASSERT_EQ(solve_axis(c.from, c.to, c.limits, p), AxisOutcome::ok)
+        << "seed " << seed << " case " << k << ' ' << c;
     ASSERT_EQ(why_wrong(c, p), "") << "seed " << seed << " case " << k << ' ' << c;
     if (k % 5 == 0) {
       const double slow = test::slow_min_time(c.from, c.to, c.limits), T = p.duration();
@@ -48,10 +49,13 @@ TEST(MinTime, imposed_durations_are_exact_and_inside) {
     AxisProfile p;
     if (T > wanted) {
       ++blocked;
-      ASSERT_EQ(problem.profile(0.5 * (wanted + T), p), AxisOutcome::blocked) << "seed " << seed << " case " << k << ' ' << c;
+      ASSERT_EQ(problem.profile(0.5 * (wanted + T), p), AxisOutcome::blocked)
+          << "seed " << seed << " case " << k << ' ' << c;
     }
-    ASSERT_EQ(problem.profile(T, p), AxisOutcome::ok) << "seed " << seed << " case " << k << ' ' << c;
-    ASSERT_EQ(why_wrong(c, p), "") << "seed " << seed << " case " << k << ' ' << c << " T " << T << " wanted " << wanted;
+    ASSERT_EQ(problem.profile(T, p), AxisOutcome::ok)
+        << "seed " << seed << " case " << k << ' ' << c;
+    ASSERT_EQ(why_wrong(c, p), "")
+        << "seed " << seed << " case " << k << ' ' << c << " T " << T << " wanted " << wanted;
     ASSERT_NEAR(p.duration(), T, 1e-11 * T);
   }
   EXPECT_GT(blocked, 500);
@@ -69,7 +73,9 @@ TEST(MinTime, starts_outside_the_limits_come_back_inside) {
     ASSERT_EQ(why_wrong(c, p, false, 1e-8), "") << "seed " << seed << " case " << k << ' ' << c;
     const AxisExtremes e = extremes(c.from, p.segments.data(), p.count);
     ASSERT_LE(e.jerk, c.limits.jerk * (1 + 1e-9)) << c;
-    ASSERT_LE(e.acceleration, std::max(std::abs(c.from.acceleration), c.limits.acceleration) * (1 + 1e-9)) << c;
+    ASSERT_LE(e.acceleration,
+              std::max(std::abs(c.from.acceleration), c.limits.acceleration) * (1 + 1e-9))
+        << c;
   }
 }
 
@@ -92,14 +98,16 @@ TEST(MinTime, a_state_on_the_way_needs_the_rest_of_the_time) {
     if (s.acceleration * c.to.acceleration > 0) continue;
     // The state carries the rounding of the whole way, so the target may be moved by as much.
     double nearest = INFINITY;
-    const double rounding = 1e-14 * (std::abs(c.from.position) + std::abs(c.to.position) + c.limits.velocity * T);
+    const double rounding =
+        1e-14 * (std::abs(c.from.position) + std::abs(c.to.position) + c.limits.velocity * T);
     for (const double shift : {0.0, rounding, -rounding}) {
       AxisState to = c.to;
       to.position += shift;
       ASSERT_EQ(solve_axis(s, to, c.limits, rest), AxisOutcome::ok) << c;
       nearest = std::min(nearest, std::abs(rest.duration() - (T - t)));
     }
-    ASSERT_LT(nearest, 2e-4 * (T + 1)) << "seed " << seed << " case " << k << ' ' << c << " t " << t;
+    ASSERT_LT(nearest, 2e-4 * (T + 1))
+        << "seed " << seed << " case " << k << ' ' << c << " t " << t;
   }
 }
 
@@ -111,7 +119,9 @@ TEST(MinTime, rest_to_rest_closed_form) {
     c.from.velocity = c.from.acceleration = c.to.velocity = c.to.acceleration = 0;
     AxisProfile p;
     ASSERT_EQ(solve_axis(c.from, c.to, c.limits, p), AxisOutcome::ok);
-    ASSERT_NEAR(p.duration(), rest_to_rest_time(c.to.position - c.from.position, c.limits), 1e-10 * (p.duration() + 1e-9)) << c;
+    ASSERT_NEAR(p.duration(), rest_to_rest_time(c.to.position - c.from.position, c.limits),
+                1e-10 * (p.duration() + 1e-9))
+        << c;
   }
 }
 

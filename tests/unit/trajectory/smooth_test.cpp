@@ -19,39 +19,53 @@ VectorXd point(std::initializer_list<double> x) {
   return v;
 }
 
-const KinematicLimits kFigure18{VectorXd::Constant(2, 0.1), VectorXd::Constant(2, 0.3), VectorXd::Constant(2, 0.9)};
+const KinematicLimits kFigure18{VectorXd::Constant(2, 0.1), VectorXd::Constant(2, 0.3),
+                                VectorXd::Constant(2, 0.9)};
 
 TEST(Smooth, straight_metre_of_figure18) {
-  EXPECT_NEAR(straight_motion(point({0, 0}), point({1, 0}), kFigure18).duration(), 10.0 + 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(straight_motion(point({0, 0}), point({1, 0}), kFigure18).duration(), 10.0 + 2.0 / 3.0,
+              1e-12);
 }
 
-/// What a set of methods makes of random corners of 7 axes: every one checked, figures as docs/trajectory.md gives them.
+/// What a set of methods makes of random corners of 7 axes: every one checked, figures as
+/// docs/trajectory.md gives them.
 double smooth_corners(int corners, const SmoothSettings& settings, const char* title) {
   const std::uint64_t seed = 41;
   std::mt19937_64 random(seed);
-  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto draw = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
   std::map<std::string, int> count;
   std::map<std::string, double> saved;
   double total = 0, stops = 0;
   for (int k = 0; k < corners; ++k) {
     const int n = 7;
     KinematicLimits l{VectorXd(n), VectorXd(n), VectorXd(n)};
-    for (int i = 0; i < n; ++i) l.velocity[i] = draw(0.3, 2), l.acceleration[i] = draw(0.6, 4), l.jerk[i] = draw(2, 16);
+    for (int i = 0; i < n; ++i)
+      l.velocity[i] = draw(0.3, 2), l.acceleration[i] = draw(0.6, 4), l.jerk[i] = draw(2, 16);
     std::vector<VectorXd> nodes(3, VectorXd(n));
     for (VectorXd& q : nodes) {
       for (double& x : q) x = draw(-2, 2);
     }
     const SmoothResult r = smooth(nodes, l, settings);
-    const auto fail = [&](const std::string& why) { ADD_FAILURE() << why << ", seed " << seed << " case " << k; };
+    const auto fail = [&](const std::string& why) {
+      ADD_FAILURE() << why << ", seed " << seed << " case " << k;
+    };
     if (!r.ok()) return fail(r.reason), 0;
     const BlendReport& corner = r.corners[0];
     const MotionState3 end = final_state(r.trajectory);
-    const double allowed = corner.method == BlendMethod::overlap || corner.method == BlendMethod::stop ? 1e-9 : 0.1 + 1e-9;
-    if (const std::string why = why_not_within(r.trajectory, l, allowed); !why.empty()) return fail(why), 0;
-    if (limit_ratio(r.trajectory, l) > 1 + corner.excess + 1e-9) return fail("more excess than reported"), 0;
+    const double allowed =
+        corner.method == BlendMethod::overlap || corner.method == BlendMethod::stop ? 1e-9
+                                                                                    : 0.1 + 1e-9;
+    if (const std::string why = why_not_within(r.trajectory, l, allowed); !why.empty())
+      return fail(why), 0;
+    if (limit_ratio(r.trajectory, l) > 1 + corner.excess + 1e-9)
+      return fail("more excess than reported"), 0;
     if (r.trajectory.duration() > r.duration_ptp + 1e-9) return fail("longer than stopping"), 0;
-    if (std::abs(r.trajectory.duration() - r.duration_ptp + corner.saved) > 1e-9) return fail("the saving is not what is reported"), 0;
-    if ((end.position - nodes[2]).lpNorm<Eigen::Infinity>() > 1e-9 || end.velocity.norm() + end.acceleration.norm() > 1e-9) {
+    if (std::abs(r.trajectory.duration() - r.duration_ptp + corner.saved) > 1e-9)
+      return fail("the saving is not what is reported"), 0;
+    if ((end.position - nodes[2]).lpNorm<Eigen::Infinity>() > 1e-9 ||
+        end.velocity.norm() + end.acceleration.norm() > 1e-9) {
       return fail("it does not end at rest at the last node"), 0;
     }
     ++count[name(corner.method)];
@@ -61,8 +75,9 @@ double smooth_corners(int corners, const SmoothSettings& settings, const char* t
   }
   printf("%s, %d corners:\n", title, corners);
   for (const auto& [method, times] : count) {
-    printf("  %-14s %5.1f %% of corners, mean saving %.3f s, %4.1f %% of all time\n", method.c_str(), 100.0 * times / corners,
-           saved[method] / times, 100 * saved[method] / stops);
+    printf("  %-14s %5.1f %% of corners, mean saving %.3f s, %4.1f %% of all time\n",
+           method.c_str(), 100.0 * times / corners, saved[method] / times,
+           100 * saved[method] / stops);
   }
   printf("  time saved: %.1f %%\n", 100 * total / stops);
   return total / stops;
@@ -83,10 +98,14 @@ TEST(Smooth, corners_keep_their_limits_and_never_cost_time) {
 
 TEST(Smooth, the_predicate_is_offered_exactly_what_is_then_run) {
   std::mt19937_64 random(42);
-  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto draw = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
   std::map<std::string, int> seen;
   for (int k = 0; k < 300; ++k) {
-    const KinematicLimits l{VectorXd::Constant(3, draw(0.3, 2)), VectorXd::Constant(3, draw(0.6, 4)), VectorXd::Constant(3, draw(2, 16))};
+    const KinematicLimits l{VectorXd::Constant(3, draw(0.3, 2)),
+                            VectorXd::Constant(3, draw(0.6, 4)),
+                            VectorXd::Constant(3, draw(2, 16))};
     std::vector<VectorXd> nodes(3, VectorXd(3));
     for (VectorXd& q : nodes) {
       for (double& x : q) x = draw(-1, 1);
@@ -100,7 +119,8 @@ TEST(Smooth, the_predicate_is_offered_exactly_what_is_then_run) {
     const BlendReport& c = r.corners[0];
     ++seen[name(c.method)];
     if (c.method == BlendMethod::stop) continue;
-    // Where the corner begins: the instant at which the whole is in the state the corner starts from.
+    // Where the corner begins: the instant at which the whole is in the state the corner starts
+    // from.
     const double leg = straight_motion(nodes[0], nodes[1], l).duration();
     double begin = -1;
     for (double t = 0; t <= leg && begin < 0; t += leg / 4000) {
@@ -109,7 +129,8 @@ TEST(Smooth, the_predicate_is_offered_exactly_what_is_then_run) {
     ASSERT_GE(begin, 0);
     for (int i = 0; i <= 40; ++i) {
       const double t = offered.duration() * i / 40;
-      ASSERT_LT((r.trajectory.at(begin + t).position - offered.at(t).position).norm(), 1e-2) << name(c.method) << " case " << k;
+      ASSERT_LT((r.trajectory.at(begin + t).position - offered.at(t).position).norm(), 1e-2)
+          << name(c.method) << " case " << k;
     }
   }
   EXPECT_GT(seen["overlap"], 20);
@@ -148,9 +169,12 @@ std::pair<double, double> place_on(const VectorXd& a, const VectorXd& b, const V
 TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
   const std::uint64_t seed = 43;
   std::mt19937_64 random(seed);
-  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto draw = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
   constexpr int kLines = 300, kAxes = 7;
-  const KinematicLimits limits{VectorXd::Constant(kAxes, 0.5), VectorXd::Constant(kAxes, 1), VectorXd::Constant(kAxes, 3)};
+  const KinematicLimits limits{VectorXd::Constant(kAxes, 0.5), VectorXd::Constant(kAxes, 1),
+                               VectorXd::Constant(kAxes, 3)};
   double zoned = 0, at_lowest = 0, unhindered = 0;
   int smoothed = 0, stops = 0;
   for (int line = 0; line < kLines; ++line) {
@@ -160,57 +184,77 @@ TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
     std::vector<SpeedZones> speeds(nodes.size() - 1);
     double lowest = 1;
     for (SpeedZones& leg : speeds) {
-      for (double end = draw(0.02, 0.4); end < 1; end += draw(0.02, 0.4)) leg.push_back({end, draw(0.2, 1)});
+      for (double end = draw(0.02, 0.4); end < 1; end += draw(0.02, 0.4))
+        leg.push_back({end, draw(0.2, 1)});
       leg.push_back({1, draw(0.2, 1)});
       lowest = std::min(lowest, share_between(leg, 0, 1));
     }
-    const auto where = [&] { return "seed " + std::to_string(seed) + " line " + std::to_string(line); };
+    const auto where = [&] {
+      return "seed " + std::to_string(seed) + " line " + std::to_string(line);
+    };
     const SmoothResult r = smooth(
         nodes, limits, {},
         [&](const Trajectory& corner) {
           std::size_t node = 0;
           double least = 1e-7;
-          const VectorXd left = corner.at(0).position, joined = corner.at(corner.duration()).position;
+          const VectorXd left = corner.at(0).position,
+                         joined = corner.at(corner.duration()).position;
           for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-            if (const double d = place_on(nodes[k - 1], nodes[k], left).second + place_on(nodes[k], nodes[k + 1], joined).second;
+            if (const double d = place_on(nodes[k - 1], nodes[k], left).second +
+                                 place_on(nodes[k], nodes[k + 1], joined).second;
                 d < least) {
               node = k;
               least = d;
             }
           if (node == 0) return ADD_FAILURE() << where() << ": a corner of no node", true;
-          const double share = std::min(share_between(speeds[node - 1], place_on(nodes[node - 1], nodes[node], left).first + 1e-9, 1),
-                                        share_between(speeds[node], 0, place_on(nodes[node], nodes[node + 1], joined).first - 1e-9));
-          for (const AxisTrajectory& axis : corner.axes) EXPECT_LE(extremes(axis).velocity, 0.5 * share * (1.1 + 1e-9)) << where();
+          const double share =
+              std::min(share_between(speeds[node - 1],
+                                     place_on(nodes[node - 1], nodes[node], left).first + 1e-9, 1),
+                       share_between(speeds[node], 0,
+                                     place_on(nodes[node], nodes[node + 1], joined).first - 1e-9));
+          for (const AxisTrajectory& axis : corner.axes)
+            EXPECT_LE(extremes(axis).velocity, 0.5 * share * (1.1 + 1e-9)) << where();
           return true;
         },
         speeds);
     ASSERT_TRUE(r.ok()) << r.reason;
-    for (const BlendReport& corner : r.corners) ++(corner.method == BlendMethod::stop ? stops : smoothed);
+    for (const BlendReport& corner : r.corners)
+      ++(corner.method == BlendMethod::stop ? stops : smoothed);
     EXPECT_EQ(why_not_within(r.trajectory, limits, 0.1 + 1e-9), "") << where();
     EXPECT_LE(r.trajectory.duration(), r.duration_ptp + 1e-9) << where();
-    EXPECT_LT((final_state(r.trajectory).position - nodes.back()).lpNorm<Eigen::Infinity>(), 1e-9) << where();
+    EXPECT_LT((final_state(r.trajectory).position - nodes.back()).lpNorm<Eigen::Infinity>(), 1e-9)
+        << where();
     double sum = 0;
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
       sum += r.segment_durations[k];
       const Trajectory leg = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
       EXPECT_EQ(why_not_within(leg, limits, 1e-9), "") << where();
-      EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits, {{1, share_between(speeds[k], 0, 1)}}).duration() + 1e-9);
+      EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits,
+                                                {{1, share_between(speeds[k], 0, 1)}})
+                                        .duration() +
+                                    1e-9);
       EXPECT_GE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits).duration() - 1e-9);
       for (int i = 0; i <= 500; ++i) {
         const MotionState3 state = leg.at(leg.duration() * i / 500);
         const auto [s, off] = place_on(nodes[k], nodes[k + 1], state.position);
         ASSERT_LT(off, 1e-9) << where();
-        const double share = std::max(share_between(speeds[k], s - 1e-7, s - 1e-7), share_between(speeds[k], s + 1e-7, s + 1e-7));
-        ASSERT_LE(state.velocity.cwiseAbs().maxCoeff(), 0.5 * share + 1e-7) << where() << " leg " << k << " at " << s;
+        const double share = std::max(share_between(speeds[k], s - 1e-7, s - 1e-7),
+                                      share_between(speeds[k], s + 1e-7, s + 1e-7));
+        ASSERT_LE(state.velocity.cwiseAbs().maxCoeff(), 0.5 * share + 1e-7)
+            << where() << " leg " << k << " at " << s;
       }
     }
     EXPECT_NEAR(sum, r.duration_ptp, 1e-9);
     zoned += r.trajectory.duration();
-    at_lowest += smooth(nodes, {lowest * limits.velocity, limits.acceleration, limits.jerk}).trajectory.duration();
+    at_lowest += smooth(nodes, {lowest * limits.velocity, limits.acceleration, limits.jerk})
+                     .trajectory.duration();
     unhindered += smooth(nodes, limits).trajectory.duration();
   }
-  std::printf("seed %llu: %d lines, %d corners, %d keep their stop: %.0f s; %.0f s at the lowest share all along, %.0f s unhindered\n",
-              static_cast<unsigned long long>(seed), kLines, smoothed + stops, stops, zoned, at_lowest, unhindered);
+  std::printf(
+      "seed %llu: %d lines, %d corners, %d keep their stop: %.0f s; %.0f s at the lowest share all "
+      "along, %.0f s unhindered\n",
+      static_cast<unsigned long long>(seed), kLines, smoothed + stops, stops, zoned, at_lowest,
+      unhindered);
   EXPECT_LT(zoned, 0.9 * at_lowest);
   EXPECT_LT(stops, smoothed / 20);
 }
@@ -220,7 +264,8 @@ TEST(Smooth, one_share_everywhere_is_that_limit) {
   KinematicLimits half = kFigure18;
   half.velocity *= 0.5;
   const SpeedZones zones = {{0.3, 0.5}, {0.6, 0.5}, {1, 0.5}};
-  EXPECT_NEAR(smooth(nodes, kFigure18, {}, {}, {zones, zones}).trajectory.duration(), smooth(nodes, half).trajectory.duration(), 1e-9);
+  EXPECT_NEAR(smooth(nodes, kFigure18, {}, {}, {zones, zones}).trajectory.duration(),
+              smooth(nodes, half).trajectory.duration(), 1e-9);
   EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones}).reason, "");
   EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones, {{1, 0}}}).reason, "");
 }
@@ -235,7 +280,8 @@ TEST(Smooth, a_forbidden_corner_keeps_its_stop_and_says_why) {
   ASSERT_TRUE(r.ok());
   ASSERT_EQ(r.corners.size(), 2u);
   EXPECT_GT(asked, 1);
-  for (const BlendReport& c : r.corners) EXPECT_EQ(c.method == BlendMethod::stop, !c.reason.empty());
+  for (const BlendReport& c : r.corners)
+    EXPECT_EQ(c.method == BlendMethod::stop, !c.reason.empty());
   const SmoothResult none = smooth(nodes, kFigure18, {}, [](const Trajectory&) { return false; });
   EXPECT_NEAR(none.trajectory.duration(), none.duration_ptp, 1e-9);
   EXPECT_NE(none.corners[1].reason, "");

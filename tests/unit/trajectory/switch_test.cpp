@@ -23,8 +23,11 @@ struct Draw : test::Draw {
   /// In motion, inside the limits for good.
   MotionState3 state(const KinematicLimits& l) {
     const int n = static_cast<int>(l.velocity.size());
-    MotionState3 s{vector(n, -1, 1), vector(n, -0.6, 0.6).cwiseProduct(l.velocity), vector(n, -1, 1)};
-    for (int i = 0; i < n; ++i) s.acceleration[i] *= std::min(0.9 * l.acceleration[i], std::sqrt(0.6 * l.velocity[i] * l.jerk[i]));
+    MotionState3 s{vector(n, -1, 1), vector(n, -0.6, 0.6).cwiseProduct(l.velocity),
+                   vector(n, -1, 1)};
+    for (int i = 0; i < n; ++i)
+      s.acceleration[i] *=
+          std::min(0.9 * l.acceleration[i], std::sqrt(0.6 * l.velocity[i] * l.jerk[i]));
     return s;
   }
   Trajectory path(const KinematicLimits& guard) {
@@ -36,7 +39,8 @@ struct Draw : test::Draw {
 };
 
 double distance(const MotionState3& x, const MotionState3& y) {
-  return std::max({(x.position - y.position).lpNorm<Eigen::Infinity>(), (x.velocity - y.velocity).lpNorm<Eigen::Infinity>(),
+  return std::max({(x.position - y.position).lpNorm<Eigen::Infinity>(),
+                   (x.velocity - y.velocity).lpNorm<Eigen::Infinity>(),
                    (x.acceleration - y.acceleration).lpNorm<Eigen::Infinity>()});
 }
 
@@ -55,7 +59,8 @@ TEST(Switch, leads_from_any_motion_onto_a_trajectory_that_starts_elsewhere_or_mo
     ASSERT_LT(distance(s.trajectory.at(s.connecting), next.at(s.joins_at)), 1e-7);
     ASSERT_LT(distance(final_state(s.trajectory), final_state(next)), 1e-7);
     ASSERT_NEAR(s.trajectory.duration(), s.connecting + next.duration() - s.joins_at, 1e-9);
-    const KinematicLimits planning{guard.velocity / 1.1, guard.acceleration / 1.1, guard.jerk / 1.1};
+    const KinematicLimits planning{guard.velocity / 1.1, guard.acceleration / 1.1,
+                                   guard.jerk / 1.1};
     const Solution direct = solve(now, final_state(next), planning);
     if (direct.ok()) {
       ASSERT_LE(s.trajectory.duration(), direct.trajectory.duration() + 1e-9);
@@ -70,14 +75,17 @@ TEST(Switch, meets_a_trajectory_that_runs_already) {
   SwitchSettings settings;
   settings.on_clock = true;
   for (int k = 0; k < 200; ++k) {
-    const KinematicLimits guard = draw.limits(1 + k % 7), planning{guard.velocity / 1.1, guard.acceleration / 1.1, guard.jerk / 1.1};
+    const KinematicLimits guard = draw.limits(1 + k % 7),
+                          planning{guard.velocity / 1.1, guard.acceleration / 1.1,
+                                   guard.jerk / 1.1};
     const Trajectory next = draw.path(guard);
     const MotionState3 now = draw.state(planning);
     const Switched s = switch_to(now, next, guard, settings);
     ASSERT_TRUE(s.ok()) << s.reason << " seed " << seed << " case " << k;
     ASSERT_EQ(why_not_within(s.trajectory, guard, 1e-6), "");
     ASSERT_NEAR(s.connecting, s.joins_at, 1e-9);
-    for (double t = s.joins_at; t < next.duration(); t += 0.05) ASSERT_LT(distance(s.trajectory.at(t), next.at(t)), 1e-6);
+    for (double t = s.joins_at; t < next.duration(); t += 0.05)
+      ASSERT_LT(distance(s.trajectory.at(t), next.at(t)), 1e-6);
     ASSERT_LT(distance(final_state(s.trajectory), final_state(next)), 1e-7);
     for (int i = 1; i < 50; ++i) {
       const double t = s.joins_at * i / 50;
@@ -102,7 +110,8 @@ TEST(Switch, nothing_leads_over_where_only_rounding_is_between) {
     const double leave = draw(0.1, 0.9) * first.duration();
     const Trajectory next = cut(first, leave, first.duration());
     MotionState3 now = first.at(leave);
-    for (VectorXd* part : {&now.position, &now.velocity, &now.acceleration}) *part += 1e-12 * draw.vector(n, -1, 1);
+    for (VectorXd* part : {&now.position, &now.velocity, &now.acceleration})
+      *part += 1e-12 * draw.vector(n, -1, 1);
     const Switched s = switch_to(now, next, guard, at_its_beginning);
     ASSERT_TRUE(s.ok()) << s.reason << " seed " << seed << " case " << k;
     ASSERT_EQ(s.connecting, 0) << "seed " << seed << " case " << k;
@@ -117,7 +126,8 @@ TEST(Switch, nothing_leads_over_where_only_rounding_is_between) {
 
 TEST(Switch, says_why_not) {
   const KinematicLimits guard{VectorXd::Ones(2), VectorXd::Ones(2), VectorXd::Ones(2)};
-  const Trajectory next = straight_motion(VectorXd::Zero(2), VectorXd::Ones(2), {guard.velocity / 1.1, guard.acceleration, guard.jerk});
+  const Trajectory next = straight_motion(VectorXd::Zero(2), VectorXd::Ones(2),
+                                          {guard.velocity / 1.1, guard.acceleration, guard.jerk});
   MotionState3 now = rest_state(VectorXd::Zero(2));
   EXPECT_EQ(switch_to(now, next, guard).reason, "");
   EXPECT_NE(switch_to(rest_state(VectorXd::Zero(3)), next, guard).reason, "");
@@ -132,7 +142,9 @@ TEST(Switch, says_why_not) {
   EXPECT_EQ(switch_to(now, next, guard).reason, reason(SwitchOutcome::not_finite));
   TrajectorySwitch connection(2);
   now.velocity[1] = 0;
-  EXPECT_EQ(connection.plan(now, SegmentTable(next), {guard.velocity * 0, guard.acceleration, guard.jerk}, {}), SwitchOutcome::bad_limits);
+  EXPECT_EQ(connection.plan(now, SegmentTable(next),
+                            {guard.velocity * 0, guard.acceleration, guard.jerk}, {}),
+            SwitchOutcome::bad_limits);
   EXPECT_EQ(connection.plan(now, SegmentTable(), guard, {}), SwitchOutcome::wrong_size);
   TimeScaling idle;
   EXPECT_EQ(idle.switch_to(SegmentTable(next)), SwitchOutcome::wrong_size);
@@ -205,7 +217,8 @@ TEST(Switch, what_may_not_run_back_stands_when_asked_to) {
     TimeScaling law;
     ASSERT_EQ(law.init(first, guard), "");
     for (double until = draw(0.2, 0.7) * first.duration(); law.time() < until;) law.advance(0.001);
-    if (law.start_from(MotionState3(law.state()), SegmentTable(next)) != SwitchOutcome::ok) continue;
+    if (law.start_from(MotionState3(law.state()), SegmentTable(next)) != SwitchOutcome::ok)
+      continue;
     for (int i = 0; i < 200; ++i) law.advance(0.001);
     for (const double target : {0.3, 1e-5, 0.0}) {
       law.set_target(target);
@@ -226,7 +239,10 @@ TEST(Replan, does_not_jump_when_start_and_end_accelerate_alike) {
     const AxisLimits l = limits_of(limits, 0);
     const auto any = [&] {
       const double v = draw(-0.9, 0.9) * l.velocity;
-      return AxisState{draw(-1, 1), v, draw(-0.9, 0.9) * std::min(l.acceleration, std::sqrt(2 * l.jerk * (l.velocity - std::abs(v))))};
+      return AxisState{
+          draw(-1, 1), v,
+          draw(-0.9, 0.9) *
+              std::min(l.acceleration, std::sqrt(2 * l.jerk * (l.velocity - std::abs(v))))};
     };
     AxisState s = any();
     const AxisState end = any();
@@ -249,7 +265,8 @@ TEST(Replan, does_not_jump_when_start_and_end_accelerate_alike) {
       }
     }
   }
-  printf("%d jumps in %d motions planned anew each tick; solve_axis at the same states: %d\n", jumps, cases, plain);
+  printf("%d jumps in %d motions planned anew each tick; solve_axis at the same states: %d\n",
+         jumps, cases, plain);
   EXPECT_LE(jumps, 1);
 }
 
@@ -272,7 +289,8 @@ TEST(Switch, nothing_that_runs_in_a_cycle_allocates) {
   for (int i = 0; i < 6000; ++i) {
     if (i % 400 == 0) law.set_target(0.1 * (i / 400 % 21) - 1);
     if (i % 700 == 300)
-      switched += law.switch_to(i % 1400 == 300 ? next : other, i % 2100 == 300 ? clock : SwitchSettings{}) == SwitchOutcome::ok;
+      switched += law.switch_to(i % 1400 == 300 ? next : other,
+                                i % 2100 == 300 ? clock : SwitchSettings{}) == SwitchOutcome::ok;
     if (i % 1700 == 900) switched += law.start_from(law.state(), next) == SwitchOutcome::ok;
     law.advance(0.001);
     if (i % 50 == 0) {

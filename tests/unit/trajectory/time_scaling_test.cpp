@@ -24,7 +24,9 @@ TEST(TimeScaling, every_step_is_within_the_guard_whatever_is_asked_for) {
   for (int k = 0; k < runs(40); ++k) {
     const int n = 7;
     const KinematicLimits guard = draw.limits(n);
-    Trajectory t = solve(rest_state(draw.vector(n, -1, 1)), rest_state(draw.vector(n, -1, 1)), scaled(guard, 1 / 1.1)).trajectory;
+    Trajectory t = solve(rest_state(draw.vector(n, -1, 1)), rest_state(draw.vector(n, -1, 1)),
+                         scaled(guard, 1 / 1.1))
+                       .trajectory;
     TimeScaling law;
     ASSERT_EQ(law.init(t, guard), "");
     MotionState3 last = law.state();
@@ -41,10 +43,12 @@ TEST(TimeScaling, every_step_is_within_the_guard_whatever_is_asked_for) {
         const double v = std::abs(law.state().velocity[a]) / guard.velocity[a];
         const double acc = std::abs(law.state().acceleration[a]) / guard.acceleration[a];
         const double j = std::abs(law.jerk()[a]) / guard.jerk[a];
-        const double seen = std::abs(law.state().acceleration[a] - last.acceleration[a]) / 0.001 / guard.jerk[a];
+        const double seen =
+            std::abs(law.state().acceleration[a] - last.acceleration[a]) / 0.001 / guard.jerk[a];
         largest = std::max({largest, v, acc, j, seen});
-        ASSERT_LE(std::max({v, acc, j, seen}), 1 + 1e-6) << "seed " << seed << " run " << k << " step " << i << " axis " << a << " shares "
-                                                         << v << ' ' << acc << ' ' << j << ' ' << seen;
+        ASSERT_LE(std::max({v, acc, j, seen}), 1 + 1e-6)
+            << "seed " << seed << " run " << k << " step " << i << " axis " << a << " shares " << v
+            << ' ' << acc << ' ' << j << ' ' << seen;
         const double moved = last.position[a] + 0.001 * last.velocity[a];
         ASSERT_NEAR(law.state().position[a], moved, 0.5e-6 * guard.acceleration[a] * 1.01);
       }
@@ -76,10 +80,12 @@ TEST(TimeScaling, corners_that_use_the_whole_guard_are_kept_too) {
       }
       law.advance(0.001);
       for (int a = 0; a < n; ++a) {
-        ASSERT_LE(std::abs(law.state().velocity[a]), guard.velocity[a] * (1 + 1e-6)) << "seed " << seed << " run " << k << " step " << i;
+        ASSERT_LE(std::abs(law.state().velocity[a]), guard.velocity[a] * (1 + 1e-6))
+            << "seed " << seed << " run " << k << " step " << i;
         ASSERT_LE(std::abs(law.state().acceleration[a]), guard.acceleration[a] * (1 + 1e-6))
             << "seed " << seed << " run " << k << " step " << i;
-        ASSERT_LE(std::abs(law.jerk()[a]), guard.jerk[a] * (1 + 1e-6)) << "seed " << seed << " run " << k << " step " << i << " axis " << a;
+        ASSERT_LE(std::abs(law.jerk()[a]), guard.jerk[a] * (1 + 1e-6))
+            << "seed " << seed << " run " << k << " step " << i << " axis " << a;
       }
     }
   }
@@ -91,8 +97,12 @@ TEST(TimeScaling, stops_nearly_as_fast_as_the_axes_could) {
   int stops = 0;
   for (int k = 0; k < 30; ++k) {
     const int n = 7;
-    const KinematicLimits guard{VectorXd::Constant(n, 0.475 * 1.1), VectorXd::Constant(n, 0.95 * 1.1), VectorXd::Constant(n, 2.85 * 1.1)};
-    const Trajectory t = solve(rest_state(draw.vector(n, -2, 2)), rest_state(draw.vector(n, -2, 2)), scaled(guard, 1 / 1.1)).trajectory;
+    const KinematicLimits guard{VectorXd::Constant(n, 0.475 * 1.1),
+                                VectorXd::Constant(n, 0.95 * 1.1),
+                                VectorXd::Constant(n, 2.85 * 1.1)};
+    const Trajectory t = solve(rest_state(draw.vector(n, -2, 2)), rest_state(draw.vector(n, -2, 2)),
+                               scaled(guard, 1 / 1.1))
+                             .trajectory;
     TimeScaling law;
     ASSERT_EQ(law.init(t, guard), "");
     const double at = draw(0.1, 0.7) * t.duration();
@@ -108,7 +118,8 @@ TEST(TimeScaling, stops_nearly_as_fast_as_the_axes_could) {
   }
   RecordProperty("mean_stop_s", std::to_string(along / stops));
   RecordProperty("mean_own_stop_s", std::to_string(own / stops));
-  printf("stop along the path: mean %.3f s, worst %.3f s; every axis alone: mean %.3f s\n", along / stops, worst, own / stops);
+  printf("stop along the path: mean %.3f s, worst %.3f s; every axis alone: mean %.3f s\n",
+         along / stops, worst, own / stops);
   EXPECT_LT(along / stops, 2.0 * own / stops);
 }
 
@@ -135,7 +146,8 @@ TEST(TimeScaling, holds_resumes_and_runs_back) {
 
 TEST(TimeScaling, refuses_what_it_cannot_run) {
   const KinematicLimits guard{VectorXd::Ones(1), VectorXd::Ones(1), VectorXd::Ones(1)};
-  Trajectory t = solve(rest_state(VectorXd::Zero(1)), rest_state(VectorXd::Ones(1)), guard).trajectory;
+  Trajectory t =
+      solve(rest_state(VectorXd::Zero(1)), rest_state(VectorXd::Ones(1)), guard).trajectory;
   TimeScaling law;
   EXPECT_EQ(law.init(t, guard), "");
   EXPECT_NE(law.init(t, scaled(guard, 0.9)), "");
@@ -154,7 +166,8 @@ TEST(SetpointFilter, stays_within_limits_and_arrives) {
     double wanted = 0, a_wanted = 0;
     for (int i = 0; i < 3000; ++i) {
       if (i % 500 == 0) wanted = draw(-2, 2), a_wanted = i == 2500 ? 0 : draw(-1, 1);
-      const AxisState before = filter.state(), after = filter.toward_velocity(wanted, a_wanted, 0.002);
+      const AxisState before = filter.state(),
+                      after = filter.toward_velocity(wanted, a_wanted, 0.002);
       ASSERT_LE(std::abs(after.velocity), l.velocity * (1 + 1e-6));
       ASSERT_LE(std::abs(after.acceleration), l.acceleration * (1 + 1e-9));
       ASSERT_LE(std::abs(after.acceleration - before.acceleration), l.jerk * 0.002 * (1 + 1e-6));
@@ -182,17 +195,22 @@ TEST(SetpointFilter, catches_what_a_hand_holds_and_stays_on_it) {
   double worst = 0, slowest = 0;
   for (int k = 0; k < 100; ++k) {
     const AxisLimits l{draw(0.5, 2), draw(2, 5), draw(10, 30)};
-    // A hand that sways: well within the limits, and the target is seen with the noise of a camera in every other case.
-    const double w = draw(0.5, 1.5), size = 0.4 * std::min(l.velocity / w, l.acceleration / (w * w)), phase = draw(0, 6),
-                 noise = k % 2 ? 1e-4 : 0;
+    // A hand that sways: well within the limits, and the target is seen with the noise of a camera
+    // in every other case.
+    const double w = draw(0.5, 1.5),
+                 size = 0.4 * std::min(l.velocity / w, l.acceleration / (w * w)),
+                 phase = draw(0, 6), noise = k % 2 ? 1e-4 : 0;
     SetpointFilter filter({draw(-1, 1), 0, 0}, l);
     double caught = -1;
     for (int i = 0; i < 8000; ++i) {
       const double t = i * dt, s = w * t + phase;
-      const AxisState target{size * std::sin(s) + noise * draw(-1, 1), size * w * std::cos(s), -size * w * w * std::sin(s)};
+      const AxisState target{size * std::sin(s) + noise * draw(-1, 1), size * w * std::cos(s),
+                             -size * w * w * std::sin(s)};
       const AxisState before = filter.state(), after = filter.toward(target, dt);
-      ASSERT_LE(std::abs(after.velocity), l.velocity * (1 + 1e-6)) << "seed " << seed << " case " << k << " tick " << i;
-      ASSERT_LE(std::abs(after.acceleration), l.acceleration * (1 + 1e-6)) << "seed " << seed << " case " << k << " tick " << i;
+      ASSERT_LE(std::abs(after.velocity), l.velocity * (1 + 1e-6))
+          << "seed " << seed << " case " << k << " tick " << i;
+      ASSERT_LE(std::abs(after.acceleration), l.acceleration * (1 + 1e-6))
+          << "seed " << seed << " case " << k << " tick " << i;
       ASSERT_LE(std::abs(after.acceleration - before.acceleration), l.jerk * dt * (1 + 1e-6));
       const double miss = std::abs(after.position - size * std::sin(s + w * dt));
       if (caught < 0 && miss < 1e-3) caught = t;

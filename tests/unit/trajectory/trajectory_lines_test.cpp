@@ -36,26 +36,31 @@ Answers run(const std::string& kind, const std::string& text) {
   std::istringstream in(text);
   std::ostringstream out;
   Answers result;
-  result.exit_code = for_each_line(in, out, [&](const json& line) { return answer_to(kind, line); });
+  result.exit_code =
+      for_each_line(in, out, [&](const json& line) { return answer_to(kind, line); });
   std::istringstream lines(out.str());
   for (std::string line; std::getline(lines, line);) result.answers.push_back(json::parse(line));
   return result;
 }
 
 std::string with(const std::string& field, const std::string& value) {
-  json line = json::parse(R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],"amax":[1,1],"jmax":[1,1]})");
+  json line = json::parse(
+      R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],"amax":[1,1],"jmax":[1,1]})");
   line[field] = json::parse(value);
   return line.dump() + "\n";
 }
 
 std::string error_of(const std::string& kind, const std::string& text) {
   const Answers r = run(kind, text);
-  if (r.exit_code != 2 || r.answers.size() != 1 || !r.answers[0].contains("error")) return "no error: " + r.answers.at(0).dump();
+  if (r.exit_code != 2 || r.answers.size() != 1 || !r.answers[0].contains("error"))
+    return "no error: " + r.answers.at(0).dump();
   return r.answers[0]["error"];
 }
 
 TEST(TrajectoryLines, every_fault_has_its_own_sentence) {
-  const auto has = [](const std::string& text, const std::string& part) { EXPECT_NE(text.find(part), std::string::npos) << text; };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
   has(error_of("solve", with("p0", "[0,null]")), "\"p0\" must be a finite number");
   has(error_of("solve", with("v0", "[0]")), "velocities");
   has(error_of("solve", with("pf", "[1]")), "end state");
@@ -70,9 +75,13 @@ TEST(TrajectoryLines, every_fault_has_its_own_sentence) {
   has(error_of("solve", line.dump()), "needs");
   line["duration"] = -1;
   has(error_of("solve", line.dump()), "duration");
-  has(error_of("smooth", R"({"nodes":[[0],[1]],"vmax":[1],"amax":[1],"jmax":[1],"tau":-1})"), "tau");
+  has(error_of("smooth", R"({"nodes":[[0],[1]],"vmax":[1],"amax":[1],"jmax":[1],"tau":-1})"),
+      "tau");
   has(error_of("smooth", R"({"nodes":[[0],[1,2]],"vmax":[1],"amax":[1],"jmax":[1]})"), "node 1");
-  has(error_of("sample", R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,"segments":[]}]})"), "equally long");
+  has(error_of(
+          "sample",
+          R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,"segments":[]}]})"),
+      "equally long");
   has(error_of("sample", "{"), "not JSON");
 }
 
@@ -98,7 +107,8 @@ TEST(TrajectoryLines, starts_beyond_the_limits_come_back_inside) {
 TEST(TrajectoryLines, answers_have_what_the_contract_names) {
   json imposed = json::parse(with("impose", "true"));
   imposed["duration"] = 12.5;
-  const Answers solved = run("solve", with("sync", "\"time\"") + with("sync", "\"none\"") + "\n" + imposed.dump() + "\n");
+  const Answers solved = run(
+      "solve", with("sync", "\"time\"") + with("sync", "\"none\"") + "\n" + imposed.dump() + "\n");
   ASSERT_EQ(solved.exit_code, 0);
   ASSERT_EQ(solved.answers.size(), 3u);
   for (const json& a : solved.answers) {
@@ -107,7 +117,8 @@ TEST(TrajectoryLines, answers_have_what_the_contract_names) {
   }
   EXPECT_NEAR(solved.answers[2]["duration"].get<double>(), 12.5, 1e-9);
   EXPECT_EQ(solved.answers[2]["excess"], 0);
-  const Answers smoothed = run("smooth", R"({"nodes":[[0,0],[1,0],[1,1],[0,1]],"vmax":[1,1],"amax":[1,1],"jmax":[2,2]})");
+  const Answers smoothed = run(
+      "smooth", R"({"nodes":[[0,0],[1,0],[1,1],[0,1]],"vmax":[1,1],"amax":[1,1],"jmax":[2,2]})");
   ASSERT_EQ(smoothed.exit_code, 0);
   const json& a = smoothed.answers[0];
   ASSERT_EQ(a["corners"].size(), 2u);
@@ -149,12 +160,16 @@ void expect_sound(const std::string& kind, const std::string& text, const std::s
 TEST(TrajectoryLines, corpus_and_what_becomes_of_it_when_damaged) {
   const std::uint64_t seed = 71;
   std::mt19937_64 random(seed);
-  const auto pick = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
-  static const std::vector<std::string> kPieces{"1e308", "-1e308", "1e-308", "0", "-0.0", "-1", "null", "[]",  "{}",
-                                                "\"x\"", "1e9",    "true",   ",", "]",    "}",  ":",    "\xff"};
+  const auto pick = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
+  static const std::vector<std::string> kPieces{
+      "1e308", "-1e308", "1e-308", "0", "-0.0", "-1", "null", "[]",  "{}",
+      "\"x\"", "1e9",    "true",   ",", "]",    "}",  ":",    "\xff"};
   int lines = 0;
   for (const char* kind : {"solve", "smooth", "sample"}) {
-    std::ifstream file(std::string(HANDSEL_SOURCE_DIR) + "/tests/fuzz/trajectory_lines/" + kind + ".jsonl");
+    std::ifstream file(std::string(HANDSEL_SOURCE_DIR) + "/tests/fuzz/trajectory_lines/" + kind +
+                       ".jsonl");
     ASSERT_TRUE(file) << kind;
     for (std::string line; std::getline(file, line); ++lines) {
       expect_sound(kind, line, kind);
@@ -171,7 +186,8 @@ TEST(TrajectoryLines, corpus_and_what_becomes_of_it_when_damaged) {
               damaged.insert(at, kPieces[pick(kPieces.size())]);
               break;
             default:
-              if (number != std::string::npos) damaged.replace(number, 1, kPieces[pick(kPieces.size())]);
+              if (number != std::string::npos)
+                damaged.replace(number, 1, kPieces[pick(kPieces.size())]);
           }
         }
         if (damaged.find('\n') != std::string::npos) continue;
@@ -183,14 +199,17 @@ TEST(TrajectoryLines, corpus_and_what_becomes_of_it_when_damaged) {
 }
 
 Trajectory random_trajectory(std::mt19937_64& random) {
-  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto draw = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
   const int n = std::uniform_int_distribution<int>(1, 7)(random);
   std::vector<VectorXd> nodes(4, VectorXd(n));
   for (VectorXd& q : nodes) {
     for (double& x : q) x = draw(-2, 2);
   }
-  const Trajectory whole =
-      smooth(nodes, {VectorXd::Constant(n, draw(0.3, 2)), VectorXd::Constant(n, 1), VectorXd::Constant(n, 5)}).trajectory;
+  const Trajectory whole = smooth(nodes, {VectorXd::Constant(n, draw(0.3, 2)),
+                                          VectorXd::Constant(n, 1), VectorXd::Constant(n, 5)})
+                               .trajectory;
   return cut(whole, draw(0, 0.4) * whole.duration(), whole.duration());
 }
 
@@ -198,12 +217,14 @@ bool same(const Trajectory& a, const Trajectory& b) {
   if (a.size() != b.size()) return false;
   for (int i = 0; i < a.size(); ++i) {
     const AxisTrajectory &x = a.axes[i], &y = b.axes[i];
-    if (x.start.position != y.start.position || x.start.velocity != y.start.velocity || x.start.acceleration != y.start.acceleration ||
-        x.segments.size() != y.segments.size()) {
+    if (x.start.position != y.start.position || x.start.velocity != y.start.velocity ||
+        x.start.acceleration != y.start.acceleration || x.segments.size() != y.segments.size()) {
       return false;
     }
     for (std::size_t k = 0; k < x.segments.size(); ++k) {
-      if (x.segments[k].duration != y.segments[k].duration || x.segments[k].jerk != y.segments[k].jerk) return false;
+      if (x.segments[k].duration != y.segments[k].duration ||
+          x.segments[k].jerk != y.segments[k].jerk)
+        return false;
     }
   }
   return true;

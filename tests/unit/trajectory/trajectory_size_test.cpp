@@ -28,17 +28,21 @@ void measure(const char* what, const RobotModel& robot, const TrajectoryReply& r
   command.axes = reply.axes;
   command.trajectory = reply.trajectory;
   const std::size_t size = test::cdr_size(reply), sent = test::cdr_size(command);
-  std::printf("%s: %zu axes, %.1f s, %zu segments an axis: reply %.1f kB, command %.1f kB\n", what, reply.axes.size(),
-              reply.trajectory.duration(), reply.trajectory.axes.front().segments.size(), static_cast<double>(size) / 1024,
+  std::printf("%s: %zu axes, %.1f s, %zu segments an axis: reply %.1f kB, command %.1f kB\n", what,
+              reply.axes.size(), reply.trajectory.duration(),
+              reply.trajectory.axes.front().segments.size(), static_cast<double>(size) / 1024,
               static_cast<double>(sent) / 1024);
   EXPECT_LT(size, kMost) << what;
   EXPECT_LT(sent, kMost) << what;
 }
 
 /// A motion of the tool among postures near `home` for some seconds.
-TrajectoryRequest tool_motion(const RobotModel& robot, const Group& arm, const std::vector<int>& also, const Vector& home, int nodes) {
+TrajectoryRequest tool_motion(const RobotModel& robot, const Group& arm,
+                              const std::vector<int>& also, const Vector& home, int nodes) {
   std::mt19937 random(kSeed);
-  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   const ik::Chain chain(robot, arm, home);
   TrajectoryRequest request;
   request.group = arm.name;
@@ -57,13 +61,16 @@ TrajectoryRequest tool_motion(const RobotModel& robot, const Group& arm, const s
 }
 
 TEST(TrajectorySize, of_jido_is_below64k_b) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
   CollisionWorld world(robot, nullptr);
   HumanCost cost(robot, {});
   const std::vector<int> also = test::hand_and_head(robot);
   for (const int nodes : {4, 7}) {
-    const Result result = plan(robot, world, cost, {}, tool_motion(robot, arm, also, robot.rest_configuration(), nodes), {});
+    const Result result =
+        plan(robot, world, cost, {},
+             tool_motion(robot, arm, also, robot.rest_configuration(), nodes), {});
     EXPECT_GT(result.reply.trajectory.duration(), 5);
     measure("Jido, tool", robot, result.reply);
   }
@@ -96,7 +103,8 @@ TEST(TrajectorySize, of_the_iiwa_is_below64k_b) {
   const TrajectoryRequest asked = tool_motion(robot, arm, {}, home, 6);
   CartesianRequest request;
   request.start = home;
-  for (const TipNode& node : asked.poses) request.nodes.push_back({node.T_world_tip, {}, node.also});
+  for (const TipNode& node : asked.poses)
+    request.nodes.push_back({node.T_world_tip, {}, node.also});
   const CartesianMotion motion = plan_cartesian(robot, arm, world, request);
   TrajectoryReply reply;
   reply.solved = motion.solved;

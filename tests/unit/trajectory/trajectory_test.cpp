@@ -23,13 +23,16 @@ struct Draw : test::Draw {
     for (Eigen::Index i = 0; i < n; ++i) {
       s.position[i] = (*this)(-2, 2);
       s.velocity[i] = share * (*this)(-1, 1) * l.velocity[i];
-      s.acceleration[i] = share * (*this)(-1, 1) * std::min(l.acceleration[i], std::sqrt(l.velocity[i] * l.jerk[i]));
+      s.acceleration[i] = share * (*this)(-1, 1) *
+                          std::min(l.acceleration[i], std::sqrt(l.velocity[i] * l.jerk[i]));
     }
     return s;
   }
   KinematicLimits limits(int n) {
     KinematicLimits l{VectorXd(n), VectorXd(n), VectorXd(n)};
-    for (int i = 0; i < n; ++i) l.velocity[i] = (*this)(0.3, 3), l.acceleration[i] = (*this)(0.5, 6), l.jerk[i] = (*this)(1, 20);
+    for (int i = 0; i < n; ++i)
+      l.velocity[i] = (*this)(0.3, 3), l.acceleration[i] = (*this)(0.5, 6),
+      l.jerk[i] = (*this)(1, 20);
     return l;
   }
 };
@@ -81,9 +84,11 @@ TEST(Edit, cut_and_append_give_the_same_motion) {
     ASSERT_NEAR(joined.duration(), t, 1e-9);
     append(joined, cut(whole, t, T));
     const Trajectory alike = split_alike(whole);
-    for (const AxisTrajectory& axis : alike.axes) ASSERT_EQ(axis.segments.size(), alike.axes[0].segments.size());
+    for (const AxisTrajectory& axis : alike.axes)
+      ASSERT_EQ(axis.segments.size(), alike.axes[0].segments.size());
     for (int i = 0; i <= 20; ++i) {
-      const MotionState3 x = whole.at(T * i / 20), y = joined.at(T * i / 20), z = alike.at(T * i / 20);
+      const MotionState3 x = whole.at(T * i / 20), y = joined.at(T * i / 20),
+                         z = alike.at(T * i / 20);
       ASSERT_LT((x.position - y.position).norm() + (x.velocity - y.velocity).norm(), 1e-9);
       ASSERT_LT((x.position - z.position).norm() + (x.velocity - z.velocity).norm(), 1e-8);
     }
@@ -95,21 +100,29 @@ TEST(Edit, shifted_reversed_stretched_and_tabled_motions_are_the_same_way) {
   for (int k = 0; k < 300; ++k) {
     const KinematicLimits l = draw.limits(3);
     const Trajectory whole = solve(draw.state(l, 0.5), draw.state(l, 0.5), l).trajectory;
-    const Trajectory rest = solve(rest_state(VectorXd::Zero(3)), rest_state(VectorXd::Ones(3)), l).trajectory;
+    const Trajectory rest =
+        solve(rest_state(VectorXd::Zero(3)), rest_state(VectorXd::Ones(3)), l).trajectory;
     const double T = whole.duration(), by = draw(0, 2), factor = draw(0.2, 5);
-    const Trajectory late = shifted(rest, by), early = shifted(whole, -by), back = reversed(whole), slow = stretched(whole, factor),
-                     tabled = to_trajectory(SegmentTable(whole));
+    const Trajectory late = shifted(rest, by), early = shifted(whole, -by), back = reversed(whole),
+                     slow = stretched(whole, factor), tabled = to_trajectory(SegmentTable(whole));
     ASSERT_NEAR(late.duration(), rest.duration() + by, 1e-9);
     ASSERT_NEAR(slow.duration(), T * factor, 1e-9 * factor * T);
     ASSERT_EQ(back.axes[0].segments.size(), whole.axes[0].segments.size());
     for (int i = 0; i <= 20; ++i) {
       const double t = T * i / 20;
-      const MotionState3 x = whole.at(t), b = back.at(T - t), s = slow.at(t * factor), m = tabled.at(t);
-      ASSERT_LT((x.position - b.position).norm() + (x.velocity + b.velocity).norm() + (x.acceleration - b.acceleration).norm(), 1e-7);
+      const MotionState3 x = whole.at(t), b = back.at(T - t), s = slow.at(t * factor),
+                         m = tabled.at(t);
+      ASSERT_LT((x.position - b.position).norm() + (x.velocity + b.velocity).norm() +
+                    (x.acceleration - b.acceleration).norm(),
+                1e-7);
       ASSERT_LT((x.position - s.position).norm() + (x.velocity - s.velocity * factor).norm(), 1e-8);
       ASSERT_LT((x.acceleration - s.acceleration * factor * factor).norm(), 1e-8);
-      ASSERT_LT((x.position - m.position).norm() + (x.velocity - m.velocity).norm() + (x.acceleration - m.acceleration).norm(), 1e-8);
-      ASSERT_LT((late.at(t + by).position - rest.at(t).position).norm() + late.at(std::min(t, by)).position.norm() * (t < by), 1e-9);
+      ASSERT_LT((x.position - m.position).norm() + (x.velocity - m.velocity).norm() +
+                    (x.acceleration - m.acceleration).norm(),
+                1e-8);
+      ASSERT_LT((late.at(t + by).position - rest.at(t).position).norm() +
+                    late.at(std::min(t, by)).position.norm() * (t < by),
+                1e-9);
       if (t >= by) {
         ASSERT_LT((early.at(t - by).position - x.position).norm(), 1e-9);
       }
@@ -120,7 +133,8 @@ TEST(Edit, shifted_reversed_stretched_and_tabled_motions_are_the_same_way) {
 TEST(ThreeSegment, meets_both_ends) {
   Draw draw{std::mt19937_64(23)};
   for (int k = 0; k < 10000; ++k) {
-    const AxisState a{draw(-1, 1), draw(-1, 1), draw(-1, 1)}, b{draw(-1, 1), draw(-1, 1), draw(-1, 1)};
+    const AxisState a{draw(-1, 1), draw(-1, 1), draw(-1, 1)},
+        b{draw(-1, 1), draw(-1, 1), draw(-1, 1)};
     AxisState s = a;
     for (const Segment& g : three_segment(a, b, draw(0.2, 3))) s = advanced(s, g.duration, g.jerk);
     ASSERT_NEAR(s.position, b.position, 1e-12);
@@ -143,7 +157,8 @@ TEST(JerkLimitedStop, comes_to_rest_in_the_measured_time) {
       const AxisState s = stop.step(0.001);
       t += 0.001;
       ASSERT_LE(std::abs(s.acceleration - last.acceleration), l.jerk * 0.001 * (1 + 1e-6) + 1e-12);
-      ASSERT_LE(std::abs(s.acceleration), std::max(std::abs(start.acceleration), l.acceleration) * (1 + 1e-9));
+      ASSERT_LE(std::abs(s.acceleration),
+                std::max(std::abs(start.acceleration), l.acceleration) * (1 + 1e-9));
       last = s;
       ASSERT_LT(t, m.duration + 0.01);
     }
@@ -157,11 +172,13 @@ TEST(JerkLimitedStop, critical_movement_ends_at_its_end_for_small_speeds_too) {
   Draw draw{std::mt19937_64(26)};
   for (int k = 0; k < 100000; ++k) {
     const double A = draw(0.5, 4), J = draw(1, 20);
-    AxisState s{0, draw(-1, 1) * std::pow(10, draw(-4, 0)), draw(-1, 1) * A * std::pow(10, draw(-4, 0))};
+    AxisState s{0, draw(-1, 1) * std::pow(10, draw(-4, 0)),
+                draw(-1, 1) * A * std::pow(10, draw(-4, 0))};
     AxisProfile p;
     critical_movement(s.velocity, s.acceleration, 0, 0, A, J, p);
     for (int i = 0; i < p.count; ++i)
-      s = advanced(s, p.segments[static_cast<std::size_t>(i)].duration, p.segments[static_cast<std::size_t>(i)].jerk);
+      s = advanced(s, p.segments[static_cast<std::size_t>(i)].duration,
+                   p.segments[static_cast<std::size_t>(i)].jerk);
     ASSERT_NEAR(s.velocity, 0, 1e-9);
     ASSERT_NEAR(s.acceleration, 0, 1e-9);
   }
@@ -177,7 +194,8 @@ TEST(Limits, extremes_are_exact) {
       double low = 1e9, high = -1e9, v = 0;
       for (int j = 0; j <= 4000; ++j) {
         const MotionState3 s = whole.at(whole.duration() * j / 4000);
-        low = std::min(low, s.position[i]), high = std::max(high, s.position[i]), v = std::max(v, std::abs(s.velocity[i]));
+        low = std::min(low, s.position[i]), high = std::max(high, s.position[i]),
+        v = std::max(v, std::abs(s.velocity[i]));
       }
       ASSERT_LE(e.lowest, low + 1e-12);
       ASSERT_GE(e.highest, high - 1e-12);

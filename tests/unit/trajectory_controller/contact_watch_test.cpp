@@ -48,7 +48,8 @@ TEST(ContactWatch, a_push_that_grows_slowly_is_found_at_a_bounded_torque) {
     w.feel_for(1.0, 0.0);
     while (w.feel(torque) == Contact::none) {
       torque += rate * kPeriod;
-      ASSERT_LT(torque, w.settings.max_usual + w.settings.torque + 1.0) << "growing by " << rate << " Nm/s";
+      ASSERT_LT(torque, w.settings.max_usual + w.settings.torque + 1.0)
+          << "growing by " << rate << " Nm/s";
     }
   }
 }

@@ -119,7 +119,8 @@ TEST_F(PartsTest, a_command_in_motion_is_joined_and_other_axes_are_refused) {
   EXPECT_EQ(arm_.accept(next, set_points_.sent()), "");
   EXPECT_EQ(arm_.queue().last().id, next.id);
   next.axes = {0, 1};
-  EXPECT_EQ(arm_.accept(next, set_points_.sent()), "it moves other axes than trajectory 1, which runs");
+  EXPECT_EQ(arm_.accept(next, set_points_.sent()),
+            "it moves other axes than trajectory 1, which runs");
 }
 
 TEST_F(PartsTest, a_command_names_each_axis_of_the_arm_once) {
@@ -128,7 +129,8 @@ TEST_F(PartsTest, a_command_names_each_axis_of_the_arm_once) {
   c.axes = {0, 1, 1};
   EXPECT_EQ(why_not_executable(c, *robot_, groups_), "axis shoulder comes twice");
   c.axes = {0, 1, 3};
-  EXPECT_EQ(why_not_executable(c, *robot_, groups_), "axis finger_a_joint is not moved by trajectories");
+  EXPECT_EQ(why_not_executable(c, *robot_, groups_),
+            "axis finger_a_joint is not moved by trajectories");
   const Vector far = Vector::Constant(robot_->dof(), 0.1);
   c.axes = {0, 1, 2};
   EXPECT_NE(why_not_from_rest(c, *robot_, far, 0.05), "");

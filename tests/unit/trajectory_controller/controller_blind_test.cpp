@@ -1,4 +1,5 @@
-// No arm moves blind: where no live source looks the arm does not go, and where none is live it stops.
+// No arm moves blind: where no live source looks the arm does not go, and where none is live it
+// stops.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,10 +17,12 @@ using ::testing::HasSubstr;
 
 constexpr double kPeriodOfSamples = 0.034;  // of HumanState on the bench, at most [s]
 
-/// Watches that no link ever leaves the union of what is observed; by forward kinematics of its own.
+/// Watches that no link ever leaves the union of what is observed; by forward kinematics of its
+/// own.
 class BlindBench : public ControllerBench {
  public:
-  explicit BlindBench(const ControllerSettings& with = {}) : ControllerBench(with), capsules_(robot_capsules(*robot)) {}
+  explicit BlindBench(const ControllerSettings& with = {})
+      : ControllerBench(with), capsules_(robot_capsules(*robot)) {}
   /// Coordinate k of the links that move, radii included: the largest [m].
   double farthest(Eigen::Index k) {
     std::vector<Pose> links;
@@ -51,7 +54,7 @@ class BlindBench : public ControllerBench {
 };
 
 const Vector kFar = ControllerBench::arm(1.5, 0.2, -0.3);  // a quarter turn to the left
-constexpr double kEdge = 0.5;                              // [m] to the left, where what is observed ends
+constexpr double kEdge = 0.5;  // [m] to the left, where what is observed ends
 
 SourceView view_up_to(double y) {
   SourceView view = test::live_view();
@@ -99,8 +102,9 @@ TEST(BlindController, stops_as_fast_as_it_can_when_no_view_is_live_and_goes_on_w
   b.people.views[0].live = false;
   b.people.views[0].reason = "repeats itself for 0.3 s";
   b.run(kPeriodOfSamples);  // it is told
-  const double fastest = b.robot->stop_limits().velocity[0] / b.robot->stop_limits().acceleration[0] +
-                         b.robot->stop_limits().acceleration[0] / b.robot->stop_limits().jerk[0];
+  const double fastest =
+      b.robot->stop_limits().velocity[0] / b.robot->stop_limits().acceleration[0] +
+      b.robot->stop_limits().acceleration[0] / b.robot->stop_limits().jerk[0];
   b.run(fastest + 0.05);
   EXPECT_TRUE(b.at_rest());
   EXPECT_EQ(b.core.mode(), Mode::hold);
@@ -162,7 +166,8 @@ TEST(BlindController, says_that_it_is_blind_though_a_command_was_refused) {
   TrajectoryCommand old = b.command(kFar, 1);
   old.epoch = b.go.epoch + 9;
   ASSERT_NE(b.send(old), "");
-  EXPECT_THAT(b.core.status().reason, HasSubstr("blind: no source of people has been seen; trajectory 1:"));
+  EXPECT_THAT(b.core.status().reason,
+              HasSubstr("blind: no source of people has been seen; trajectory 1:"));
 }
 
 TEST(BlindController, moves_without_a_view_only_where_none_is_required) {
@@ -204,7 +209,9 @@ TEST(BlindController, does_not_retreat_from_a_person_where_no_live_source_looks)
 /// Wherever what is observed ends, and however the arm comes there.
 TEST(BlindController, never_crosses_the_edge) {
   std::mt19937 random(7);
-  const auto real = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto real = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
   int stood = 0;
   for (int trial = 0; trial < 40; ++trial) {
     BlindBench b;

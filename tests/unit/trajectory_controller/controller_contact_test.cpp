@@ -124,13 +124,15 @@ TEST(Controller, an_arm_pressed_ever_harder_gives_way_once_it_is_clamped) {
   }
   b.run(1.5);
   ASSERT_TRUE(has(b, Cause::clamped));
-  EXPECT_LT(b.core.set_point().position[0], -0.05) << "no push is felt beyond one that grew so slowly";
+  EXPECT_LT(b.core.set_point().position[0], -0.05)
+      << "no push is felt beyond one that grew so slowly";
   b.external_torque[0] = 0.0;
   b.run(1.5);
   const double left = b.core.set_point().position[0];
   EXPECT_TRUE(b.at_rest());
   b.run(1.0);
-  EXPECT_EQ(b.core.set_point().position[0], left) << "nor does the end of the press count as a push";
+  EXPECT_EQ(b.core.set_point().position[0], left)
+      << "nor does the end of the press count as a push";
   expect_smooth(b);
 }
 

@@ -1,4 +1,5 @@
-// Controller and robot side together, with set-points that stay away for a while: the robot side stops by itself, and both go on in order.
+// Controller and robot side together, with set-points that stay away for a while: the robot side
+// stops by itself, and both go on in order.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -13,7 +14,8 @@ using test::ControllerBench;
 using test::goal;
 using test::has;
 
-/// What the controller sends reaches the robot side, and what the robot side does is what the controller measures.
+/// What the controller sends reaches the robot side, and what the robot side does is what the
+/// controller measures.
 struct Loop {
   ControllerBench bench;
   RobotSide side;
@@ -24,7 +26,8 @@ struct Loop {
   std::uint64_t sent{};
 
   explicit Loop(const RobotSideSettings& settings = {})
-      : side(*bench.robot, Vector::Zero(bench.robot->dof()), settings), bend(Vector::Zero(bench.robot->dof())) {
+      : side(*bench.robot, Vector::Zero(bench.robot->dof()), settings),
+        bend(Vector::Zero(bench.robot->dof())) {
     bench.follows = false;
   }
   void run(double seconds) {
@@ -87,7 +90,8 @@ TEST(Overload, the_robot_stands_by_itself_and_goes_on_with_a_new_go) {
   EXPECT_EQ(l.bench.core.mode(), Mode::stop);
   EXPECT_TRUE(has(l.bench, Cause::cycle_late));
   EXPECT_FALSE(has(l.bench, Cause::drive_not_enabled)) << "what waits for a person";
-  EXPECT_NE(l.bench.core.status().reason.find("no set-point for"), std::string::npos) << l.bench.core.status().reason;
+  EXPECT_NE(l.bench.core.status().reason.find("no set-point for"), std::string::npos)
+      << l.bench.core.status().reason;
   l.wire_holds = true;
   l.run(3.0);
   EXPECT_TRUE(l.side.follows());
@@ -204,7 +208,9 @@ TEST(Overload, an_arm_that_a_fault_finds_pressed_against_something_no_longer_pre
 
 TEST(Overload, whatever_moved_when_set_points_stayed_away_the_robot_side_follows_again) {
   std::mt19937_64 random(5);
-  const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto between = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
   for (int trial = 0; trial < 60; ++trial) {
     Loop l;
     l.run(0.3);
@@ -226,20 +232,25 @@ TEST(Overload, whatever_moved_when_set_points_stayed_away_the_robot_side_follows
     ASSERT_FALSE(l.side.follows()) << trial;
     l.run(3.0);
     EXPECT_TRUE(l.side.follows()) << "trial " << trial << ": " << l.side.refusal() << "\nset-point "
-                                  << l.bench.core.set_point().position.transpose() << "\nreference " << l.side.position().transpose();
+                                  << l.bench.core.set_point().position.transpose() << "\nreference "
+                                  << l.side.position().transpose();
     ++l.bench.go.epoch;
     l.run(2.5);
-    EXPECT_NE(l.bench.core.status().hand, HandState::moving) << trial << ": whoever waits for the hand would wait for ever";
+    EXPECT_NE(l.bench.core.status().hand, HandState::moving)
+        << trial << ": whoever waits for the hand would wait for ever";
     EXPECT_LT(l.bench.core.mode(), Mode::hold) << trial << ": " << l.bench.core.status().reason;
     EXPECT_EQ(l.close_hand(2), "") << trial;
     test::expect_smooth(l.bench);
   }
 }
 
-/// A person who holds what is in the hand moves the fingers all the time, in any phase of a grasp or release.
+/// A person who holds what is in the hand moves the fingers all the time, in any phase of a grasp
+/// or release.
 TEST(Overload, a_closed_hand_that_a_person_shakes_follows_again) {
   std::mt19937_64 random(7);
-  const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const auto between = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
   for (int trial = 0; trial < 40; ++trial) {
     Loop l(RobotSideSettings{.period = 0.001});
     l.run(0.3);
@@ -254,7 +265,8 @@ TEST(Overload, a_closed_hand_that_a_person_shakes_follows_again) {
     ASSERT_FALSE(l.side.follows()) << trial;
     l.run(2.0);
     EXPECT_TRUE(l.side.follows()) << "trial " << trial << ": " << l.side.refusal() << "\nset-point "
-                                  << l.bench.core.set_point().position.transpose() << "\nreference " << l.side.position().transpose();
+                                  << l.bench.core.set_point().position.transpose() << "\nreference "
+                                  << l.side.position().transpose();
     ++l.bench.go.epoch;
     l.run(2.5);
     EXPECT_LT(l.bench.core.mode(), Mode::hold) << trial << ": " << l.bench.core.status().reason;

@@ -35,7 +35,8 @@ TEST(Controller, goes_over_to_another_trajectory_while_moving) {
   EXPECT_EQ(b.core.active().trajectory, 2u);
   b.run(6);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
-  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(1.4, -0.4, 0.3), 1e-6));
+  EXPECT_TRUE(
+      b.core.set_point().position.head(3).isApprox(ControllerBench::arm(1.4, -0.4, 0.3), 1e-6));
   expect_smooth(b);
 }
 
@@ -51,7 +52,8 @@ TEST(Controller, turns_round_for_another_trajectory_while_running_back) {
   b.advice.speed_factor = 1.0;
   b.run(8);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
-  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(-0.5, 0.2, 0.1), 1e-6));
+  EXPECT_TRUE(
+      b.core.set_point().position.head(3).isApprox(ControllerBench::arm(-0.5, 0.2, 0.1), 1e-6));
   expect_smooth(b);
 }
 
@@ -63,7 +65,8 @@ TEST(Controller, what_comes_late_in_a_stop_on_the_path_goes_on_from_there) {
   b.go.allowed = false;
   b.run(0.35);
   ASSERT_FALSE(b.at_rest());
-  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.0, 0.0), 2), "") << "Hold forbids motion, not plans";
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.0, 0.0), 2), "")
+      << "Hold forbids motion, not plans";
   b.run(1.5);
   EXPECT_TRUE(b.at_rest());
   EXPECT_EQ(b.core.status().motion, MotionState::running);
@@ -71,17 +74,21 @@ TEST(Controller, what_comes_late_in_a_stop_on_the_path_goes_on_from_there) {
   ++b.go.epoch;
   b.run(6);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
-  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(1.2, 0.0, 0.0), 1e-6));
+  EXPECT_TRUE(
+      b.core.set_point().position.head(3).isApprox(ControllerBench::arm(1.2, 0.0, 0.0), 1e-6));
   expect_smooth(b);
 }
 
-/// From where the one before is left: planned for the moment of the switch, with its velocity and acceleration.
-TrajectoryCommand planned_for_a_switch(const ControllerBench& b, const TrajectoryCommand& before, double at, const Vector& goal,
-                                       std::uint64_t id) {
+/// From where the one before is left: planned for the moment of the switch, with its velocity and
+/// acceleration.
+TrajectoryCommand planned_for_a_switch(const ControllerBench& b, const TrajectoryCommand& before,
+                                       double at, const Vector& goal, std::uint64_t id) {
   const KinematicLimits& l = b.robot->comfort_limits();
   TrajectoryCommand c = before;
   c.id = id;
-  c.trajectory = solve(before.trajectory.at(at), rest_state(goal), {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
+  c.trajectory = solve(before.trajectory.at(at), rest_state(goal),
+                       {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)})
+                     .trajectory;
   return c;
 }
 
@@ -89,11 +96,13 @@ TEST(Controller, trajectories_queue_with_switch_times_and_are_joined_exactly_the
   ControllerBench b;
   b.start();
   const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
-  const TrajectoryCommand second = planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2);
+  const TrajectoryCommand second =
+      planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2);
   TrajectoryCommand third = second;  // from where the second ends
   third.id = 3;
   const KinematicLimits& l = b.robot->comfort_limits();
-  third.trajectory = solve(rest_state(ControllerBench::arm(0.3, -0.4, 0.2)), rest_state(ControllerBench::arm(0.8, 0, 0)),
+  third.trajectory = solve(rest_state(ControllerBench::arm(0.3, -0.4, 0.2)),
+                           rest_state(ControllerBench::arm(0.8, 0, 0)),
                            {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)})
                          .trajectory;
   ASSERT_EQ(b.send(first), "");
@@ -127,7 +136,8 @@ TEST(Controller, what_begins_nearly_as_the_arm_moves_is_joined_without_a_detour)
     ControllerBench b;
     b.start();
     const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
-    TrajectoryCommand second = planned_for_a_switch(b, first, 1.5, ControllerBench::arm(1.6, -0.4, 0.2), 2);
+    TrajectoryCommand second =
+        planned_for_a_switch(b, first, 1.5, ControllerBench::arm(1.6, -0.4, 0.2), 2);
     for (AxisTrajectory& axis : second.trajectory.axes) axis.start.position -= off;
     ASSERT_EQ(b.send(first), "");
     b.run(0.5);
@@ -135,7 +145,9 @@ TEST(Controller, what_begins_nearly_as_the_arm_moves_is_joined_without_a_detour)
     const double whole = b.core.active().rest.duration();
     EXPECT_NEAR(whole, 1.5 + second.trajectory.duration(), 0.15) << off;
     for (double t = 1.5; t < whole; t += 0.01)
-      ASSERT_LT((b.core.active().rest.at(t).position - second.trajectory.at(t - whole + second.trajectory.duration()).position).norm(),
+      ASSERT_LT((b.core.active().rest.at(t).position -
+                 second.trajectory.at(t - whole + second.trajectory.duration()).position)
+                    .norm(),
                 0.02)
           << off << " at " << t;
   }
@@ -147,7 +159,9 @@ TEST(Controller, a_queued_switch_is_kept_through_slowing_holding_and_running_bac
   const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
   ASSERT_EQ(b.send(first), "");
   b.run(0.5);
-  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2), 0.0, 1.5), "");
+  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2),
+                   0.0, 1.5),
+            "");
   b.advice.speed_factor = 0.4;
   b.run(2.2);
   b.advice.speed_factor = -1.0;
@@ -160,7 +174,8 @@ TEST(Controller, a_queued_switch_is_kept_through_slowing_holding_and_running_bac
   ++b.go.epoch;
   b.run(8.0);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
-  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.3, -0.4, 0.2), 1e-6));
+  EXPECT_TRUE(
+      b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.3, -0.4, 0.2), 1e-6));
   expect_smooth(b);
 }
 
@@ -169,13 +184,16 @@ TEST(Controller, one_that_leaves_at_once_ends_those_that_wait) {
   b.start();
   const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
   ASSERT_EQ(b.send(first), "");
-  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2), 0.0, 1.5), "");
+  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2),
+                   0.0, 1.5),
+            "");
   b.run(1.0);
   ASSERT_EQ(b.go_to(ControllerBench::arm(0.9, 0.9, 0.0), 3), "");
   b.run(8);
   EXPECT_EQ(b.core.status().trajectory, 3u);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
-  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.9, 0.9, 0.0), 1e-6));
+  EXPECT_TRUE(
+      b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.9, 0.9, 0.0), 1e-6));
 }
 
 TEST(Controller, a_stop_command_ends_those_that_wait_too) {
@@ -183,7 +201,9 @@ TEST(Controller, a_stop_command_ends_those_that_wait_too) {
   b.start();
   const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
   ASSERT_EQ(b.send(first), "");
-  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2), 0.0, 1.5), "");
+  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2),
+                   0.0, 1.5),
+            "");
   b.run(1.0);
   TrajectoryCommand stop;
   stop.robot = "small";
@@ -202,7 +222,8 @@ TEST(Controller, refused_in_motion_with_the_reason_and_the_running_one_goes_on) 
   const TrajectoryCommand good = b.command(goal(), 1);
   ASSERT_EQ(b.send(good), "");
   std::uint64_t id = 1;
-  const auto refused = [&](TrajectoryCommand c, double age, const char* text, double switch_at = 0.0) {
+  const auto refused = [&](TrajectoryCommand c, double age, const char* text,
+                           double switch_at = 0.0) {
     c.id = ++id;
     EXPECT_THAT(b.send(c, age, switch_at), HasSubstr(text));
     EXPECT_EQ(b.core.status().motion, MotionState::refused);
@@ -231,7 +252,8 @@ TEST(Controller, refused_in_motion_with_the_reason_and_the_running_one_goes_on) 
   refused(good, 0, "switch_at", std::numeric_limits<double>::quiet_NaN());
   refused(good, 0, "no nearer than", 100.0);  // in line behind the end, but starts elsewhere
   b.run(0.2);
-  EXPECT_EQ(b.core.status().motion, MotionState::running) << "a refusal is told for a moment, then what runs again";
+  EXPECT_EQ(b.core.status().motion, MotionState::running)
+      << "a refusal is told for a moment, then what runs again";
   EXPECT_EQ(b.core.status().trajectory, 1u);
   b.run(5);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
@@ -252,7 +274,8 @@ TEST(Controller, refused_beside_the_path_and_the_path_to_be_rejoined_is_shown_ag
     b.core.on(b.forecast, b.now);
     b.run(1.5);
     ASSERT_TRUE(b.at_rest());
-    const bool left = b.core.active().trajectory == 0;  // on the path the stop would have taken longer
+    const bool left =
+        b.core.active().trajectory == 0;  // on the path the stop would have taken longer
     if (!left) continue;
     ++tried;
     EXPECT_THAT(b.send(in_motion, 0, 0.5), HasSubstr("does not start at rest"));
@@ -279,8 +302,10 @@ TEST(Controller, a_connecting_motion_never_leaves_the_bounds_of_an_axis) {
     b.run(0.1);
     const Vector here = b.core.set_point().position.head(3);
     if (here[0] < 2.3 || b.at_rest()) continue;
-    // Moves on outward from a little behind, ends at the bound: the stop of an axis in motion would lead beyond.
-    TrajectoryCommand c = b.command(ControllerBench::arm(here[0] + 0.02, 0, 0), 100 + static_cast<std::uint64_t>(k));
+    // Moves on outward from a little behind, ends at the bound: the stop of an axis in motion would
+    // lead beyond.
+    TrajectoryCommand c =
+        b.command(ControllerBench::arm(here[0] + 0.02, 0, 0), 100 + static_cast<std::uint64_t>(k));
     const std::string why = b.send(c);
     (why.empty() ? taken : refused) += 1;
     EXPECT_TRUE(why.empty() || why.find("bounds") != std::string::npos) << why;

@@ -44,18 +44,22 @@ TEST_P(SilentSource, brings_the_stated_mode_in_time_and_a_newer_go_resumes) {
   b.run(0.3);
   EXPECT_EQ(b.core.mode(), Mode::normal);
   b.run(6);
-  EXPECT_EQ(b.core.status().motion, s.mode == Mode::hold ? MotionState::finished : MotionState::stopped);
+  EXPECT_EQ(b.core.status().motion,
+            s.mode == Mode::hold ? MotionState::finished : MotionState::stopped);
   EXPECT_LE(b.worst_velocity, 1 + 1e-6);
   EXPECT_LE(b.worst_acceleration, 1 + 1e-6);
   EXPECT_LE(b.worst_jerk, 1 + 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(table, SilentSource,
-                         testing::Values(Silence{"robot", &ControllerBench::robot_speaks, 0.02, Mode::stop, Cause::robot_state_silent},
-                                         Silence{"human", &ControllerBench::human_speaks, 0.2, Mode::stop, Cause::human_state_silent},
-                                         Silence{"forecast", &ControllerBench::forecast_speaks, 0.1, Mode::hold, Cause::forecast_silent},
-                                         Silence{"attention", &ControllerBench::attention_speaks, 0.3, Mode::slow,
-                                                 Cause::attention_silent}),
+                         testing::Values(Silence{"robot", &ControllerBench::robot_speaks, 0.02,
+                                                 Mode::stop, Cause::robot_state_silent},
+                                         Silence{"human", &ControllerBench::human_speaks, 0.2,
+                                                 Mode::stop, Cause::human_state_silent},
+                                         Silence{"forecast", &ControllerBench::forecast_speaks, 0.1,
+                                                 Mode::hold, Cause::forecast_silent},
+                                         Silence{"attention", &ControllerBench::attention_speaks,
+                                                 0.3, Mode::slow, Cause::attention_silent}),
                          [](const auto& p) { return std::string(p.param.what); });
 
 TEST(Controller, silent_attention_means_a_fixed_low_speed) {
@@ -103,7 +107,8 @@ TEST(Controller, a_robot_side_that_is_started_anew_is_followed_from_where_it_sta
   anew.position[0] = -0.5;
   anew.mode = DriveMode::enabled;
   b.core.on(anew, b.now);
-  EXPECT_NE(b.core.set_point().position, anew.position) << "a strange sample of the same writer moves nothing";
+  EXPECT_NE(b.core.set_point().position, anew.position)
+      << "a strange sample of the same writer moves nothing";
   b.core.on(anew, b.now, {}, true);
   EXPECT_EQ(b.core.set_point().position, anew.position);
   EXPECT_TRUE(b.at_rest());
@@ -119,7 +124,8 @@ TEST(Controller, sends_nothing_at_rest_while_no_robot_side_has_been_heard_for_lo
   b.run(0.4);
   EXPECT_TRUE(b.ready);
   b.run(0.2);
-  EXPECT_FALSE(b.ready) << "a robot side that comes up elsewhere would take it for its first set-point";
+  EXPECT_FALSE(b.ready)
+      << "a robot side that comes up elsewhere would take it for its first set-point";
   b.robot_speaks = true;
   b.run(0.1);
   EXPECT_TRUE(b.ready);

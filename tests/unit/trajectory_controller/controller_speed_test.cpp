@@ -58,11 +58,13 @@ TEST(Controller, the_least_of_all_factors_holds_and_every_cause_is_named) {
   b.people.covered = false;
   b.run(1.0);
   EXPECT_NEAR(b.core.speed_factor(), b.settings.guard.uncovered_factor, 1e-6);
-  const std::uint32_t all = bit(Cause::cost_ahead) | bit(Cause::override_slow) | bit(Cause::attention_slow) | bit(Cause::human_unknown);
+  const std::uint32_t all = bit(Cause::cost_ahead) | bit(Cause::override_slow) |
+                            bit(Cause::attention_slow) | bit(Cause::human_unknown);
   EXPECT_EQ(b.core.status().causes, all);
 }
 
-TEST(Controller, a_trajectory_that_comes_while_somebody_runs_in_begins_with_no_more_than_the_guard_allows) {
+TEST(Controller,
+     a_trajectory_that_comes_while_somebody_runs_in_begins_with_no_more_than_the_guard_allows) {
   ControllerBench b;
   b.people.people = {b.standing(1.15, 0.0)};
   for (BodyJoint& j : b.people.people[0].joints) j.velocity = Vector3(-2.0, 0.0, 0.0);

@@ -63,7 +63,8 @@ TEST(Controller, sends_nothing_after_a_sleep_until_it_knows_where_the_robot_has_
       EXPECT_EQ(b.core.set_point().position, b.measured);
       EXPECT_TRUE(b.at_rest());
     } else {
-      EXPECT_LT((b.core.set_point().position - sent).norm(), 0.01) << "the robot side did not stop: goes on from what was sent last";
+      EXPECT_LT((b.core.set_point().position - sent).norm(), 0.01)
+          << "the robot side did not stop: goes on from what was sent last";
     }
   }
 }
@@ -371,7 +372,9 @@ TEST(Controller, a_wall_ahead_is_named_and_kept) {
   EXPECT_TRUE(b.core.set_point().velocity.cwiseAbs().maxCoeff() < 0.02);
   std::vector<Pose> links;
   b.robot->forward(b.core.set_point().position, links);
-  EXPECT_LT((links[static_cast<std::size_t>(b.robot->link_index("lower"))] * Vector3(0.4, 0, 0)).y(), 0.5);
+  EXPECT_LT(
+      (links[static_cast<std::size_t>(b.robot->link_index("lower"))] * Vector3(0.4, 0, 0)).y(),
+      0.5);
 }
 
 TEST(Controller, an_override_of_a_tenth_runs_everything_at_a_tenth) {
@@ -385,8 +388,10 @@ TEST(Controller, an_override_of_a_tenth_runs_everything_at_a_tenth) {
   while (b.core.status().motion == MotionState::running && steps < 200000) {
     b.tick();
     ++steps;
-    fastest = std::max(fastest,
-                       (b.core.set_point().velocity.head(3).array() / b.robot->comfort_limits().velocity.head(3).array()).abs().maxCoeff());
+    fastest = std::max(fastest, (b.core.set_point().velocity.head(3).array() /
+                                 b.robot->comfort_limits().velocity.head(3).array())
+                                    .abs()
+                                    .maxCoeff());
   }
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
   EXPECT_LE(fastest, 0.1 + 1e-9);
@@ -403,7 +408,8 @@ TEST(Controller, a_dry_run_computes_everything_and_begins_again_where_the_robot_
   EXPECT_THAT(b.core.status().reason, HasSubstr("dry run"));
   ASSERT_EQ(b.go_to(goal(), 1), "");
   for (int k = 0; k < 20000 && b.core.status().motion == MotionState::running; ++k) b.tick();
-  EXPECT_EQ(b.core.status().motion, MotionState::finished) << "a robot that does not follow is no fault here";
+  EXPECT_EQ(b.core.status().motion, MotionState::finished)
+      << "a robot that does not follow is no fault here";
   EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
   b.run(5);
   EXPECT_TRUE(b.core.set_point().position.head(3).isZero(0.003));
@@ -468,7 +474,8 @@ TEST(Controller, the_payload_is_told_from_grasp_to_release) {
   c.payload = 0.35;
   const auto run = [&] {
     ASSERT_EQ(b.core.accept(c, Duration(0), b.now), "");
-    for (int k = 0; k < 5000 && (k == 0 || b.core.status().hand == HandState::moving); ++k) b.tick();
+    for (int k = 0; k < 5000 && (k == 0 || b.core.status().hand == HandState::moving); ++k)
+      b.tick();
     ++c.id;
   };
   b.external_torque = Vector::Zero(b.robot->dof());

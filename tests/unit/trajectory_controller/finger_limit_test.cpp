@@ -1,4 +1,5 @@
-// Fingers that move beside a face: no set-point has to be replaced by one of a stop, and the arm's path is not left for it.
+// Fingers that move beside a face: no set-point has to be replaced by one of a stop, and the arm's
+// path is not left for it.
 #include "components/trajectory_controller/supervise/finger_limit.hpp"
 
 #include <gtest/gtest.h>
@@ -16,14 +17,16 @@ namespace {
 class FingersBesideSomebody {
  public:
   explicit FingersBesideSomebody(double distance)
-      : robot_(std::make_shared<const RobotModel>(RobotModel::load(robot_description("jido")))), core_({}, robot_) {
+      : robot_(std::make_shared<const RobotModel>(RobotModel::load(robot_description("jido")))),
+        core_({}, robot_) {
     state_.robot = robot_->name();
     state_.position = robot_->rest_configuration();
     state_.velocity = state_.effort = Vector::Zero(robot_->dof());
     state_.mode = DriveMode::enabled;
     std::vector<Pose> links;
     robot_->forward(state_.position, links);
-    Vector3 feet = links[static_cast<std::size_t>(robot_->tool_link())].translation() + Vector3(distance, 0, 0);
+    Vector3 feet = links[static_cast<std::size_t>(robot_->tool_link())].translation() +
+                   Vector3(distance, 0, 0);
     feet.z() = 0;
     Person person;
     person.id = "anna";
@@ -44,7 +47,8 @@ class FingersBesideSomebody {
     for (int k = 0; k < static_cast<int>(seconds * 1000); ++k, ++ticks_) {
       now_ += std::chrono::milliseconds(1);
       if (ticks_ % 2 == 0) {
-        if (core_.set_point().position.size() == state_.position.size() && ticks_ > 10) state_.position = core_.set_point().position;
+        if (core_.set_point().position.size() == state_.position.size() && ticks_ > 10)
+          state_.position = core_.set_point().position;
         ++state_.sequence;
         core_.on(state_, now_);
       }
@@ -67,7 +71,8 @@ class FingersBesideSomebody {
     for (std::size_t i = 0; i < axes.size(); ++i) {
       const Axis& axis = robot_->axes()[static_cast<std::size_t>(axes[i])];
       const double at = core_.set_point().position[axes[i]];
-      c.position[static_cast<Eigen::Index>(i)] = at < 0.5 * (axis.lower + axis.upper) ? axis.upper - 0.1 : axis.lower + 0.1;
+      c.position[static_cast<Eigen::Index>(i)] =
+          at < 0.5 * (axis.lower + axis.upper) ? axis.upper - 0.1 : axis.lower + 0.1;
     }
     return core_.accept(c, Duration(0), now_);
   }
@@ -83,7 +88,9 @@ class FingersBesideSomebody {
     const Vector from = of_arm(core_.set_point().position);
     Vector goal = from;
     goal[0] += 0.6;
-    c.trajectory = solve(rest_state(from), rest_state(goal), {of_arm(l.velocity), of_arm(l.acceleration), of_arm(l.jerk)}).trajectory;
+    c.trajectory = solve(rest_state(from), rest_state(goal),
+                         {of_arm(l.velocity), of_arm(l.acceleration), of_arm(l.jerk)})
+                       .trajectory;
     return core_.accept(c, Duration(0), now_);
   }
   const Controller& core() const { return core_; }
@@ -105,7 +112,8 @@ TEST(FingerLimit, opening_beside_a_face_needs_no_stop) {
     ASSERT_EQ(b.open(), "");
     b.run(4.0);
     EXPECT_EQ(b.core().unproven_set_points(), 0u) << "somebody at " << distance << " m";
-    EXPECT_EQ(b.core().status().hand, HandState::idle) << "the hand has not opened, somebody at " << distance << " m";
+    EXPECT_EQ(b.core().status().hand, HandState::idle)
+        << "the hand has not opened, somebody at " << distance << " m";
   }
 }
 
@@ -117,7 +125,8 @@ TEST(FingerLimit, the_arm_leaves_its_path_for_no_finger) {
     ASSERT_EQ(b.open(), "");
     b.run(20.0);
     EXPECT_EQ(b.core().unproven_set_points(), 0u) << "somebody at " << distance << " m";
-    EXPECT_EQ(b.core().status().motion, MotionState::finished) << "somebody at " << distance << " m";
+    EXPECT_EQ(b.core().status().motion, MotionState::finished)
+        << "somebody at " << distance << " m";
   }
 }
 

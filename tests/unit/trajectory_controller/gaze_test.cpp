@@ -34,14 +34,17 @@ TEST(Controller, the_head_turns_to_what_attention_looks_at) {
 
 TEST(Gaze, stays_inside_the_bounds_for_points_out_of_view) {
   const auto robot = test::small_robot();
-  const std::vector<double> q = aim(*robot, robot->require_group("head"), Vector::Zero(robot->dof()), Vector3(0.2, 0, 5.0));
+  const std::vector<double> q =
+      aim(*robot, robot->require_group("head"), Vector::Zero(robot->dof()), Vector3(0.2, 0, 5.0));
   EXPECT_LE(q[1], 0.5 + 1e-12);
   EXPECT_GE(q[1], -0.7 - 1e-12);
 }
 
-/// The forearm has just passed in front of the camera: nodding on to who sits there would push the camera into it.
+/// The forearm has just passed in front of the camera: nodding on to who sits there would push the
+/// camera into it.
 TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   HeadRoom room(robot);
   Vector q = robot.rest_configuration();
   q.head(7) << -0.286, 1.673, -0.285, -1.170, -1.204, 1.639, -1.292;

@@ -86,7 +86,8 @@ TEST(ModeMachine, moves_only_for_a_go_newer_than_the_first_one_heard) {
   in.robot_age = in.human_age = in.forecast_age = in.attention_age = in.go_age = 0.001;
   in.drive_enabled = in.at_rest = in.go_allowed = true;
   in.go_epoch = in.first_go_epoch = 5;
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(machine.update(in).mode, Mode::hold) << "it may be from before the start";
+  for (int k = 0; k < 10; ++k)
+    EXPECT_EQ(machine.update(in).mode, Mode::hold) << "it may be from before the start";
   in.go_epoch = 6;
   EXPECT_EQ(machine.update(in).mode, Mode::normal);
   in.go_allowed = false;

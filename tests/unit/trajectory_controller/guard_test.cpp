@@ -10,7 +10,12 @@ namespace {
 
 class GuardTest : public testing::Test {
  protected:
-  GuardTest() : robot_(test::small_robot()), capsules_(robot_capsules(*robot_)), q_(Vector::Zero(robot_->dof())), dq_(q_), ddq_(q_) {
+  GuardTest()
+      : robot_(test::small_robot()),
+        capsules_(robot_capsules(*robot_)),
+        q_(Vector::Zero(robot_->dof())),
+        dq_(q_),
+        ddq_(q_) {
     settings_.speed_floor = 0.1;
     settings_.speed_uncertainty = 0.0;
   }
@@ -20,19 +25,23 @@ class GuardTest : public testing::Test {
     p.joints = standing_body(Vector3(x, y, 0), M_PI, 1.75);
     return p;
   }
-  GuardVerdict judge(const HumanState& people, double age = 0.0, double factor = 1.0, const SeparationExemption& exception = {}) {
+  GuardVerdict judge(const HumanState& people, double age = 0.0, double factor = 1.0,
+                     const SeparationExemption& exception = {}) {
     prepare(people, exception, settings_.unknown_after, crowd_);
     robot_->forward(q_, links_);
     link_twists(*robot_, dq_, links_, twists_);
     const PathMotion motion{&dq_, &ddq_, &links_, &twists_};
     return guard(motion, crowd_, age, factor);
   }
-  GuardVerdict guard(const PathMotion& motion, const PersonCapsules& people, double age, double factor) {
+  GuardVerdict guard(const PathMotion& motion, const PersonCapsules& people, double age,
+                     double factor) {
     const StopTable stop = stop_table(motion, robot_->stop_limits());
     const Pose base = Pose::Identity();
-    return trajectory_controller::guard(settings_, {capsules_, motion, stop, base, people, walls_, age, factor});
+    return trajectory_controller::guard(
+        settings_, {capsules_, motion, stop, base, people, walls_, age, factor});
   }
-  GuardVerdict judge(const Person& person, double age = 0.0, double factor = 1.0, const SeparationExemption& exception = {}) {
+  GuardVerdict judge(const Person& person, double age = 0.0, double factor = 1.0,
+                     const SeparationExemption& exception = {}) {
     return judge(HumanState{0, {person}, true}, age, factor, exception);
   }
   static void walk(Person& p, const Vector3& velocity) {
@@ -56,9 +65,11 @@ class GuardTest : public testing::Test {
 
 TEST(SeparationReference, vectors_of_the_constant_deceleration_form) {
   const double s[] = {0.34, 0.5, 1.0, 1.5, 2.0}, v[] = {0.0, 0.1616, 0.6000, 0.9723, 1.3016};
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(reference_speed(s[i], 1.6, 0.15, 2.0, 0.1), v[i], 5e-5) << s[i];
+  for (int i = 0; i < 5; ++i)
+    EXPECT_NEAR(reference_speed(s[i], 1.6, 0.15, 2.0, 0.1), v[i], 5e-5) << s[i];
   const double s2[] = {0.5, 1.0, 2.0}, v2[] = {0.3729, 1.2088, 2.4497};
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(reference_speed(s2[i], 1.6, 0.12, 5.0, 0.13), v2[i], 5e-5) << s2[i];
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(reference_speed(s2[i], 1.6, 0.12, 5.0, 0.13), v2[i], 5e-5) << s2[i];
   EXPECT_EQ(reference_speed(0.05, 0.1, 0.1, 2.0, 0.5), 0.0);
 }
 
@@ -81,7 +92,8 @@ TEST_F(GuardTest, nobody_and_covered_is_full_speed_both_ways) {
 
 TEST_F(GuardTest, says_where_the_nearest_person_is_and_what_the_rule_asks_for_there) {
   Person p = standing(1.6);
-  const double margin = settings_.intrusion + settings_.uncertainty_human + settings_.uncertainty_robot;
+  const double margin =
+      settings_.intrusion + settings_.uncertainty_human + settings_.uncertainty_robot;
   const GuardVerdict rest = judge(p, 0.02);
   EXPECT_LT(rest.distance, 1.6);
   const double axes_apart = (rest.on_robot - rest.on_person).norm();
@@ -124,7 +136,8 @@ TEST_F(GuardTest, the_allowed_speed_grows_with_distance_and_obeys_the_rule) {
 }
 
 TEST_F(GuardTest, at_the_allowed_speed_the_robot_stops_before_it_meets_the_person) {
-  // Oracle: both walk on for the reaction time, then the axis stops in minimum time while the person walks on.
+  // Oracle: both walk on for the reaction time, then the axis stops in minimum time while the
+  // person walks on.
   swing(0.5);
   int limited = 0;
   for (double x = 1.0; x < 2.0; x += 0.05)
@@ -135,14 +148,19 @@ TEST_F(GuardTest, at_the_allowed_speed_the_robot_stops_before_it_meets_the_perso
       if (factor >= 1.0 || factor <= 0.0) continue;
       ++limited;
       const double speed = factor * 0.5;
-      const StopMeasure stop = measure_stop(speed, 0.0, robot_->stop_limits().acceleration[0], robot_->stop_limits().jerk[0]);
+      const StopMeasure stop = measure_stop(speed, 0.0, robot_->stop_limits().acceleration[0],
+                                            robot_->stop_limits().jerk[0]);
       Vector end = q_;
       end[0] -= speed * settings_.reaction + stop.distance;
       Person later = p;
-      for (BodyJoint& j : later.joints) j.position.x() -= v_h * (settings_.reaction + stop.duration);
+      for (BodyJoint& j : later.joints)
+        j.position.x() -= v_h * (settings_.reaction + stop.duration);
       std::vector<Pose> links;
       robot_->forward(end, links);
-      EXPECT_GT(separation(capsules_, links, Pose::Identity(), HumanState{0, {later}, true}).distance, 0.0) << x << " " << v_h;
+      EXPECT_GT(
+          separation(capsules_, links, Pose::Identity(), HumanState{0, {later}, true}).distance,
+          0.0)
+          << x << " " << v_h;
     }
   EXPECT_GT(limited, 5);
 }
@@ -231,11 +249,14 @@ TEST_F(GuardTest, the_exchanging_hand_is_excepted_but_its_speed_stays_limited) {
   EXPECT_GT(engaged.forward, before.forward);
   EXPECT_FALSE(engaged.handover_clear);
   EXPECT_LE(engaged.forward * 0.5 * 0.8, settings_.handover_speed * 1.3);
-  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"bert", Side::right, true}).forward, before.forward);
-  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"anna", Side::left, false}).forward, before.forward);
+  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"bert", Side::right, true}).forward,
+                   before.forward);
+  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"anna", Side::left, false}).forward,
+                   before.forward);
 }
 
-TEST_F(GuardTest, only_the_part_of_the_exchanging_hand_within_range_counts_and_its_speed_is_capped_both_ways) {
+TEST_F(GuardTest,
+       only_the_part_of_the_exchanging_hand_within_range_counts_and_its_speed_is_capped_both_ways) {
   q_[0] = 0.25;
   Person p = standing(1.5);
   p.joints[9].position = Vector3(1.25, -0.1, 1.0);
@@ -278,11 +299,13 @@ TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) 
   link_twists(*robot_, dq_, links_, twists_);
   const PathMotion motion{&dq_, &ddq_, &links_, &twists_};
   const GuardVerdict same = guard(motion, point, 0.0, 1.0);
-  EXPECT_EQ(same.forward, 0.0) << "the nearest points coincide: up is taken as the way, and up it goes";
+  EXPECT_EQ(same.forward, 0.0)
+      << "the nearest points coincide: up is taken as the way, and up it goes";
 }
 
 TEST_F(GuardTest, a_wall_ahead_slows_until_the_stop_ends_before_it_and_one_behind_does_not) {
-  // Oracle: reaction time at speed, then the minimum-time stop of the axis; the tip must not have passed the wall.
+  // Oracle: reaction time at speed, then the minimum-time stop of the axis; the tip must not have
+  // passed the wall.
   swing(0.5);
   int limited = 0;
   for (double x = 0.35; x < 0.9; x += 0.01) {
@@ -293,14 +316,17 @@ TEST_F(GuardTest, a_wall_ahead_slows_until_the_stop_ends_before_it_and_one_behin
     if (v.forward >= 1.0 || v.forward <= 0.0) continue;
     ++limited;
     const double speed = v.forward * 0.5;
-    const StopMeasure stop = measure_stop(speed, 0.0, robot_->stop_limits().acceleration[0], robot_->stop_limits().jerk[0]);
+    const StopMeasure stop = measure_stop(speed, 0.0, robot_->stop_limits().acceleration[0],
+                                          robot_->stop_limits().jerk[0]);
     Vector end = q_;
     end[0] -= speed * settings_.reaction + stop.distance;
     std::vector<Pose> links;
     robot_->forward(end, links);
     for (const LinkCapsule& link : capsules_) {
-      if (link.link != robot_->link_index("upper") && link.link != robot_->link_index("lower")) continue;
-      EXPECT_LT((links[static_cast<std::size_t>(link.link)] * link.b).x() + link.radius, x + 1e-9) << x;
+      if (link.link != robot_->link_index("upper") && link.link != robot_->link_index("lower"))
+        continue;
+      EXPECT_LT((links[static_cast<std::size_t>(link.link)] * link.b).x() + link.radius, x + 1e-9)
+          << x;
     }
   }
   EXPECT_GT(limited, 2);
@@ -332,7 +358,9 @@ TEST_F(GuardTest, link_velocities_are_those_of_the_poses) {
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Vector3 p(0.1, -0.2, 0.3), r = links_[i].linear() * p;
     const Vector3 v = (later[i] * p - links_[i] * p) / kStep;
-    EXPECT_TRUE((twists_[i].linear + twists_[i].angular.cross(r)).isApprox(v, 1e-4) || v.norm() < 1e-9) << i;
+    EXPECT_TRUE((twists_[i].linear + twists_[i].angular.cross(r)).isApprox(v, 1e-4) ||
+                v.norm() < 1e-9)
+        << i;
   }
 }
 

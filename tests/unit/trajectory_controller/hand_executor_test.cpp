@@ -15,15 +15,17 @@ constexpr double kDt = 0.001;
 constexpr double kStiffness = 40.0;  // [Nm/rad]
 
 KinematicLimits limits(int n, double v, double a, double j) {
-  return {Eigen::VectorXd::Constant(n, v), Eigen::VectorXd::Constant(n, a), Eigen::VectorXd::Constant(n, j)};
+  return {Eigen::VectorXd::Constant(n, v), Eigen::VectorXd::Constant(n, a),
+          Eigen::VectorXd::Constant(n, j)};
 }
 
-/// A hand of four axes whose servos follow the set-point as springs, pushed by the effort given besides, until something blocks them.
+/// A hand of four axes whose servos follow the set-point as springs, pushed by the effort given
+/// besides, until something blocks them.
 class HandTest : public testing::Test {
  protected:
   HandTest()
-      : hand_(HandSettings{}, {{0, 1, 2, 3}, {-0.2, -0.2, -0.2, -0.2}, {1.4, 1.4, 1.4, 1.4}, {}}, limits(4, 2.5, 12, 90),
-              limits(4, 2.8, 14, 100)) {
+      : hand_(HandSettings{}, {{0, 1, 2, 3}, {-0.2, -0.2, -0.2, -0.2}, {1.4, 1.4, 1.4, 1.4}, {}},
+              limits(4, 2.5, 12, 90), limits(4, 2.8, 14, 100)) {
     out_ = rest_state(Vector::Zero(4));
     robot_.position = robot_.velocity = robot_.effort = Vector::Zero(4);
     block_.assign(4, 10.0);
@@ -40,9 +42,11 @@ class HandTest : public testing::Test {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       for (int i = 0; i < 4; ++i) {
         const double before = robot_.position[i];
-        robot_.position[i] = std::min(out_.position[i] + hand_.effort(i) / kStiffness, block_[static_cast<std::size_t>(i)]);
+        robot_.position[i] = std::min(out_.position[i] + hand_.effort(i) / kStiffness,
+                                      block_[static_cast<std::size_t>(i)]);
         robot_.velocity[i] = (robot_.position[i] - before) / kDt;
-        robot_.effort[i] = jammed_[static_cast<std::size_t>(i)] * (kStiffness * (out_.position[i] - robot_.position[i]) + hand_.effort(i));
+        robot_.effort[i] = jammed_[static_cast<std::size_t>(i)] *
+                           (kStiffness * (out_.position[i] - robot_.position[i]) + hand_.effort(i));
       }
       HandInputs in;
       in.robot = &robot_;
@@ -120,7 +124,8 @@ TEST_F(HandTest, once_it_has_released_a_finger_gives_way_to_what_is_drawn_past_i
 /// One axis that slides, as a parallel gripper has: the same settings, at the lever of a finger.
 TEST(SlidingHand, closes_until_it_presses_and_tells_metres) {
   const HandSettings settings;
-  HandExecutor hand(settings, {{0}, {0.0}, {0.04}, {1}}, limits(1, 0.08, 0.5, 5), limits(1, 0.1, 0.8, 10));
+  HandExecutor hand(settings, {{0}, {0.0}, {0.04}, {1}}, limits(1, 0.08, 0.5, 5),
+                    limits(1, 0.1, 0.8, 10));
   constexpr double kSpring = 1.4e4, kObject = 0.021;  // [N/m], [m]
   MotionState3 out = rest_state(Vector::Constant(1, 0.04));
   RobotState robot;
@@ -161,7 +166,9 @@ TEST_F(HandTest, fingers_arrive_together_and_squeeze_along_the_way_they_came) {
   bool together = true;
   for (int k = 0; k < 2500; ++k) {
     run(kDt);
-    for (int i = 0; i < 4; ++i) together = together && std::abs(out_.position[i] / c.position[i] - out_.position[3] / c.position[3]) < 0.02;
+    for (int i = 0; i < 4; ++i)
+      together = together && std::abs(out_.position[i] / c.position[i] -
+                                      out_.position[3] / c.position[3]) < 0.02;
   }
   EXPECT_TRUE(together) << "an axis ran ahead of the others";
   run(1.0);
@@ -214,7 +221,8 @@ TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_
   for (int i = 0; i < 4; ++i) {
     EXPECT_DOUBLE_EQ(hand_.effort(i), c.effort[i]) << i;
     EXPECT_GE(robot_.effort[i], (i == 2 ? 0.0 : c.effort[i]) - 1e-6) << i;
-    EXPECT_LE(robot_.effort[i], (i == 2 ? 0.0 : c.effort[i]) + 0.6) << i << ": and what the search for contact left";
+    EXPECT_LE(robot_.effort[i], (i == 2 ? 0.0 : c.effort[i]) + 0.6)
+        << i << ": and what the search for contact left";
   }
   HandCommand again;
   again.action = HandAction::grasp;
@@ -249,9 +257,11 @@ TEST_F(HandTest, what_a_person_holds_too_is_grasped_only_when_every_finger_pushe
     run(2.5);
   };
   squeeze(0.1);
-  EXPECT_EQ(hand_.state(), HandState::empty) << "one finger pushes with a third of its effort: it lies against something else";
+  EXPECT_EQ(hand_.state(), HandState::empty)
+      << "one finger pushes with a third of its effort: it lies against something else";
   squeeze(10.0);
-  EXPECT_EQ(hand_.state(), HandState::grasped) << "nobody else keeps it where it is: it has come to rest in the hand";
+  EXPECT_EQ(hand_.state(), HandState::grasped)
+      << "nobody else keeps it where it is: it has come to rest in the hand";
 }
 
 TEST_F(HandTest, closing_on_nothing_is_empty) {
@@ -299,7 +309,8 @@ TEST_F(HandTest, opens_when_the_person_pulls) {
   force_ += Vector3(8.0, 0, 2.0);
   run(0.45);
   EXPECT_EQ(hand_.state(), HandState::grasped);
-  EXPECT_NEAR(hand_.effort(0), HandSettings{}.loosen_fraction * squeezed, 1e-9) << "loosened, but still pressing";
+  EXPECT_NEAR(hand_.effort(0), HandSettings{}.loosen_fraction * squeezed, 1e-9)
+      << "loosened, but still pressing";
   run(0.2);
   EXPECT_EQ(hand_.state(), HandState::moving);
   run(1.5);
@@ -359,14 +370,16 @@ TEST_F(HandTest, refuses_what_it_cannot_do) {
   EXPECT_NE(hand_.accept(c), "");
 }
 
-/// How the grip ends when somebody has hold of the load, 3 N, with 4 N from before the watch is armed until its end.
+/// How the grip ends when somebody has hold of the load, 3 N, with 4 N from before the watch is
+/// armed until its end.
 Grip pulled_before_the_offer(bool load_felt_before) {
   ReleaseWatch watch{PullSettings{}};
   const Vector3 load(0, 0, -3), toward(1, 0, 0);
   TimePoint now{from_seconds(10)};
   for (int k = 0; k < 500 && load_felt_before; ++k) watch.bear(load, now += from_seconds(0.002));
   watch.arm(1.5);
-  for (int k = 0; k < 1000; ++k) watch.update({load + 4.0 * toward, toward, true, true}, now += from_seconds(0.002));
+  for (int k = 0; k < 1000; ++k)
+    watch.update({load + 4.0 * toward, toward, true, true}, now += from_seconds(0.002));
   return watch.grip();
 }
 

@@ -72,22 +72,26 @@ TEST(ModeMachine, an_acknowledgement_must_be_newer_than_the_fault) {
   in.limit_violation = true;
   machine.update(in);
   in.limit_violation = false;
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(machine.update(in).mode, Mode::fault) << "the same Go that stood when it happened";
+  for (int k = 0; k < 10; ++k)
+    EXPECT_EQ(machine.update(in).mode, Mode::fault) << "the same Go that stood when it happened";
   ++in.go_epoch;
   in.go_acknowledge = false;
   EXPECT_EQ(machine.update(in).mode, Mode::fault) << "a newer Go without a person's word";
   in.go_acknowledge = true;
-  EXPECT_EQ(machine.update(in).mode, Mode::hold) << "through Stop, which nothing holds any more, to Hold";
+  EXPECT_EQ(machine.update(in).mode, Mode::hold)
+      << "through Stop, which nothing holds any more, to Hold";
   EXPECT_EQ(machine.update(in).mode, Mode::normal);
 }
 
-// Whatever happens: no way from Stop or Fault to Normal or Slow but through Hold, from Fault only by a person, and never below what a
-// present cause demands.
+// Whatever happens: no way from Stop or Fault to Normal or Slow but through Hold, from Fault only
+// by a person, and never below what a present cause demands.
 TEST(ModeMachine, a_million_random_inputs_keep_the_rules) {
   const std::uint64_t seed = 99;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   std::mt19937_64 random(seed);
-  const auto chance = [&](int one_in) { return random() % static_cast<std::uint64_t>(one_in) == 0; };
+  const auto chance = [&](int one_in) {
+    return random() % static_cast<std::uint64_t>(one_in) == 0;
+  };
   ModeMachine machine({});
   ModeInputs in;
   Mode before = Mode::hold;

@@ -8,7 +8,9 @@
 namespace handsel::trajectory_controller {
 namespace {
 
-SourceView view(const Vector3& low, const Vector3& high, double age = 0.05) { return {"camera", low, high, age, true, ""}; }
+SourceView view(const Vector3& low, const Vector3& high, double age = 0.05) {
+  return {"camera", low, high, age, true, ""};
+}
 
 ObservedSpace space(std::vector<SourceView> views) {
   ObservedSpace out(0.25);
@@ -32,7 +34,8 @@ TEST(ObservedSpace, contains_what_lies_in_several_views_together) {
   const SourceView left = view({-1, -1, -1}, {0.5, 2, 2}), right = view({0.5, -1, -1}, {2, 2, 2});
   EXPECT_TRUE(space({left, right}).contains(kUnit, 0));
   EXPECT_FALSE(space({left, right}).one_contains(kUnit, 0));
-  EXPECT_FALSE(space({left, view({0.51, -1, -1}, {2, 2, 2})}).contains(kUnit, 0)) << "a gap of 1 cm";
+  EXPECT_FALSE(space({left, view({0.51, -1, -1}, {2, 2, 2})}).contains(kUnit, 0))
+      << "a gap of 1 cm";
   EXPECT_FALSE(space({left, view({0.5, -1, -1}, {2, 2, 0.9})}).contains(kUnit, 0)) << "an edge";
 }
 
@@ -44,7 +47,8 @@ TEST(ObservedSpace, leaves_out_what_is_not_live_or_too_old) {
   EXPECT_TRUE(seen.contains(kUnit, 0.14)) << "a view's age grows with the time since the message";
   EXPECT_FALSE(seen.contains(kUnit, 0.16));
   EXPECT_FALSE(seen.any(0.16));
-  EXPECT_FALSE(space({view({-1, -1, -1}, {2, 2, 2}, -5)}).any(0.3)) << "nothing is younger than now";
+  EXPECT_FALSE(space({view({-1, -1, -1}, {2, 2, 2}, -5)}).any(0.3))
+      << "nothing is younger than now";
 }
 
 /// A grid of points decides as well, where the boxes' sides lie on a coarser one.

@@ -12,7 +12,8 @@ namespace handsel::trajectory_controller {
 /// Body regions with limits of their own.
 enum class BodyRegion : std::uint8_t { head, torso, upper_arm, forearm, hand, thigh, lower_leg };
 inline constexpr std::size_t kBodyRegions = 7;
-inline constexpr const char* kBodyRegionNames[kBodyRegions] = {"head", "torso", "upper_arm", "forearm", "hand", "thigh", "lower_leg"};
+inline constexpr const char* kBodyRegionNames[kBodyRegions] = {
+    "head", "torso", "upper_arm", "forearm", "hand", "thigh", "lower_leg"};
 
 /// Returns the region a part of the body belongs to; of a leg, the more sensitive one.
 BodyRegion region_of(BodyPart part) noexcept;
@@ -28,7 +29,9 @@ struct ContactLimit {
 
 /// Returns the mass that stands for the collision of the region with a robot of effective mass
 /// `robot_mass` [kg].
-inline double reduced_mass(const ContactLimit& limit, double robot_mass) noexcept { return 1.0 / (1.0 / limit.mass + 1.0 / robot_mass); }
+inline double reduced_mass(const ContactLimit& limit, double robot_mass) noexcept {
+  return 1.0 / (1.0 / limit.mass + 1.0 / robot_mass);
+}
 
 /// Returns the largest speed at which a robot of effective mass `robot_mass` [kg] may touch the
 /// region without exceeding force and energy [m/s] (ISO/TS 15066:2016 equation A.4: E = F^2 / 2k =

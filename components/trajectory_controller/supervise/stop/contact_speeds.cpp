@@ -23,10 +23,16 @@ double half_moving_mass(const RobotModel& robot) {
 
 }  // namespace
 
-ContactSpeeds::ContactSpeeds(const ContactLimits& limits, const RobotModel& robot, double min_robot_mass, double finger_mass)
-    : limits_(limits), min_robot_mass_(min_robot_mass), finger_mass_(finger_mass), moving_mass_(half_moving_mass(robot)) {}
+ContactSpeeds::ContactSpeeds(const ContactLimits& limits, const RobotModel& robot,
+                             double min_robot_mass, double finger_mass)
+    : limits_(limits),
+      min_robot_mass_(min_robot_mass),
+      finger_mass_(finger_mass),
+      moving_mass_(half_moving_mass(robot)) {}
 
-double ContactSpeeds::arm_mass(double payload) const noexcept { return std::max(min_robot_mass_, moving_mass_ + std::max(0.0, payload)); }
+double ContactSpeeds::arm_mass(double payload) const noexcept {
+  return std::max(min_robot_mass_, moving_mass_ + std::max(0.0, payload));
+}
 
 double ContactSpeeds::max_speed_at(BodyRegion region, double payload) const noexcept {
   return max_contact_speed(limits_[static_cast<std::size_t>(region)], arm_mass(payload));

@@ -12,7 +12,8 @@ class ContactSpeeds {
  public:
   /// `min_robot_mass`: effective mass of a link at a contact, at least [kg]; `finger_mass`: of the
   /// heaviest finger [kg].
-  ContactSpeeds(const ContactLimits& limits, const RobotModel& robot, double min_robot_mass, double finger_mass);
+  ContactSpeeds(const ContactLimits& limits, const RobotModel& robot, double min_robot_mass,
+                double finger_mass);
 
   /// Returns the largest contact speed of a region for the robot holding `payload` [m/s, kg].
   double max_speed_at(BodyRegion region, double payload) const noexcept;

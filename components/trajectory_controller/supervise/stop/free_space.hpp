@@ -18,7 +18,8 @@ class FreeSpace {
 
   /// Begins a measurement: for people of a revision, the robot at `position`, within `duration`
   /// [s]; nobody is faster than `max_person_speed` [m/s].
-  void begin(std::uint64_t revision, const Pose& T_world_base, const Vector& position, double duration) noexcept;
+  void begin(std::uint64_t revision, const Pose& T_world_base, const Vector& position,
+             double duration) noexcept;
   /// Notes the largest speed of the people [m/s].
   void set_max_person_speed(double speed) noexcept { max_person_speed_ = speed; }
   /// Notes the free space of a capsule [m].
@@ -27,7 +28,8 @@ class FreeSpace {
   bool is_of(std::uint64_t revision, const Pose& T_world_base) const noexcept;
   /// Returns whether every capsule that may be faster than `min_speed` [m/s] is still so far from
   /// everybody that nobody reaches it: what was free, less how far it has come since.
-  bool suffices(const StopBounds& bounds, const Vector& position, double duration, double min_speed) noexcept;
+  bool suffices(const StopBounds& bounds, const Vector& position, double duration,
+                double min_speed) noexcept;
 
  private:
   const MovingChain& chain_;

@@ -18,9 +18,11 @@ struct Place {
   int finger_frame{-1};                 // of a finger: index into the frames of its hand
   Pose T_frame_link{Pose::Identity()};  // in the finger's frame, if it has one
   bool finger{};
-  double reach{};               // of a finger: the largest distance of the link's origin from where the finger begins [m]
-  double mass{};                // of a finger: of its links so far [kg]
-  std::vector<Lever> inner;     // of a finger: its axes from its beginning to the link, with the reach of each axis itself
+  double reach{};  // of a finger: the largest distance of the link's origin from where the finger
+                   // begins [m]
+  double mass{};   // of a finger: of its links so far [kg]
+  std::vector<Lever> inner;  // of a finger: its axes from its beginning to the link, with the reach
+                             // of each axis itself
   std::vector<double> factors;  // by which each of these turns or slides with its axis
 };
 
@@ -34,7 +36,8 @@ std::vector<char> finger_axes(const RobotModel& robot) {
 
 double max_value(const RobotModel& robot, const Joint& joint) {
   const Axis& axis = robot.axes()[static_cast<std::size_t>(joint.dof)];
-  return std::abs(joint.mimic_factor) * std::max(std::abs(axis.lower), std::abs(axis.upper)) + std::abs(joint.mimic_offset);
+  return std::abs(joint.mimic_factor) * std::max(std::abs(axis.lower), std::abs(axis.upper)) +
+         std::abs(joint.mimic_offset);
 }
 
 Pose held_at(const Joint& joint) {
@@ -46,7 +49,8 @@ Pose held_at(const Joint& joint) {
 }
 
 /// The axes that carry a capsule, from its frame to the root.
-std::vector<Lever> levers(const RobotModel& robot, const std::vector<ChainFrame>& frames, const ChainCapsule& capsule) {
+std::vector<Lever> levers(const RobotModel& robot, const std::vector<ChainFrame>& frames,
+                          const ChainCapsule& capsule) {
   std::vector<Lever> out;
   double reach = std::max(capsule.a.norm(), capsule.b.norm()) + capsule.radius;
   for (int k = capsule.frame; k >= 0; k = frames[static_cast<std::size_t>(k)].parent) {
@@ -54,13 +58,16 @@ std::vector<Lever> levers(const RobotModel& robot, const std::vector<ChainFrame>
     out.push_back({frame.axis, std::abs(frame.factor) * (frame.sliding ? 1.0 : reach)});
     reach += frame.p_parent_joint.norm();
     const Axis& axis = robot.axes()[static_cast<std::size_t>(frame.axis)];
-    if (frame.sliding) reach += std::abs(frame.factor) * std::max(std::abs(axis.lower), std::abs(axis.upper)) + std::abs(frame.offset);
+    if (frame.sliding)
+      reach += std::abs(frame.factor) * std::max(std::abs(axis.lower), std::abs(axis.upper)) +
+               std::abs(frame.offset);
   }
   return out;
 }
 
 /// Pose of a frame; velocities are left.
-void place(const ChainFrame& frame, const FrameMotion& parent, double position, FrameMotion& out) noexcept {
+void place(const ChainFrame& frame, const FrameMotion& parent, double position,
+           FrameMotion& out) noexcept {
   const double value = frame.factor * position + frame.offset;
   out.p = parent.p + parent.R * frame.p_parent_joint;
   out.R = parent.R * frame.R_parent_joint;
@@ -71,15 +78,18 @@ void place(const ChainFrame& frame, const FrameMotion& parent, double position, 
   const double s = std::sin(value), c = std::cos(value);
   const Vector3& d = frame.direction;
   Eigen::Matrix3d turn;  // Rodrigues
-  turn << c + (1 - c) * d.x() * d.x(), (1 - c) * d.x() * d.y() - s * d.z(), (1 - c) * d.x() * d.z() + s * d.y(),
-      (1 - c) * d.x() * d.y() + s * d.z(), c + (1 - c) * d.y() * d.y(), (1 - c) * d.y() * d.z() - s * d.x(),
-      (1 - c) * d.x() * d.z() - s * d.y(), (1 - c) * d.y() * d.z() + s * d.x(), c + (1 - c) * d.z() * d.z();
+  turn << c + (1 - c) * d.x() * d.x(), (1 - c) * d.x() * d.y() - s * d.z(),
+      (1 - c) * d.x() * d.z() + s * d.y(), (1 - c) * d.x() * d.y() + s * d.z(),
+      c + (1 - c) * d.y() * d.y(), (1 - c) * d.y() * d.z() - s * d.x(),
+      (1 - c) * d.x() * d.z() - s * d.y(), (1 - c) * d.y() * d.z() + s * d.x(),
+      c + (1 - c) * d.z() * d.z();
   out.R = out.R * turn;
 }
 
 double sum(const std::vector<Lever>& levers, const std::vector<double>& by_axis) noexcept {
   double out = 0.0;
-  for (const Lever& lever : levers) out += lever.length * by_axis[static_cast<std::size_t>(lever.axis)];
+  for (const Lever& lever : levers)
+    out += lever.length * by_axis[static_cast<std::size_t>(lever.axis)];
   return out;
 }
 
@@ -91,9 +101,13 @@ double ChainCapsule::inner_bound(const std::vector<double>& by_axis) const noexc
   return most;
 }
 
-double ChainCapsule::carried_bound(const std::vector<double>& by_axis) const noexcept { return sum(carried, by_axis); }
+double ChainCapsule::carried_bound(const std::vector<double>& by_axis) const noexcept {
+  return sum(carried, by_axis);
+}
 
-double ChainCapsule::bound(const std::vector<double>& by_axis) const noexcept { return carried_bound(by_axis) + inner_bound(by_axis); }
+double ChainCapsule::bound(const std::vector<double>& by_axis) const noexcept {
+  return carried_bound(by_axis) + inner_bound(by_axis);
+}
 
 MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>& capsules)
     : sliding_(static_cast<std::size_t>(robot.dof()), 0) {
@@ -104,14 +118,16 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
     const Place& parent = places[static_cast<std::size_t>(joint.parent)];
     Place& child = places[static_cast<std::size_t>(joint.child)];
     child = parent;
-    const bool moves = joint.kind != JointKind::fixed && joint.dof >= 0, slides = joint.kind == JointKind::prismatic;
+    const bool moves = joint.kind != JointKind::fixed && joint.dof >= 0,
+               slides = joint.kind == JointKind::prismatic;
     const Pose T_frame_joint = parent.T_frame_link * joint.T_parent_joint;
     const bool finger = parent.finger || (moves && fingers[static_cast<std::size_t>(joint.dof)]);
     if (finger && parent.finger) child.reach += joint.T_parent_joint.translation().norm();
     child.finger = finger;
     if (finger) child.mass += robot.links()[static_cast<std::size_t>(joint.child)].mass;
     if (!moves) {
-      child.T_frame_link = T_frame_joint * (joint.kind == JointKind::fixed ? Pose::Identity() : held_at(joint));
+      child.T_frame_link =
+          T_frame_joint * (joint.kind == JointKind::fixed ? Pose::Identity() : held_at(joint));
       continue;
     }
     sliding_[static_cast<std::size_t>(joint.dof)] = slides;
@@ -122,8 +138,8 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
     }
     std::vector<ChainFrame>& frames = finger ? hands[parent.frame].frames : frames_;
     int& frame = finger ? child.finger_frame : child.frame;
-    frames.push_back({frame, joint.dof, slides, joint.mimic_factor, joint.mimic_offset, T_frame_joint.linear(), T_frame_joint.translation(),
-                      joint.axis});
+    frames.push_back({frame, joint.dof, slides, joint.mimic_factor, joint.mimic_offset,
+                      T_frame_joint.linear(), T_frame_joint.translation(), joint.axis});
     frame = static_cast<int>(frames.size()) - 1;
     child.T_frame_link = Pose::Identity();
   }
@@ -141,11 +157,14 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
     sphere.frame = place.frame;
     sphere.link = capsule.link;
     sphere.finger_mass = std::max(sphere.finger_mass, place.mass);
-    const double reach = place.reach + std::max(capsule.a.norm(), capsule.b.norm()) + capsule.radius;
+    const double reach =
+        place.reach + std::max(capsule.a.norm(), capsule.b.norm()) + capsule.radius;
     std::vector<Lever> inner;
     for (std::size_t k = 0; k < place.inner.size(); ++k) {
       const Lever& axis = place.inner[k];
-      inner.push_back({axis.axis, place.factors[k] * (sliding_[static_cast<std::size_t>(axis.axis)] ? 1.0 : reach - axis.length)});
+      inner.push_back({axis.axis, place.factors[k] * (sliding_[static_cast<std::size_t>(axis.axis)]
+                                                          ? 1.0
+                                                          : reach - axis.length)});
     }
     sphere.fingers.push_back(std::move(inner));
     // As large as it can become: for the levers.
@@ -177,13 +196,15 @@ void MovingChain::enclose_hands(const Vector& position) noexcept {
       const ChainFrame& frame = hand.frames[k];
       hand.enclosed_at[k] = position[frame.axis];
       static const FrameMotion kHand;
-      place(frame, frame.parent < 0 ? kHand : hand.placed[static_cast<std::size_t>(frame.parent)], position[frame.axis], hand.placed[k]);
+      place(frame, frame.parent < 0 ? kHand : hand.placed[static_cast<std::size_t>(frame.parent)],
+            position[frame.axis], hand.placed[k]);
     }
     Vector3 low = Vector3::Constant(1e9), high = -low;
     const auto each_end = [&](const auto& use) {
       for (const FingerPart& part : hand.parts) {
         static const FrameMotion kHand;
-        const FrameMotion& at = part.frame < 0 ? kHand : hand.placed[static_cast<std::size_t>(part.frame)];
+        const FrameMotion& at =
+            part.frame < 0 ? kHand : hand.placed[static_cast<std::size_t>(part.frame)];
         use(Vector3(at.p + at.R * part.a), part.radius);
         use(Vector3(at.p + at.R * part.b), part.radius);
       }
@@ -195,18 +216,22 @@ void MovingChain::enclose_hands(const Vector& position) noexcept {
     ChainCapsule& sphere = capsules_[hand.capsule];
     sphere.a = sphere.b = 0.5 * (low + high);
     sphere.radius = 0.0;
-    each_end([&](const Vector3& p, double radius) { sphere.radius = std::max(sphere.radius, (p - sphere.a).norm() + radius); });
+    each_end([&](const Vector3& p, double radius) {
+      sphere.radius = std::max(sphere.radius, (p - sphere.a).norm() + radius);
+    });
     sphere.radius += 2.0 * kSame;
   }
 }
 
-void MovingChain::move(const Vector& position, const Vector& velocity, const std::vector<char>& needed,
+void MovingChain::move(const Vector& position, const Vector& velocity,
+                       const std::vector<char>& needed,
                        std::vector<FrameMotion>& out) const noexcept {
   static const FrameMotion kRoot;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     if (!needed[k]) continue;
     const ChainFrame& frame = frames_[k];
-    const FrameMotion& parent = frame.parent < 0 ? kRoot : out[static_cast<std::size_t>(frame.parent)];
+    const FrameMotion& parent =
+        frame.parent < 0 ? kRoot : out[static_cast<std::size_t>(frame.parent)];
     FrameMotion& motion = out[k];
     place(frame, parent, position[frame.axis], motion);
     const Vector3 rate = frame.factor * velocity[frame.axis] * (motion.R * frame.direction);

@@ -72,7 +72,8 @@ class MovingChain {
   const std::vector<char>& sliding() const noexcept { return sliding_; }
   /// Computes the frames marked in `needed` (one entry a frame, carriers marked too), for positions
   /// and velocities of all axes. `out` has one entry a frame. Allocates nothing.
-  void move(const Vector& position, const Vector& velocity, const std::vector<char>& needed, std::vector<FrameMotion>& out) const noexcept;
+  void move(const Vector& position, const Vector& velocity, const std::vector<char>& needed,
+            std::vector<FrameMotion>& out) const noexcept;
 
  private:
   /// A part of a finger.

@@ -22,7 +22,8 @@ double reach_after(double time, double speed, const RegionMotion& bounds) noexce
 
 /// Returns the speed from which a part starts: as measured with `uncertainty` [m/s] added, or the
 /// largest of its region when it was not measured just now [m/s].
-double start_speed(const PersonCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept;
+double start_speed(const PersonCapsule& part, double uncertainty,
+                   const RegionMotion& bounds) noexcept;
 
 /// How far each part of everybody can be from where it was measured. HumanState carries at most 16
 /// people.
@@ -32,6 +33,7 @@ struct PartReaches {
 };
 
 /// Computes the reaches `time` [s] after now. Allocates nothing.
-void reach_of_parts(const PersonCapsules& people, double time, double uncertainty, const RegionMotions& bounds, PartReaches& out) noexcept;
+void reach_of_parts(const PersonCapsules& people, double time, double uncertainty,
+                    const RegionMotions& bounds, PartReaches& out) noexcept;
 
 }  // namespace handsel::trajectory_controller

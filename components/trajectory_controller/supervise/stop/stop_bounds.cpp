@@ -15,7 +15,8 @@ StopBounds::StopBounds(const MovingChain& chain, int dof)
       axis_speed_(axis_travel_) {}
 
 void StopBounds::set(const StopPlan& one, const StopPlan& other) noexcept {
-  for (std::vector<double>* by_axis : {&axis_travel_, &other_axis_travel_, &axis_speed_}) std::fill(by_axis->begin(), by_axis->end(), 0.0);
+  for (std::vector<double>* by_axis : {&axis_travel_, &other_axis_travel_, &axis_speed_})
+    std::fill(by_axis->begin(), by_axis->end(), 0.0);
   for (int k = 0; k < one.count(); ++k) {
     const AxisStop &a = one[k], &b = other[k];
     const auto axis = static_cast<std::size_t>(a.axis);

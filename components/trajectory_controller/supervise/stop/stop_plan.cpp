@@ -52,7 +52,8 @@ double AxisStop::max_speed_between(double from, double to) const noexcept {
   return fastest;
 }
 
-StopPlan::StopPlan(const RobotModel& robot, const std::vector<char>& sliding) : limits_(robot.stop_limits()), sliding_(sliding) {
+StopPlan::StopPlan(const RobotModel& robot, const std::vector<char>& sliding)
+    : limits_(robot.stop_limits()), sliding_(sliding) {
   for (const Axis& axis : robot.axes()) {
     lower_.push_back(axis.lower);
     upper_.push_back(axis.upper);
@@ -83,14 +84,16 @@ void StopPlan::plan(const MotionState3& state, double delay) noexcept {
     // |a| t / 2 beyond it.
     axis.max_speed = std::max(std::abs(axis.start.velocity), std::abs(s.velocity));
     axis.travel = axis.max_speed * delay;
-    critical_movement(s.velocity, s.acceleration, 0.0, 0.0, limits_.acceleration[i], limits_.jerk[i], axis.profile);
+    critical_movement(s.velocity, s.acceleration, 0.0, 0.0, limits_.acceleration[i],
+                      limits_.jerk[i], axis.profile);
     axis.duration = delay;
     for (int k = 0; k < axis.profile.count; ++k) {
       const Segment& segment = axis.profile.segments[static_cast<std::size_t>(k)];
       const AxisState next = advanced(s, segment.duration, segment.jerk);
       double fastest = std::max(std::abs(s.velocity), std::abs(next.velocity));
       if (s.acceleration * next.acceleration < 0.0)
-        fastest = std::max(fastest, std::abs(s.velocity - 0.5 * s.acceleration * s.acceleration / segment.jerk));
+        fastest = std::max(
+            fastest, std::abs(s.velocity - 0.5 * s.acceleration * s.acceleration / segment.jerk));
       axis.max_speed = std::max(axis.max_speed, fastest);
       axis.travel += fastest * segment.duration;
       axis.duration += segment.duration;

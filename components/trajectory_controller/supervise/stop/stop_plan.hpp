@@ -1,5 +1,5 @@
-// A stop in which every axis comes to rest by itself as fast as it can: where and how fast each axis
-// is at any time of it. Pure, no heap after construction, noexcept.
+// A stop in which every axis comes to rest by itself as fast as it can: where and how fast each
+// axis is at any time of it. Pure, no heap after construction, noexcept.
 #pragma once
 
 #include <array>

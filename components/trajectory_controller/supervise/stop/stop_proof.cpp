@@ -22,7 +22,8 @@ double rate(const std::vector<Lever>& axes, const std::vector<double>& by_axis) 
 
 double fastest_finger(const ChainCapsule& capsule, const std::vector<double>& by_axis) noexcept {
   double fastest = 0.0;
-  for (const std::vector<Lever>& finger : capsule.fingers) fastest = std::max(fastest, rate(finger, by_axis));
+  for (const std::vector<Lever>& finger : capsule.fingers)
+    fastest = std::max(fastest, rate(finger, by_axis));
   return fastest;
 }
 
@@ -34,7 +35,8 @@ double finger_mass(const MovingChain& chain, double min_mass) {
 }
 
 /// Distance between a link and a part of a person [m].
-double distance_between(const CapsuleSample& link, double radius, const PersonCapsule& part) noexcept {
+double distance_between(const CapsuleSample& link, double radius,
+                        const PersonCapsule& part) noexcept {
   Vector3 on_robot, on_person;
   const double apart2 = nearest_points(link.a, link.b, part.a, part.b, on_robot, on_person);
   return std::sqrt(apart2) - radius - part.radius;
@@ -42,11 +44,13 @@ double distance_between(const CapsuleSample& link, double radius, const PersonCa
 
 }  // namespace
 
-StopProof::StopProof(const StopProofSettings& settings, const RobotModel& robot, const std::vector<LinkCapsule>& capsules)
+StopProof::StopProof(const StopProofSettings& settings, const RobotModel& robot,
+                     const std::vector<LinkCapsule>& capsules)
     : settings_(settings),
       limits_(robot.stop_limits()),
       chain_(robot, capsules),
-      contact_(settings.contact, robot, settings.min_robot_mass, finger_mass(chain_, settings.min_finger_mass)),
+      contact_(settings.contact, robot, settings.min_robot_mass,
+               finger_mass(chain_, settings.min_finger_mass)),
       at_once_(robot, chain_.sliding()),
       robot_side_(robot, chain_.sliding()),
       bounds_(chain_, robot.dof()),
@@ -61,17 +65,20 @@ StopProof::StopProof(const StopProofSettings& settings, const RobotModel& robot,
   pairs_.reserve(kMaxPairs);
 }
 
-/// Collects the links and parts that could touch faster than allowed, and measures the free space of
-/// every capsule; false when there are too many to check.
-bool StopProof::find_pairs(const PersonCapsules& people, const Pose& T_world_base, double duration) noexcept {
+/// Collects the links and parts that could touch faster than allowed, and measures the free space
+/// of every capsule; false when there are too many to check.
+bool StopProof::find_pairs(const PersonCapsules& people, const Pose& T_world_base,
+                           double duration) noexcept {
   pairs_.clear();
   samples_.clear();
   const double margin = settings_.tracker_error + settings_.robot_error;
   PartReaches reach;
   reach_of_parts(people, duration, settings_.speed_error, settings_.people, reach);
   double max_person_speed = 0.0;
-  for (const RegionMotion& region : settings_.people) max_person_speed = std::max(max_person_speed, region.speed);
-  for (const PersonCapsule& part : people.capsules) max_person_speed = std::max(max_person_speed, part.fastest + settings_.speed_error);
+  for (const RegionMotion& region : settings_.people)
+    max_person_speed = std::max(max_person_speed, region.speed);
+  for (const PersonCapsule& part : people.capsules)
+    max_person_speed = std::max(max_person_speed, part.fastest + settings_.speed_error);
   free_space_.set_max_person_speed(max_person_speed);
   for (std::size_t c = 0; c < chain_.capsules().size(); ++c) {
     const ChainCapsule& capsule = chain_.capsules()[c];
@@ -100,12 +107,14 @@ bool StopProof::find_pairs(const PersonCapsules& people, const Pose& T_world_bas
 
 /// Samples both until everything in a pair is at rest. Between two samples a link moves no faster
 /// than the faster of them, but for how much speeds and levers may bend within the interval; nor
-/// faster than the largest speeds of its axes there at their levers, which says more where axes come
-/// to rest.
-bool StopProof::check_stop(const StopPlan& stop, const Vector& position, const PersonCapsules& people, const Pose& T_world_base,
+/// faster than the largest speeds of its axes there at their levers, which says more where axes
+/// come to rest.
+bool StopProof::check_stop(const StopPlan& stop, const Vector& position,
+                           const PersonCapsules& people, const Pose& T_world_base,
                            double age) noexcept {
   if (!samples_.take(stop, position, T_world_base)) return true;
-  for (std::vector<double>* by_axis : {&speed_, &turning_, &jerk_}) std::fill(by_axis->begin(), by_axis->end(), 0.0);
+  for (std::vector<double>* by_axis : {&speed_, &turning_, &jerk_})
+    std::fill(by_axis->begin(), by_axis->end(), 0.0);
   for (int k = 0; k < stop.count(); ++k) {
     const AxisStop& axis = stop[k];
     const auto i = static_cast<std::size_t>(axis.axis);
@@ -130,20 +139,24 @@ StopProof::Bend StopProof::bend_of(std::size_t capsule) const noexcept {
   const double inner_turning = fastest_finger(link, turning_);
   Bend bend;
   bend.inner_travel = bounds_.inner_travel(capsule);
-  bend.carried = link.carried_bound(jerk_) * interval * interval / 8.0 + link.carried_bound(speed_) * turning * interval / 2.0;
-  bend.inner = link.inner_bound(jerk_) * interval * interval / 8.0 + link.inner_bound(speed_) * (turning + inner_turning) * interval / 2.0;
+  bend.carried = link.carried_bound(jerk_) * interval * interval / 8.0 +
+                 link.carried_bound(speed_) * turning * interval / 2.0;
+  bend.inner = link.inner_bound(jerk_) * interval * interval / 8.0 +
+               link.inner_bound(speed_) * (turning + inner_turning) * interval / 2.0;
   return bend;
 }
 
 /// Returns whether a part of a person can be as near to a link as `needed` [m].
-bool StopProof::is_within(const CapsuleSample& link, double radius, const PersonCapsule& part, double needed) noexcept {
+bool StopProof::is_within(const CapsuleSample& link, double radius, const PersonCapsule& part,
+                          double needed) noexcept {
   const double apart = needed + radius + part.reach + 0.5 * (link.b - link.a).norm();
   if ((0.5 * (link.a + link.b) - part.centre).squaredNorm() > apart * apart) return false;
   refutation_.distance = distance_between(link, radius, part);
   return refutation_.distance <= needed;
 }
 
-bool StopProof::check_pair(const StopPlan& stop, const Pair& pair, const Bend& bend, const PersonCapsule& part, double age) noexcept {
+bool StopProof::check_pair(const StopPlan& stop, const Pair& pair, const Bend& bend,
+                           const PersonCapsule& part, double age) noexcept {
   const ChainCapsule& link = chain_.capsules()[pair.capsule];
   const auto region = static_cast<std::size_t>(part.region);
   const RegionMotion& bounds = settings_.people[region];
@@ -162,11 +175,14 @@ bool StopProof::check_pair(const StopPlan& stop, const Pair& pair, const Bend& b
     inner = std::min(inner, link.inner_bound(speeds));
     const double contact = contact_.of(carried, inner, region);
     if (contact <= allowed) continue;
-    // Within the interval the link is no farther from where it is at one of its ends than it goes in
-    // half of it.
+    // Within the interval the link is no farther from where it is at one of its ends than it goes
+    // in half of it.
     const double time = (slot + 1) * interval + settings_.latency + age + part.age;
-    const double needed = (carried + inner) * interval / 2.0 + bend.inner_travel + margin + reach_after(time, from, bounds);
-    if (!is_within(first, link.radius, part, needed) && !is_within(second, link.radius, part, needed)) continue;
+    const double needed = (carried + inner) * interval / 2.0 + bend.inner_travel + margin +
+                          reach_after(time, from, bounds);
+    if (!is_within(first, link.radius, part, needed) &&
+        !is_within(second, link.radius, part, needed))
+      continue;
     const double distance = refutation_.distance;
     refutation_ = {link.link, slot * interval, contact, allowed, distance, needed};
     return false;
@@ -174,8 +190,8 @@ bool StopProof::check_pair(const StopPlan& stop, const Pair& pair, const Bend& b
   return true;
 }
 
-bool StopProof::check(const MotionState3& state, const PersonCapsules& people, const Pose& T_world_base, double age,
-                      double payload) noexcept {
+bool StopProof::check(const MotionState3& state, const PersonCapsules& people,
+                      const Pose& T_world_base, double age, double payload) noexcept {
   at_once_.plan(state, 0.0);
   if (at_once_.count() == 0) return true;
   robot_side_.plan(state, settings_.robot_side_delay);
@@ -187,7 +203,8 @@ bool StopProof::check(const MotionState3& state, const PersonCapsules& people, c
   contact_.set_payload(payload);
   const double stop_time = std::max(at_once_.duration(), robot_side_.duration());
   const double duration = stop_time + settings_.latency + age;
-  if (free_space_.is_of(people.revision, T_world_base) && free_space_.suffices(bounds_, state.position, duration, contact_.min_speed()))
+  if (free_space_.is_of(people.revision, T_world_base) &&
+      free_space_.suffices(bounds_, state.position, duration, contact_.min_speed()))
     return true;
   chain_.enclose_hands(state.position);
   chain_.move(state.position, at_rest_, all_frames_, motions_);

@@ -49,7 +49,8 @@ struct StopProofSettings {
   double min_finger_mass{0.1};  ///< of a finger that moves in the hand, at least [kg]
   /// Largest speed and acceleration of people, by region: 2 m/s and 50 m/s^2 for arms and hands,
   /// ISO 13855's walking speed for the rest.
-  RegionMotions people{{{1.6, 10.0}, {1.6, 10.0}, {2.0, 50.0}, {2.0, 50.0}, {2.0, 50.0}, {1.6, 20.0}, {1.6, 20.0}}};
+  RegionMotions people{
+      {{1.6, 10.0}, {1.6, 10.0}, {2.0, 50.0}, {2.0, 50.0}, {2.0, 50.0}, {1.6, 20.0}, {1.6, 20.0}}};
   /// Transient limits of ISO/TS 15066:2016 table A.2 and A.3, the lowest of each region; for the
   /// head, where no transient contact is allowed, the quasi-static limit of the face.
   ContactLimits contact{{{65.0, 75e3, 4.4},
@@ -74,13 +75,15 @@ struct StopRefutation {
 
 class StopProof {
  public:
-  StopProof(const StopProofSettings& settings, const RobotModel& robot, const std::vector<LinkCapsule>& capsules);
+  StopProof(const StopProofSettings& settings, const RobotModel& robot,
+            const std::vector<LinkCapsule>& capsules);
   StopProof(const StopProof&) = delete;
   StopProof& operator=(const StopProof&) = delete;
 
   /// Returns whether both stops from `state` (all axes) are harmless to `people`, whose data are
   /// `age` old [s]. `payload`: mass held [kg].
-  bool check(const MotionState3& state, const PersonCapsules& people, const Pose& T_world_base, double age, double payload) noexcept;
+  bool check(const MotionState3& state, const PersonCapsules& people, const Pose& T_world_base,
+             double age, double payload) noexcept;
   /// Reason of the last check that failed.
   const StopRefutation& refutation() const noexcept { return refutation_; }
   /// Kinematics that the proof uses, for the indices of capsules.
@@ -90,11 +93,17 @@ class StopProof {
   /// Whether any axis moves; if not, there is no stop.
   bool moving() const noexcept { return at_once_.count() > 0; }
   /// Bound of the travel of a capsule of chain() in either stop [m]; 0 when no axis moves.
-  double max_travel(std::size_t capsule) const noexcept { return moving() ? bounds_.travel(capsule) : 0.0; }
+  double max_travel(std::size_t capsule) const noexcept {
+    return moving() ? bounds_.travel(capsule) : 0.0;
+  }
   /// Bound of the speed of a capsule of chain() in either stop, fingers included [m/s].
-  double max_speed(std::size_t capsule) const noexcept { return moving() ? bounds_.carried(capsule) + bounds_.inner(capsule) : 0.0; }
+  double max_speed(std::size_t capsule) const noexcept {
+    return moving() ? bounds_.carried(capsule) + bounds_.inner(capsule) : 0.0;
+  }
   /// The stop: the robot side's or the controller's own.
-  const StopPlan& stop(bool robot_side) const noexcept { return robot_side ? robot_side_ : at_once_; }
+  const StopPlan& stop(bool robot_side) const noexcept {
+    return robot_side ? robot_side_ : at_once_;
+  }
   /// Largest contact speeds.
   const ContactSpeeds& contact_speeds() const noexcept { return contact_; }
   /// Assumptions and limits of the proof, as given to the constructor.
@@ -114,11 +123,13 @@ class StopProof {
   };
 
   bool find_pairs(const PersonCapsules& people, const Pose& T_world_base, double duration) noexcept;
-  bool check_stop(const StopPlan& stop, const Vector& position, const PersonCapsules& people, const Pose& T_world_base,
-                  double age) noexcept;
+  bool check_stop(const StopPlan& stop, const Vector& position, const PersonCapsules& people,
+                  const Pose& T_world_base, double age) noexcept;
   Bend bend_of(std::size_t capsule) const noexcept;
-  bool check_pair(const StopPlan& stop, const Pair& pair, const Bend& bend, const PersonCapsule& part, double age) noexcept;
-  bool is_within(const CapsuleSample& link, double radius, const PersonCapsule& part, double needed) noexcept;
+  bool check_pair(const StopPlan& stop, const Pair& pair, const Bend& bend,
+                  const PersonCapsule& part, double age) noexcept;
+  bool is_within(const CapsuleSample& link, double radius, const PersonCapsule& part,
+                 double needed) noexcept;
 
   StopProofSettings settings_;
   KinematicLimits limits_;  // of the stops

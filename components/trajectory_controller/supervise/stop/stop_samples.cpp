@@ -5,7 +5,8 @@
 
 namespace handsel::trajectory_controller {
 
-CapsuleSample placed(const ChainCapsule& capsule, const std::vector<FrameMotion>& motions, const Pose& T_world_base) noexcept {
+CapsuleSample placed(const ChainCapsule& capsule, const std::vector<FrameMotion>& motions,
+                     const Pose& T_world_base) noexcept {
   const FrameMotion& frame = motions[static_cast<std::size_t>(capsule.frame)];
   CapsuleSample sample;
   sample.a = T_world_base * (frame.p + frame.R * capsule.a);
@@ -40,7 +41,8 @@ void StopSamples::need(std::size_t capsule) noexcept {
   }
 }
 
-bool StopSamples::take(const StopPlan& stop, const Vector& position, const Pose& T_world_base) noexcept {
+bool StopSamples::take(const StopPlan& stop, const Vector& position,
+                       const Pose& T_world_base) noexcept {
   const double until_rest = time_until_rest(stop);
   if (until_rest == 0.0) return false;
   interval_ = until_rest / kIntervals;
@@ -55,10 +57,12 @@ bool StopSamples::take(const StopPlan& stop, const Vector& position, const Pose&
 /// Returns when everything that is needed is at rest.
 double StopSamples::time_until_rest(const StopPlan& stop) noexcept {
   std::fill(rest_.begin(), rest_.end(), 0.0);
-  for (int k = 0; k < stop.count(); ++k) rest_[static_cast<std::size_t>(stop[k].axis)] = stop[k].duration;
+  for (int k = 0; k < stop.count(); ++k)
+    rest_[static_cast<std::size_t>(stop[k].axis)] = stop[k].duration;
   double last = 0.0;
   const auto add = [&](const std::vector<Lever>& levers) {
-    for (const Lever& lever : levers) last = std::max(last, rest_[static_cast<std::size_t>(lever.axis)]);
+    for (const Lever& lever : levers)
+      last = std::max(last, rest_[static_cast<std::size_t>(lever.axis)]);
   };
   for (std::size_t c = 0; c < needed_.size(); ++c) {
     if (!needed_[c]) continue;
@@ -98,7 +102,8 @@ const std::vector<double>& StopSamples::speeds(const StopPlan& stop, int slot) n
   speeds_known_[k] = true;
   std::fill(out.begin(), out.end(), 0.0);
   const double from = slot * interval_, to = (slot + 1) * interval_;
-  for (int i = 0; i < stop.count(); ++i) out[static_cast<std::size_t>(stop[i].axis)] = stop[i].max_speed_between(from, to);
+  for (int i = 0; i < stop.count(); ++i)
+    out[static_cast<std::size_t>(stop[i].axis)] = stop[i].max_speed_between(from, to);
   return out;
 }
 

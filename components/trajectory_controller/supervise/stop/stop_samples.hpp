@@ -18,7 +18,8 @@ struct CapsuleSample {
 };
 
 /// Returns where a capsule is, without speeds. `motions`: of the frames of its chain.
-CapsuleSample placed(const ChainCapsule& capsule, const std::vector<FrameMotion>& motions, const Pose& T_world_base) noexcept;
+CapsuleSample placed(const ChainCapsule& capsule, const std::vector<FrameMotion>& motions,
+                     const Pose& T_world_base) noexcept;
 
 class StopSamples {
  public:
@@ -39,7 +40,9 @@ class StopSamples {
   /// Time between two samples [s].
   double interval() const noexcept { return interval_; }
   /// A needed capsule at the beginning of an interval; slot kIntervals: at rest.
-  const CapsuleSample& at(int slot, std::size_t capsule) const noexcept { return samples_[static_cast<std::size_t>(slot)][capsule]; }
+  const CapsuleSample& at(int slot, std::size_t capsule) const noexcept {
+    return samples_[static_cast<std::size_t>(slot)][capsule];
+  }
   /// Returns the largest speed of every axis in an interval of the stop that was sampled last.
   const std::vector<double>& speeds(const StopPlan& stop, int slot) noexcept;
 

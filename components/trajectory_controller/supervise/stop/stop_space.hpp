@@ -39,7 +39,8 @@ class StopSpace {
   bool observes_stops(const Vector& position, const Pose& T_world_base, double since) noexcept;
   /// Returns the largest of the speed factors 1, boundary_factor and 0 at which a stop on the path,
   /// from a point where it has this velocity at full speed, stays inside what is observed.
-  double factor(const Vector& position, const Vector& velocity, const Pose& T_world_base, double since) noexcept;
+  double factor(const Vector& position, const Vector& velocity, const Pose& T_world_base,
+                double since) noexcept;
   /// Link that was found outside of what is observed; -1: none yet.
   int link() const noexcept { return link_; }
   /// Whether any view counts.
@@ -48,7 +49,8 @@ class StopSpace {
  private:
   static constexpr int kIntervals = 6;  // of a stop that is sampled
 
-  bool inside(const Vector& position, double margin, const Pose& T_world_base, double since) noexcept;
+  bool inside(const Vector& position, double margin, const Pose& T_world_base,
+              double since) noexcept;
   bool inside_during(bool robot_side, const Pose& T_world_base, double since) noexcept;
   bool inside_from(const Vector& position, const Pose& T_world_base, double since) noexcept;
 
