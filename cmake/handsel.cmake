@@ -17,11 +17,22 @@ if(HANDSEL_MOLD)
   add_link_options(-fuse-ld=mold)
 endif()
 
+# Several sources of a library are compiled as one, since most of the time goes into shared headers.
+option(HANDSEL_UNITY "Compile sources in groups: a full build is faster, a change rebuilds more" ON)
+set(HANDSEL_UNITY_BATCH 6)
+
+# handsel_unity(<target>): compiles the sources of the target in groups.
+function(handsel_unity target)
+  set_target_properties(${target} PROPERTIES
+    UNITY_BUILD ${HANDSEL_UNITY} UNITY_BUILD_BATCH_SIZE ${HANDSEL_UNITY_BATCH})
+endfunction()
+
 # handsel_library(<name> SOURCES a.cpp ... LINK lib ...): static library handsel_<name>.
 function(handsel_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(handsel_${name} STATIC ${ARG_SOURCES})
   target_link_libraries(handsel_${name} PUBLIC handsel_options Eigen3::Eigen ${ARG_LINK})
+  handsel_unity(handsel_${name})
 endfunction()
 
 # handsel_component(<name> CORE a.cpp ... NODE node.cpp ... LINK lib ...): core library handsel_<name>_core (no DDS),
@@ -44,4 +55,8 @@ function(handsel_test name)
   target_compile_definitions(test_${name} PRIVATE HANDSEL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   add_test(NAME ${name} COMMAND test_${name})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABEL}")
+  # Such a test starts processes and waits for them: its own speed does not matter.
+  if(ARG_LABEL MATCHES "^(system|fault)$")
+    target_compile_options(test_${name} PRIVATE -O1)
+  endif()
 endfunction()

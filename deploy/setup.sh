@@ -8,7 +8,7 @@ cmake ninja-build g++ pkg-config
 cyclonedds-dev cyclonedds-tools protobuf-compiler libprotobuf-dev
 libeigen3-dev libompl-dev libfcl-dev libccd-dev libassimp-dev libbullet-dev liburdfdom-dev liburdfdom-headers-dev
 libtinyxml2-dev libqhull-dev libglpk-dev libboost-dev libboost-filesystem-dev libboost-serialization-dev libboost-system-dev
-nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
+nlohmann-json3-dev libcli11-dev
 libgtest-dev libgmock-dev libbenchmark-dev mold
 "
 test_packages="chromium universal-ctags"

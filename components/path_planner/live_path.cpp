@@ -14,21 +14,15 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSame = 1e-6;      // [rad]
-constexpr double kNearEnds = 0.3;   // motions this near to an end are judged exactly also where the
-                                    // wide check does not clear them [rad]
-constexpr double kDropLoss = 0.01;  // share of the price that dropping nodes may cost
-constexpr double kDropGain = 0.3;   // or of what was gained
-constexpr double kGain = 1e-6;      // smaller ones are none
+constexpr double kSameGoal = 1e-6;       // [rad]
+constexpr double kReplanNearEnds = 0.3;  // motions this near to an end are judged exactly also
+                                         // where the wide check does not clear them [rad]
+constexpr double kDropLoss = 0.01;       // share of the price that dropping nodes may cost
+constexpr double kDropGain = 0.3;        // or of what was gained
+constexpr double kMinReplanGain = 1e-6;  // smaller ones are none
 constexpr std::uint64_t kExact =
     12;  // a state that the spheres do not clear takes as long as so many that they do
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-double price(const SearchSpace& space, const std::vector<Vector>& path) {
-  double sum = 0;
-  for (std::size_t i = 1; i < path.size(); ++i) sum += space.costs().price(path[i - 1], path[i]);
-  return sum;
-}
 
 /// Each local path cut to at most `longest` (max norm).
 std::vector<Vector> cut(const std::vector<Vector>& path, double longest) {
@@ -62,8 +56,8 @@ class Live {
     const std::vector<Vector> as_it_was = rest;
     std::size_t first = 0, last = 0;
     const bool was_blocked = !other_goal && blocked(rest, first, last);
-    out.before = was_blocked || other_goal ? kInfinite : price(space_, rest);
-    space_.check_in_batches({rest.back()}, kNearEnds);
+    out.before = was_blocked || other_goal ? kInfinite : space_.costs().price(rest);
+    space_.check_in_batches({rest.back()}, kReplanNearEnds);
     if (was_blocked && !repair(rest)) {
       if (!search_anew(rest, goal)) return std::nullopt;
       other_goal = true;
@@ -83,7 +77,7 @@ class Live {
       path = rest;
       if ((was_blocked || other_goal) && !verified(path)) return std::nullopt;
     }
-    out.after = price(space_, path);
+    out.after = space_.costs().price(path);
     if (was_blocked || other_goal) {
       out.outcome = other_goal ? ReplanOutcome::replanned : ReplanOutcome::repaired;
     } else if (out.after < out.before * (1 - live_.min_gain)) {
@@ -102,7 +96,7 @@ class Live {
  private:
   std::size_t goal_of(const Vector& q) const {
     for (std::size_t i = 0; i < problem_.goals.size(); ++i)
-      if ((problem_.goals[i] - q).lpNorm<Eigen::Infinity>() < kSame) return i;
+      if ((problem_.goals[i] - q).lpNorm<Eigen::Infinity>() < kSameGoal) return i;
     return problem_.goals.size();
   }
 
@@ -147,7 +141,7 @@ class Live {
     if (goals.empty()) return false;
     const std::uint64_t limit = space_.limit(), left = limit - std::min(limit, space_.checks());
     space_.limit(limit - left / 2);
-    space_.check_in_batches(goals, kNearEnds);
+    space_.check_in_batches(goals, kReplanNearEnds);
     Found found = search(space_, goals, PlannerKind::rrt_connect, false, problem_.seed);
     space_.limit(limit);
     if (found.path.empty()) {
@@ -256,7 +250,7 @@ class Live {
         }
         bent[from] = path[from];
         bent[to] = path[to];
-        double left = before - kGain;
+        double left = before - kMinReplanGain;
         for (std::size_t i = from + 1; i <= to && good; ++i)
           good = (left -= bent_prices[i] = space_.costs().price(bent[i - 1], bent[i])) > 0;
         for (std::size_t i = from + 1; i <= to && good; ++i)
@@ -274,7 +268,7 @@ class Live {
 
   /// Nodes that hardly matter: each is a corner the trajectory would have to take.
   void drop_nodes(std::vector<Vector>& path, double before) {
-    const double now = price(space_, path);
+    const double now = space_.costs().price(path);
     double allowed = std::max(kDropLoss * now, kDropGain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
       const double loss = space_.costs().price(path[i - 1], path[i + 1]) -

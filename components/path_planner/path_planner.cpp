@@ -79,12 +79,6 @@ void finish(const SearchSpace& space, Result& result) {
   result.solved = true;
 }
 
-double price(const SearchSpace& space, const std::vector<Vector>& path) {
-  double sum = 0;
-  for (std::size_t i = 1; i < path.size(); ++i) sum += space.costs().price(path[i - 1], path[i]);
-  return sum;
-}
-
 class Planning {
  public:
   Planning(SearchSpace& space, const Problem& problem, const Settings& settings)
@@ -246,7 +240,7 @@ class Planning {
       const std::size_t other = result_.goal;
       std::vector<Vector> smoothed = direct;
       smooth(space_, smoothed, random);
-      if (price(space_, smoothed) < price(space_, result_.path)) {
+      if (space_.costs().price(smoothed) < space_.costs().price(result_.path)) {
         result_.path = smoothed;
         raw_ = direct;
         result_.planner = "straight";

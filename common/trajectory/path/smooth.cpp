@@ -17,7 +17,7 @@ using detail::WaypointBlend;
 
 constexpr double kLeastSaving = 1e-4;  // [s]
 constexpr double kFarthest = 1e9;
-constexpr double kRounding = 1e-9;
+constexpr double kPathRounding = 1e-9;
 constexpr std::array<double, 4> kReaches{1.0, 0.7, 0.45, 0.25};
 
 struct Candidate {
@@ -50,11 +50,11 @@ std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, c
   double good = 0, bad = most;
   for (int k = 10; k >= 1 && good == 0; --k) {
     const double shared = most * k / 10;
-    (corner.overlap_excess(shared, kRounding) <= kRounding ? good : bad) = shared;
+    (corner.overlap_excess(shared, kPathRounding) <= kPathRounding ? good : bad) = shared;
   }
   for (int k = 0; k < 6 && good > 0 && good < most; ++k) {
     const double shared = 0.5 * (bad + good);
-    (corner.overlap_excess(shared, kRounding) <= kRounding ? good : bad) = shared;
+    (corner.overlap_excess(shared, kPathRounding) <= kPathRounding ? good : bad) = shared;
   }
   if (good > kLeastSaving) keep({BlendMethod::overlap, good, good, good, 0});
   if (!only_best) best = kLeastSaving;

@@ -10,9 +10,9 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kRetryPause = 0.5;  // before the person's reach is checked again [s]
-constexpr int kRounds = 2;           // of asking for grasps
-constexpr int kMaxExecuted = 3;      // grasps, after which the object may have moved
+constexpr double kPickRetryPause = 0.5;  // before the person's reach is checked again [s]
+constexpr int kRounds = 2;               // of asking for grasps
+constexpr int kMaxExecuted = 3;          // grasps, after which the object may have moved
 
 /// A grasp with which the object can be given to the person.
 struct Givable {
@@ -61,7 +61,7 @@ Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const 
     if (!worked.good) co_return worked;
     if (!result->givable.empty() || parts.now.time() >= deadline) break;
     parts.action.phase = ActionPhase::waiting_for_person;
-    co_await parts.waiting.pause(kRetryPause);
+    co_await parts.waiting.pause(kPickRetryPause);
   }
   for (const auto& refusal : result->refused) parts.refuse(refusal.what, refusal.reason);
   if (result->givable.empty()) {

@@ -11,7 +11,7 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kObserveAgain = 0.02;      // [s]
+constexpr double kOfferCheckPeriod = 0.02;  // [s]
 constexpr double kMaxStandoffError = 0.02;  // of the hand, where the straight motion in begins [m]
 constexpr double kReleaseTime = 0.2;      // with the load, before what was taken is drawn away [s]
 constexpr double kMaxInHandError = 0.05;  // of an object that was put into the hand [m]
@@ -232,7 +232,7 @@ Routine<Outcome> await_release(Parts& parts, const Offer& offer) {
   TimePoint since = parts.now.time();
   while (parts.now.time() < deadline && to_seconds(parts.now.time() - since) < kReleaseTime) {
     if (!is_given()) since = parts.now.time();
-    co_await parts.waiting.pause(kObserveAgain);
+    co_await parts.waiting.pause(kOfferCheckPeriod);
   }
   co_return is_given() ? Outcome{}
                        : Outcome::failure(offer.giver + " does not release " + offer.object);

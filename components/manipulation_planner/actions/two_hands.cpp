@@ -14,7 +14,7 @@ constexpr double kEdge = 0.08;                        // kept free at the edge o
 constexpr double kMinEdgeDistance = 0.01;             // of any part of the object [m]
 constexpr double kGrid = 0.02;                        // between places that are tried [m]
 constexpr double kMinGap = 0.2;                       // to other things [m]
-constexpr std::size_t kMaxPlaces = 4;                 // on a surface
+constexpr std::size_t kMaxPlacesOfTwo = 4;            // on a surface
 constexpr double kRetreatRatios[] = {1.0, 0.8, 0.6};  // of the planned retreat
 
 /// Returns the shoulders of all arms in the world.
@@ -139,7 +139,7 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
     const auto is_near = [&](const Pose& o) {
       return (o.translation() - p.at).head<2>().norm() < kMinGap / 2;
     };
-    if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= kMaxPlaces) continue;
+    if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= kMaxPlacesOfTwo) continue;
     out.push_back(make_pose(p.at + model.height_above_support * Vector3::UnitZ(), surface.turn()));
   }
   return out;

@@ -9,14 +9,14 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinHandDistance = 0.55;      // level, from a comfortable point of offer [m]
+constexpr double kMinHandDistance = 0.55;      // horizontal, from a comfortable point of offer [m]
 constexpr double kMinArmDistance = 0.35;       // likewise of the arm [m]
 constexpr double kMaxIntrusion = 0.05;         // less space than that by more: the arm retreats [m]
 constexpr std::size_t kMaxConfigurations = 6;  // to wait in
 constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};  // from rest, away from the person [m]
-constexpr double kAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
+constexpr double kOfferAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
 
-Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
+Vector3 horizontal(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
 }  // namespace
 
@@ -25,7 +25,7 @@ double OfferArea::clearance(const Person& person, const Vector& q) const {
   const Vector3 p_hand = now_.T_world_base() * arm_.robot().link_pose(q, arm_.palm()).translation();
   for (const Side side : {Side::left, Side::right}) {
     const Vector3 p_offer = comfortable_reach(person, side);
-    const double hand = level(p_hand - p_offer).norm() - kMinHandDistance;
+    const double hand = horizontal(p_hand - p_offer).norm() - kMinHandDistance;
     room = std::min(
         {room, hand, retreat_.distance(q, now_.T_world_base(), p_offer) - kMinArmDistance});
   }
@@ -50,13 +50,13 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
   const Pose T_rest = now_.T_world_base() * arm_.robot().link_pose(q_rest, arm_.palm());
   const Vector3 p_torso =
       person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  const Vector3 away = level(now_.T_world_base().translation() - p_torso).stableNormalized();
+  const Vector3 away = horizontal(now_.T_world_base().translation() - p_torso).stableNormalized();
   const Vector3 aside = Vector3::UnitZ().cross(away);
   std::vector<Place> places;
   IkOptions options;
   options.restarts = 0;
   for (const double back : kBack) {
-    for (const double beside : kAside) {
+    for (const double beside : kOfferAside) {
       Pose T = T_rest;
       T.translation() += back * away + beside * aside;
       const auto joints =

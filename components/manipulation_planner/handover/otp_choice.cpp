@@ -12,7 +12,7 @@ namespace {
 constexpr double kMinStep = 0.1;   // a receiver who moved less is where they were [m]
 constexpr double kMinGain = 0.05;  // cost that another object transfer point must save
 
-const Vector3& torso_of(const Person& person) {
+const Vector3& trunk_of(const Person& person) {
   return person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
 }
 
@@ -46,14 +46,14 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
 void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion) {
   motion.goals.clear();
   for (const auto& pose : search.poses) motion.goals.push_back(pose.arm_joints);
-  motion.receiver = ReceiverTarget{receiver.id, torso_of(receiver)};
+  motion.receiver = ReceiverTarget{receiver.id, trunk_of(receiver)};
 }
 
 Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& goal) {
   const std::string receiver = motion.receiver->person;
   const Person* person = parts.now.person(receiver);
   if (person == nullptr) co_return false;
-  const Vector3 p_torso = torso_of(*person);
+  const Vector3 p_torso = trunk_of(*person);
   if ((p_torso - motion.receiver->p_world_torso).norm() < kMinStep) co_return false;
   const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), goal);
   const Pose T_world_object = parts.now.T_world_base() *

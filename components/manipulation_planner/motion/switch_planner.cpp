@@ -8,9 +8,9 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kStep = 0.004;     // checks of the connecting motion [rad, max norm]
-constexpr double kRestStep = 0.01;  // checks of what follows it [rad, max norm]
-constexpr double kMargin = 0.01;    // around furniture and what other axes turn [m]
+constexpr double kSwitchStep = 0.004;  // checks of the connecting motion [rad, max norm]
+constexpr double kRestStep = 0.01;     // checks of what follows it [rad, max norm]
+constexpr double kMargin = 0.01;       // around furniture and what other axes turn [m]
 constexpr double kReserve =
     1.1;  // part of the limits that a switch keeps: so the comfort limits hold
 constexpr double kCostStep = 0.1;  // samples of the cost along a trajectory [s]
@@ -64,7 +64,7 @@ bool SwitchPlanner::is_free(CollisionWorld& world, const Switched& motion,
     rate = std::max(rate, std::abs(axis.start.velocity));
   // Behind the connecting motion the path is known to be free, but its blends are not.
   const double whole = motion.trajectory.duration(), connecting = motion.connecting;
-  const int first = std::max(2, static_cast<int>(std::ceil(rate * connecting / kStep)));
+  const int first = std::max(2, static_cast<int>(std::ceil(rate * connecting / kSwitchStep)));
   const int steps =
       first + static_cast<int>(std::ceil(rate * std::max(0.0, whole - connecting) / kRestStep));
   for (int k = 0; k <= steps; ++k) {

@@ -84,6 +84,12 @@ double PathCost::work(const Vector& from, const Vector& to) const {
   return sum;
 }
 
+double PathCost::price(const std::vector<Vector>& path) const {
+  double sum = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) sum += price(path[i - 1], path[i]);
+  return sum;
+}
+
 double PathCost::price(const Vector& from, const Vector& to) const {
   const double length = (to - from).norm();
   double sum = 0;

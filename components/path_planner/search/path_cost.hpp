@@ -30,6 +30,8 @@ class PathCost {
   /// Returns what smoothing makes smaller: integral of the cost above that of the cheapest of start
   /// and goals, and length_weight times the length.
   double price(const Vector& from, const Vector& to) const;
+  /// Returns the sum of the prices of the segments of a path.
+  double price(const std::vector<Vector>& path) const;
 
  private:
   void fill_costs(const Vector& from, const Vector& to) const;

@@ -39,12 +39,6 @@ class Line {
   std::vector<double> length_;
 };
 
-double price(const SearchSpace& space, const std::vector<Vector>& line) {
-  double sum = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) sum += space.costs().price(line[i - 1], line[i]);
-  return sum;
-}
-
 bool free(SearchSpace& space, const std::vector<Vector>& line) {
   for (std::size_t i = 1; i < line.size(); ++i)
     if (!space.motion_free(line[i - 1], line[i])) return false;
@@ -60,7 +54,7 @@ bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, co
   before.push_back(line.point(to));
   for (const Vector& q : inner) after.push_back(q);
   after.push_back(line.point(to));
-  if (price(space, after) >= price(space, before) - kGain) return false;
+  if (space.costs().price(after) >= space.costs().price(before) - kGain) return false;
   if (!std::all_of(inner.begin(), inner.end(), [&](const Vector& q) { return space.inside(q); }))
     return false;
   if (!free(space, after)) return false;

@@ -31,7 +31,7 @@ const std::vector<const char*> kLimbs[] = {{"l_shoulder", "l_elbow", "l_wrist", 
                                            {"l_hip", "l_knee", "l_ankle"},
                                            {"r_hip", "r_knee", "r_ankle"}};
 
-const Vector3& position(const Person& person, int joint) {
+const Vector3& joint_position(const Person& person, int joint) {
   return person.joints[static_cast<std::size_t>(joint)].position;
 }
 
@@ -78,12 +78,12 @@ void follow_hands(Track& track, const std::array<bool, kJoints>& sighted, TimePo
                   double noise) {
   Vector3 trunk = Vector3::Zero();
   for (const int joint : kTrunkMiddle)
-    trunk += position(track.person, joint) / static_cast<double>(kTrunkMiddle.size());
+    trunk += joint_position(track.person, joint) / static_cast<double>(kTrunkMiddle.size());
   for (std::size_t side = 0; side < kHands.size(); ++side) {
     if (!sighted[static_cast<std::size_t>(kHands[side])] &&
         !sighted[static_cast<std::size_t>(kWrists[side])])
       continue;
-    const Vector3& hand = position(track.person, kHands[side]);
+    const Vector3& hand = joint_position(track.person, kHands[side]);
     std::optional<TimePoint>& last = track.hand_seen[side];
     const double dt = last ? to_seconds(at - *last) : kGapOfHand;
     if (dt >= kGapOfHand)
@@ -105,7 +105,7 @@ double distance(const Track& track, const ObservedPerson& body) {
     const int i = body_joint_index(joint.name);
     if (i < 0 || !joint.position.allFinite()) continue;
     const double w = joint.confidence * (of_trunk(static_cast<std::size_t>(i)) ? 5 : 1);
-    sum += w * (joint.position - position(track.person, i));
+    sum += w * (joint.position - joint_position(track.person, i));
     weight += w;
   }
   return weight > 0 ? std::hypot(sum.x(), sum.y()) / weight
@@ -186,7 +186,7 @@ std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person
     for (int k = 1; k <= kAheads; ++k) {
       const HandPredictor::Ball ball = track.hands[side].at(since + k * kAhead);
       // The hand is no farther from the shoulder than the arm reaches, which may have moved.
-      const double arm = (ball.centre - position(person, kShoulders[side])).norm() +
+      const double arm = (ball.centre - joint_position(person, kShoulders[side])).norm() +
                          arm_length(person) + kFastest * (since + k * kAhead);
       hand.ahead.push_back(
           {k * kAhead, ball.centre, std::min(ball.radius, arm) + person.inflation});

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSameMove = 0.004;       // [m] a sample this near the estimate is averaged
 constexpr double kSameTurn = 0.06;        // [rad] and turned by no more
-constexpr int kAverageOver = 15;          // [samples]
+constexpr int kObjectAverageOver = 15;    // [samples]
 constexpr double kVelocityMemory = 0.06;  // [s]
 constexpr double kFastest = 2.5;          // [m/s] of what somebody carries
 constexpr double kLeap = 0.1;             // [m] beyond that a thing has jumped
@@ -27,7 +27,7 @@ Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
     samples = 1;
     return seen;
   }
-  samples = std::min(samples + 1, kAverageOver);
+  samples = std::min(samples + 1, kObjectAverageOver);
   Pose out = estimate;
   out.translation() += (seen.translation() - estimate.translation()) / samples;
   out.linear() =

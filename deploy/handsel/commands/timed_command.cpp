@@ -18,7 +18,7 @@ using namespace command;
 using namespace trajectory_planner;
 using nlohmann::json;
 
-struct Options {
+struct TimedOptions {
   std::string robot, group{"arm"}, svg;
 };
 
@@ -55,7 +55,7 @@ Surroundings around_in(const json& line) {
   return around;
 }
 
-int run(const Options& options) {
+int run_timed(const TimedOptions& options) {
   const RobotModel robot = options.robot.ends_with(".urdf")
                                ? RobotModel::load_urdf(options.robot)
                                : RobotModel::load(robot_description(options.robot));
@@ -110,7 +110,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_timed_command(CLI::App& trajectory, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TimedOptions>();
   CLI::App* command = trajectory.add_subcommand(
       "timed", "A path of a robot's joints to soft motion, slower where it costs people");
   command->footer(
@@ -123,7 +123,7 @@ An answer: "speeds" of each path segment, [[up to this fraction of it, this scal
   command->add_option("--svg", options->svg,
                       "file to draw speed and cost along the path to, a panel a line");
   command->add_flag("--json")->description("JSON Lines (always so)");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, &exit_code] { exit_code = run_timed(*options); });
 }
 
 }  // namespace handsel

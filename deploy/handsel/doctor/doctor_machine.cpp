@@ -22,7 +22,7 @@ namespace handsel {
 namespace {
 
 constexpr double kLittleRoom = 50e6, kEnoughRoom = 500e6;  // [bytes]
-constexpr Duration kPatience = std::chrono::seconds(5);
+constexpr Duration kCommandTimeout = std::chrono::seconds(5);
 
 Finding check_size() {
   const unsigned cores = std::thread::hardware_concurrency();
@@ -43,8 +43,8 @@ std::vector<Finding> check_realtime() {
     const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
     report(locked ? "" : std::strerror(errno));
   });
-  const std::string scheduling = probe.line(kPatience).value_or("no answer"),
-                    memory = probe.line(kPatience).value_or("no answer");
+  const std::string scheduling = probe.line(kCommandTimeout).value_or("no answer"),
+                    memory = probe.line(kCommandTimeout).value_or("no answer");
   std::vector<Finding> out;
   if (scheduling.empty()) {
     out.push_back({"real time", Verdict::good, "processes may ask for real-time priority", ""});
@@ -88,7 +88,7 @@ Finding check_logs() {
   return {"logs", Verdict::good, text, ""};
 }
 
-std::string output_of(const std::string& command) {
+std::string stdout_of(const std::string& command) {
   std::FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return {};
   std::string text;
@@ -107,7 +107,7 @@ Finding check_programs() {
     return {"programs", Verdict::missing, error.what(), "build it with ./run --build-only"};
   }
   for (const ProcessSpec& spec : specs) {
-    const std::string version = output_of("'" + spec.binary.string() + "' --version 2>&1");
+    const std::string version = stdout_of("'" + spec.binary.string() + "' --version 2>&1");
     if (version == version_text()) continue;
     return {"programs", Verdict::bad,
             spec.binary.filename().string() + " says \"" + version.substr(0, 80) +

@@ -25,10 +25,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr Duration kLook = std::chrono::milliseconds(2500);
+constexpr Duration kObservationTime = std::chrono::milliseconds(2500);
 constexpr Duration kStart =
     std::chrono::milliseconds(600);  // until those on the domain have found each other
-constexpr Duration kPatience = std::chrono::seconds(20);
+constexpr Duration kChildTimeout = std::chrono::seconds(20);
 constexpr std::size_t kLikeness = 3;  // letters by which a name may differ
 
 /// A message of the table read from whoever writes its topic: without the deadline and the equality
@@ -223,7 +223,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
       [&] { return interrupted() || (heard.size() == 2 && bus.now() - begin > kStart / 3); },
       kStart);
   counts = true;
-  bus.run_until([] { return interrupted(); }, kLook);
+  bus.run_until([] { return interrupted(); }, kObservationTime);
 
   const DomainView view = bus.discovered_domain();
   std::vector<Finding> out;
@@ -279,7 +279,7 @@ std::vector<Finding> check_perception(const DoctorOptions& options) {
     report("end");
   });
   std::vector<Finding> out;
-  const TimePoint deadline = monotonic_now() + kPatience;
+  const TimePoint deadline = monotonic_now() + kChildTimeout;
   for (;;) {
     const auto line = probe.line(deadline - monotonic_now());
     if (!line) {

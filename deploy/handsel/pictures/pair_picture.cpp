@@ -7,12 +7,12 @@ namespace {
 
 using namespace grasp_planner;
 
-constexpr Colour kObject = {224, 176, 64}, kRobot = {150, 158, 170}, kFirst = {120, 140, 175},
+constexpr Colour kPairObject = {224, 176, 64}, kRobot = {150, 158, 170}, kFirst = {120, 140, 175},
                  kSecond = {205, 150, 125}, kSkin = {226, 178, 150}, kBody = {170, 182, 205},
                  kFurniture = {216, 206, 190};
 
 void draw_placed(Canvas& canvas, const Graspable& object, const Pose& T_world_object) {
-  canvas.shape(std::make_shared<const TriangleMesh>(object.mesh()), T_world_object, kObject);
+  canvas.shape(std::make_shared<const TriangleMesh>(object.mesh()), T_world_object, kPairObject);
 }
 
 void draw_furniture(Canvas& canvas, const Scene& scene) {
