@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <random>
 
-#include "common/bus/process_state.hpp"
 #include "common/config/resources.hpp"
 
 namespace handsel::sim {
 
 namespace {
 
-constexpr std::uint64_t kCatchUp =
-    5;  // steps at most in one tick, well below the gap that stops the robot; what is then missing
-        // is slip, shown in real_time_factor
+// Max steps in one tick, well below the gap that stops the robot. Time that is then missing is
+// slip, shown in real_time_factor.
+constexpr std::uint64_t kCatchUp = 5;
 
 constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, while time stands still
 // Set-points are applied in their order, one a step; one that is older than this and has a
@@ -42,8 +41,7 @@ Node::Node(Bus& bus, const NodeContext& context)
     clock_out_ = bus.advertise<SimClock>();
     clock_.incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
     bus.subscribe<ClockReached>([this](const ClockReached& m, const Receipt&) {
-      if (!visible_.contains(m.incarnation))
-        visible_[m.incarnation] = process_state(static_cast<pid_t>(m.incarnation)) != 'X';
+      processes_.add(m.incarnation);
       keeper_->answered(m.component, m.incarnation, m.sequence);
     });
   }
@@ -84,13 +82,6 @@ Stamp Node::stamp_now() const {
   return keeper_ ? bus_.stamp_now() - (bus_.now() - keeper_->time()).count() : bus_.stamp_now();
 }
 
-bool Node::runs(std::uint64_t process) const {
-  const auto visible = visible_.find(process);
-  if (visible == visible_.end() || !visible->second) return true;  // of another container, perhaps
-  const char state = process_state(static_cast<pid_t>(process));
-  return state != 'T' && state != 'Z' && state != 'X';
-}
-
 void Node::announce(TimePoint now) {
   if (clock_.sequence == keeper_->grant_number() && now - announced_ < kRepeat) return;
   const TimeGrant grant = keeper_->grant();
@@ -104,7 +95,7 @@ void Node::announce(TimePoint now) {
 
 void Node::step_when_granted(TimePoint now) {
   keeper_->turn(now);
-  keeper_->leave_out_stopped([this](std::uint64_t process) { return runs(process); });
+  keeper_->leave_out_stopped([this](std::uint64_t process) { return processes_.runs(process); });
   announce(now);
   while (keeper_->may_step(paused_ || !set_points_.empty())) {
     if (keeper_->takes_setpoint() && !set_points_.empty()) {

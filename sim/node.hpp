@@ -3,13 +3,13 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/config/schema/scenario.pb.h"
+#include "sim/known_processes.hpp"
 #include "sim/real_time_factor.hpp"
 #include "sim/time_keeper.hpp"
 #include "sim/world.hpp"
@@ -26,8 +26,6 @@ class Node {
   /// With simulated time: makes the steps that are due and have what they need.
   void step_when_granted(TimePoint now);
   void announce(TimePoint now);
-  /// Not stopped and not ended, as far as the kernel shows the process here.
-  bool runs(std::uint64_t process) const;
   Stamp stamp_now() const;
   void publish();
   void on_control(const SimControl&);
@@ -45,8 +43,7 @@ class Node {
     JointCommand message;
     std::uint64_t writer{};
   };
-  // Processes that answered: does the kernel show them here?
-  std::map<std::uint64_t, bool> visible_;
+  KnownProcesses processes_;         // those that answered
   std::deque<SetPoint> set_points_;  // not taken by a step yet
   SimClock clock_;
   TimePoint announced_{};

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 
-#include "common/config/schema/people.pb.h"
+#include "common/config/settings/people.hpp"
 
 namespace handsel {
 
-/// people.txtpb of the folder with the settings; nobody where there is no such file. Throws
+/// Returns people.txtpb of the folder with the settings; nobody where there is no such file. Throws
 /// ConfigError for a profile that cannot be.
-config::PeopleProfiles load_people(const std::filesystem::path& settings);
+settings::PeopleProfiles load_people(const std::filesystem::path& folder);
 
 }  // namespace handsel

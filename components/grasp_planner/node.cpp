@@ -7,13 +7,6 @@ namespace {
 
 constexpr const char* kFull = "16 requests wait already, which is the limit; ask again later";
 
-std::vector<std::shared_ptr<GraspCache>> books_of(const std::shared_ptr<GraspCache>& first,
-                                                  const std::vector<ArmGrasps>& arms) {
-  std::vector<std::shared_ptr<GraspCache>> caches{first};
-  for (std::size_t i = 1; i < arms.size(); ++i) caches.push_back(arms[i].cache);
-  return caches;
-}
-
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
@@ -30,13 +23,12 @@ Node::Node(Bus& bus, const NodeContext& context)
       transfers_(make_transfer_cache(settings_, hand_geometry_, store_of(settings_))),
       arms_(load_arms(*context.robot, context.description, hand_geometry_, cache_,
                       list_settings(settings_, 1), store_of(settings_))),
-      lists_(bus, context.objects, books_of(cache_, arms_), transfers_),
+      lists_(bus, context.objects, caches_of(cache_, arms_), transfers_),
       regrasp_settings_(regrasp_settings(settings_)),
       reply_out_(bus.advertise<GraspReply>()),
       regrasp_out_(bus.advertise<RegraspReply>()),
       candidates_out_(bus.advertise<GraspCandidates>()),
-      candidates_(settings_.candidates_time()) {
-  positive("candidates_period", settings_.candidates_period());
+      candidates_(settings_.candidates_time) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
     scene_ = scene;
     lists_.prepare(scene);
@@ -46,7 +38,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       [this](const GraspRequest& request, const Receipt&) { answer(request); });
   bus.subscribe<RegraspRequest>(
       [this](const RegraspRequest& request, const Receipt&) { answer(request); });
-  bus.every(from_seconds(settings_.candidates_period()), [this](TimePoint now) { propose(now); });
+  bus.every(from_seconds(settings_.candidates_period), [this](TimePoint now) { propose(now); });
 }
 
 void Node::answer(const GraspRequest& request) {

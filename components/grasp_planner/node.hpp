@@ -6,7 +6,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
-#include "common/config/schema/grasp_planner.pb.h"
+#include "common/config/settings/grasp_planner.hpp"
 #include "components/grasp_planner/choice/candidates.hpp"
 #include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "components/grasp_planner/list_preparation.hpp"
@@ -29,7 +29,7 @@ class Node {
   void answer(const RegraspRequest& request);
 
   Bus& bus_;
-  config::GraspPlannerSettings settings_;
+  settings::GraspPlannerSettings settings_;
   ObjectLibrary objects_;
   std::shared_ptr<const HandGeometry> hand_geometry_;
   std::shared_ptr<const GraspChooser> chooser_;

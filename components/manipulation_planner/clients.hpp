@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/config/schema/manipulation_planner.pb.h"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/messages/planning.hpp"
 #include "components/manipulation_planner/outbox.hpp"
 #include "components/manipulation_planner/routine.hpp"
@@ -101,15 +101,14 @@ class Client {
 struct Clients {
   /// The references must outlive what is made.
   Clients(std::uint64_t client, Outbox& outbox, Waiting& waiting,
-          const config::ManipulationPlannerSettings& s)
+          const settings::ManipulationPlannerSettings& s)
       : ids(client),
-        grasp(ids, waiting, outbox.grasp_requests, {s.request_retry(), s.request_timeout()}),
-        regrasp(ids, waiting, outbox.regrasp_requests, {s.request_retry(), s.regrasp_timeout()}),
-        path(ids, waiting, outbox.path_requests, {s.request_retry(), s.request_timeout()}),
-        trajectory(ids, waiting, outbox.trajectory_requests,
-                   {s.request_retry(), s.request_timeout()}),
+        grasp(ids, waiting, outbox.grasp_requests, {s.request_retry, s.request_timeout}),
+        regrasp(ids, waiting, outbox.regrasp_requests, {s.request_retry, s.regrasp_timeout}),
+        path(ids, waiting, outbox.path_requests, {s.request_retry, s.request_timeout}),
+        trajectory(ids, waiting, outbox.trajectory_requests, {s.request_retry, s.request_timeout}),
         comparison(ids, waiting, outbox.trajectory_requests,
-                   {s.request_retry(), s.request_timeout(), Accepts::own}) {}
+                   {s.request_retry, s.request_timeout, Accepts::own}) {}
 
   Ids ids;                                                ///< of requests and commands
   Client<GraspRequest, GraspReply> grasp;                 ///< lists of grasps

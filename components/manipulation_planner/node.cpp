@@ -2,46 +2,23 @@
 
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"
+#include "common/config/settings_text.hpp"
 #include "common/cost/cost_settings.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
-config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
-  config::ManipulationPlannerSettings s;
-  load_text_proto(context.settings / "manipulation_planner.txtpb", s);
-  const auto positive = [](const char* key, double value) {
-    if (value <= 0)
-      throw ConfigError(std::string("manipulation_planner.txtpb: ") + key + " must be > 0");
-  };
-  positive("request_retry", s.request_retry());
-  positive("request_timeout", s.request_timeout());
-  positive("motion_attempts", s.motion_attempts());
-  positive("max_grasps", s.max_grasps());
-  positive("max_grasps_onto", s.max_grasps_onto());
-  positive("planning_time", s.planning_time());
-  positive("carry_speed", s.carry_speed());
-  positive("approach_speed", s.approach_speed());
-  positive("status_period", s.status_period());
-  positive("regrasp_timeout", s.regrasp_timeout());
-  if (s.w_preference() < 0)
-    throw ConfigError("manipulation_planner.txtpb: w_preference must be >= 0");
-  *s.mutable_people() = load_people(context.settings).people();
-  if (s.live_period() < 0)
-    throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
-  if (s.live_period() > 0) {
-    if (s.live_max_period() < s.live_period())
-      throw ConfigError(
-          "manipulation_planner.txtpb: live_max_period must not be below live_period");
-    positive("live_time", s.live_time());
-    positive("replan_time", s.replan_time());
-    positive("live_reach", s.live_reach());
-    if (s.live_slower() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_pace() < 0 ||
-        s.live_pace() >= 1)
-      throw ConfigError(
-          "manipulation_planner.txtpb: live_slower must be >= 0, live_gain and live_pace in [0, "
-          "1)");
+settings::ManipulationPlannerSettings load_settings(const NodeContext& context) {
+  SettingsText text;
+  auto s = settings::read_manipulation_planner_settings(
+      context.settings / "manipulation_planner.txtpb", &text);
+  if (s.live_period > 0) {
+    if (s.live_max_period < s.live_period)
+      text.refuse("live_max_period", "must be at least live_period");
+    if (!(s.replan_time > 0)) text.refuse("replan_time", "must be above 0 unless live_period is 0");
+    if (!(s.live_reach > 0)) text.refuse("live_reach", "must be above 0 unless live_period is 0");
   }
+  s.people = load_people(context.settings).people;
   return s;
 }
 
@@ -113,7 +90,7 @@ void Node::step(TimePoint now) {
 
 void Node::publish_status(TimePoint now) {
   const ActionStatus& status = core_.status();
-  if (!changed(status, sent_) && to_seconds(now - status_sent_) < 0.99 * settings_.status_period())
+  if (!changed(status, sent_) && to_seconds(now - status_sent_) < 0.99 * settings_.status_period)
     return;
   status_out_->publish(status);
   sent_ = status;

@@ -20,7 +20,7 @@ class Node {
   void publish_status(TimePoint now);
 
   Bus& bus_;
-  config::ManipulationPlannerSettings settings_;
+  settings::ManipulationPlannerSettings settings_;
   ManipulationPlanner core_;
   std::unique_ptr<Publisher<GraspRequest>> grasp_out_;
   std::unique_ptr<Publisher<RegraspRequest>> regrasp_out_;

@@ -2,18 +2,19 @@
 
 namespace handsel::manipulation_planner {
 
-Parts::Parts(const config::ManipulationPlannerSettings& s, std::shared_ptr<const RobotModel> robot,
-             ObjectLibrary objects, std::uint64_t client, const CostSettings& cost)
+Parts::Parts(const settings::ManipulationPlannerSettings& s,
+             std::shared_ptr<const RobotModel> robot, ObjectLibrary objects, std::uint64_t client,
+             const CostSettings& cost)
     : settings(s),
       now(std::move(objects)),
       clients(client, outbox, waiting, settings),
-      worker(outbox, waiting, settings.request_timeout()),
+      worker(outbox, waiting, settings.request_timeout),
       arm(std::move(robot), now),
       held(arm, now),
       link(arm, now, waiting, outbox, clients.ids, settings),
       hand(arm, link, now, waiting, action, settings),
       retreat(arm.robot(), arm.group()),
-      offers(now, {settings.held_out(), settings.offer_still()}),
+      offers(now, {settings.held_out, settings.offer_still}),
       area(arm, retreat, now),
       monitor(arm, held, offers, area, now, settings),
       replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost)) {}

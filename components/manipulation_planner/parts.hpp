@@ -23,30 +23,30 @@ namespace handsel::manipulation_planner {
 struct Parts {
   /// `client` makes request ids unique over restarts; trajectory and hand command ids start above
   /// it.
-  Parts(const config::ManipulationPlannerSettings& settings,
+  Parts(const settings::ManipulationPlannerSettings& settings,
         std::shared_ptr<const RobotModel> robot, ObjectLibrary objects, std::uint64_t client,
         const CostSettings& cost);
 
   /// Lists an alternative that was rejected during the action. `reason`: one sentence.
   void refuse(const std::string& what, const std::string& reason);
 
-  config::ManipulationPlannerSettings settings;  ///< as shipped
-  Snapshot now;                                  ///< newest messages
-  ActionStatus action;                           ///< the action that runs or ran last
-  Waiting waiting;                               ///< what the action waits for
-  Outbox outbox;                                 ///< what is to be sent
-  Clients clients;                               ///< requests to the other planners
-  Worker worker;                                 ///< long computations
-  ActiveArm arm;                                 ///< the arm in use
-  HeldObject held;                               ///< what its hand holds
-  ControllerLink link;                           ///< commands to the controller
-  HandCommander hand;                            ///< commands to its hand
-  RetreatPlanner retreat;                        ///< away from people
-  OfferDetector offers;                          ///< what people offer
-  OfferArea area;                                ///< where people offer
-  MotionMonitor monitor;                         ///< what ends a motion early
-  OnlineReplanner replanner;                     ///< better paths for the running motion
-  Destinations destinations;                     ///< where what is grasped can be put down
+  settings::ManipulationPlannerSettings settings;  ///< as shipped
+  Snapshot now;                                    ///< newest messages
+  ActionStatus action;                             ///< the action that runs or ran last
+  Waiting waiting;                                 ///< what the action waits for
+  Outbox outbox;                                   ///< what is to be sent
+  Clients clients;                                 ///< requests to the other planners
+  Worker worker;                                   ///< long computations
+  ActiveArm arm;                                   ///< the arm in use
+  HeldObject held;                                 ///< what its hand holds
+  ControllerLink link;                             ///< commands to the controller
+  HandCommander hand;                              ///< commands to its hand
+  RetreatPlanner retreat;                          ///< away from people
+  OfferDetector offers;                            ///< what people offer
+  OfferArea area;                                  ///< where people offer
+  MotionMonitor monitor;                           ///< what ends a motion early
+  OnlineReplanner replanner;                       ///< better paths for the running motion
+  Destinations destinations;                       ///< where what is grasped can be put down
 };
 
 }  // namespace handsel::manipulation_planner

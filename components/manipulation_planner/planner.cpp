@@ -12,7 +12,7 @@ constexpr double kSceneTimeout = 10.0;  // for the first scene and report of the
 
 }  // namespace
 
-ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettings& settings,
+ManipulationPlanner::ManipulationPlanner(const settings::ManipulationPlannerSettings& settings,
                                          std::shared_ptr<const RobotModel> robot,
                                          ObjectLibrary objects, std::uint64_t client,
                                          const CostSettings& cost)

@@ -16,7 +16,7 @@ class ManipulationPlanner {
  public:
   /// `client` makes request ids unique over restarts; trajectory and hand command ids start above
   /// it.
-  ManipulationPlanner(const config::ManipulationPlannerSettings& settings,
+  ManipulationPlanner(const settings::ManipulationPlannerSettings& settings,
                       std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
                       std::uint64_t client, const CostSettings& cost = {});
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/settings/path_planner.hpp"
 #include "common/cost/cost_settings.hpp"
+#include "components/path_planner/load.hpp"
 #include "components/path_planner/request.hpp"
 
 namespace handsel::path_planner {
@@ -12,39 +12,6 @@ namespace {
 
 constexpr const char* kCancelled = "cancelled on request";
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
-
-Settings core_settings(const settings::PathPlannerSettings& s) {
-  Settings out;
-  out.step = s.step;
-  out.verify_step = s.verify_step;
-  out.connect_range = s.connect_range;
-  out.transition_range = s.transition_range;
-  out.initial_temperature = s.initial_temperature;
-  out.search_fraction = s.search_fraction;
-  out.cost_step = s.cost_step;
-  out.length_weight = s.length_weight;
-  out.smoothing_rounds = s.smoothing_rounds;
-  out.max_idle_rounds = s.max_idle_rounds;
-  out.max_edge = s.max_edge;
-  return out;
-}
-
-SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
-  SolverSettings out;
-  out.search = core_settings(s);
-  out.live.min_gain = s.live_gain;
-  out.live.rounds = s.live_rounds;
-  out.live.tries = s.live_tries;
-  out.replan_margins = {s.live_margin, s.live_turning_margin};
-  out.roam = s.roam;
-  out.head_room = s.head_room;
-  return out;
-}
-
-std::optional<RobotModel> mobile_of(const NodeContext& context) {
-  if (context.description.empty()) return std::nullopt;
-  return on_platform(*context.robot, context.description);
-}
 
 }  // namespace
 

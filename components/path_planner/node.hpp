@@ -15,8 +15,8 @@
 #include "common/messages/world.hpp"
 #include "components/path_planner/solver.hpp"
 
-namespace handsel::config {
-class PathPlannerSettings;
+namespace handsel::settings {
+struct PathPlannerSettings;
 }
 
 namespace handsel::path_planner {

@@ -5,12 +5,12 @@
 
 namespace handsel::spark {
 
-SourceClock clock_of(const config::SparkSettings& settings, const std::string& source) {
-  SourceClock clock{settings.clock_error(), std::nullopt};
-  for (const config::SourceClock& one : settings.clocks()) {
-    if (one.source() != source) continue;
-    if (one.has_clock_error()) clock.error = one.clock_error();
-    if (one.has_assumed_latency()) clock.assumed_latency = one.assumed_latency();
+SourceClock clock_of(const settings::SparkSettings& settings, const std::string& source) {
+  SourceClock clock{settings.clock_error, std::nullopt};
+  for (const settings::SourceClock& one : settings.clocks) {
+    if (one.source != source) continue;
+    if (one.clock_error) clock.error = *one.clock_error;
+    if (one.assumed_latency) clock.assumed_latency = one.assumed_latency;
   }
   return clock;
 }
@@ -33,6 +33,10 @@ CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_l
     return {at_least, text};
   }
   return {std::max(at_least, since + clock.error), ""};
+}
+
+Duration age_of(Stamp stamp, Stamp now, Duration of_receipt) {
+  return stamp > 0 ? std::max(of_receipt, Duration(now - stamp)) : of_receipt;
 }
 
 }  // namespace handsel::spark

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 
 namespace handsel::spark {
 
@@ -16,7 +16,7 @@ struct SourceClock {
   std::optional<double> assumed_latency;
 };
 /// Returns the settings of the source's clock; those it does not have are the general ones.
-SourceClock clock_of(const config::SparkSettings& settings, const std::string& source);
+SourceClock clock_of(const settings::SparkSettings& settings, const std::string& source);
 
 struct CaptureAge {
   double age{};         ///< since the capture, at arrival: never less than it is [s]
@@ -30,5 +30,9 @@ struct CaptureAge {
 /// lower bound of the age.
 CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency,
                        const SourceClock& clock);
+
+/// Returns the age of a transient local sample, which may be larger than the age that its receipt
+/// states. A clock that differs only makes the sample older. `stamp`: 0 for none.
+Duration age_of(Stamp stamp, Stamp now, Duration of_receipt);
 
 }  // namespace handsel::spark

@@ -19,9 +19,9 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       tracker_(settings_, eyes_),
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot, context.objects),
-      facts_period_(settings_.human_period(), settings_.max_period(), settings_.human_period()),
-      scene_period_(settings_.publish_period(), settings_.max_period(), settings_.human_period()),
-      news_period_(settings_.news_period(), settings_.max_period(), settings_.news_period()),
+      facts_period_(settings_.human_period, settings_.max_period, settings_.human_period),
+      scene_period_(settings_.publish_period, settings_.max_period, settings_.human_period),
+      news_period_(settings_.news_period, settings_.max_period, settings_.news_period),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()),
@@ -53,11 +53,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       publish_people(bus_.now());
   });
   bus.subscribe<SafetyState>([this](const SafetyState& safety, const Receipt& receipt) {
-    // A transient local sample may be older than its receipt says; a clock that differs only makes
-    // people older.
-    const Duration since = safety.stamp > 0
-                               ? std::max(receipt.age, Duration(bus_.stamp_now() - safety.stamp))
-                               : receipt.age;
+    const Duration since = age_of(safety.stamp, bus_.stamp_now(), receipt.age);
     tracker_.adopt(safety.lost, receipt.arrival - since, started_);
     knows_lost_ = true;
   });
@@ -66,9 +62,9 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     scene_period_.advise(advice.objects_period, r.arrival);
     news_period_.advise(advice.objects_period, r.arrival);
   });
-  bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())),
+  bus.every(from_seconds(std::min(settings_.human_period, settings_.publish_period)),
             [this](TimePoint now) {
-              if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period())
+              if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period)
                 publish_people(now);
               interpret(now);
             });
@@ -79,7 +75,7 @@ void Node::observe(const HumanObservation& observation, const Receipt& receipt) 
   calibration_.to_world(there);
   const Stamp arrival = bus_.stamp_now() - (bus_.now() - receipt.arrival).count();
   const CaptureAge captured =
-      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.min_latency(),
+      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.min_latency,
                   clock_of(settings_, observation.source));
   const TimePoint seen = receipt.arrival - from_seconds(captured.age);
   if (!captured.unknown.empty()) {
@@ -127,12 +123,9 @@ void Node::publish_news(TimePoint now) {
 
 std::string Node::trouble(TimePoint now) const {
   std::string out;
-  const auto add = [&out](const std::string& sentence) {
-    if (!sentence.empty()) out += (out.empty() ? "" : "; ") + sentence;
-  };
-  add(tracker_.trouble(now));
-  add(left_out_.people_in_reach(scene_.reach()));
-  add(scene_.trouble(now));
+  for (const std::string& one :
+       {tracker_.trouble(now), left_out_.people_in_reach(scene_.reach()), scene_.trouble(now)})
+    if (!one.empty()) out += (out.empty() ? "" : "; ") + one;
   return out;
 }
 

@@ -34,7 +34,7 @@ class Node {
   void interpret(TimePoint now);  // facts and scene, each when it is due
 
   Bus& bus_;
-  config::SparkSettings settings_;
+  settings::SparkSettings settings_;
   Calibration calibration_;
   std::map<std::string, Vector3> eyes_;  // viewpoint of each source
   PeopleTracker tracker_;

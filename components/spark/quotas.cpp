@@ -1,37 +1,13 @@
 #include "components/spark/quotas.hpp"
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "common/base/errors.hpp"
-#include "common/config/resources.hpp"
+#include "common/config/settings_text.hpp"
 
 namespace handsel::spark {
 namespace {
-
-/// A setting with its range. The upper ends of people, objects, boxes, facts and sources are the
-/// bounds of the lists on the wire.
-struct Setting {
-  const char* key;
-  bool given;
-  std::uint32_t value;
-  std::size_t Quotas::*quota;
-  std::uint32_t low, high;
-};
-
-std::array<Setting, 8> settings_of(const config::SparkSettings& s) {
-  return {{{"max_bodies", s.has_max_bodies(), s.max_bodies(), &Quotas::bodies, 2, 256},
-           {"max_tracks", s.has_max_tracks(), s.max_tracks(), &Quotas::tracks, 2, 1024},
-           {"max_people", s.has_max_people(), s.max_people(), &Quotas::people, 1, 16},
-           {"max_sources", s.has_max_sources(), s.max_sources(), &Quotas::sources, 1, 16},
-           {"max_known_objects", s.has_max_known_objects(), s.max_known_objects(),
-            &Quotas::known_objects, 1, 1024},
-           {"max_objects", s.has_max_objects(), s.max_objects(), &Quotas::objects, 1, 64},
-           {"max_boxes", s.has_max_boxes(), s.max_boxes(), &Quotas::boxes, 1, 64},
-           {"max_facts", s.has_max_facts(), s.max_facts(), &Quotas::facts, 1, 256}}};
-}
 
 Vector3 axis(const Coverage& reach, double z) {
   return {(reach.low.x() + reach.high.x()) / 2, (reach.low.y() + reach.high.y()) / 2,
@@ -74,27 +50,18 @@ int order_of(FactKind kind) {
 
 }  // namespace
 
-Quotas quotas_of(const config::SparkSettings& settings) {
-  Quotas out;
-  for (const Setting& one : settings_of(settings))
-    if (one.given) out.*one.quota = one.value;
-  return out;
+Quotas quotas_of(const settings::SparkSettings& settings) {
+  return {settings.max_bodies,  settings.max_tracks,        settings.max_people,
+          settings.max_sources, settings.max_known_objects, settings.max_objects,
+          settings.max_boxes,   settings.max_facts};
 }
 
-void check_quotas(const config::SparkSettings& settings, const std::filesystem::path& file) {
-  for (const Setting& one : settings_of(settings))
-    if (one.given && (one.value < one.low || one.value > one.high))
-      throw ConfigError(locate(file, one.key) + ": " + one.key + " is " +
-                        std::to_string(one.value) + "; it must be from " + std::to_string(one.low) +
-                        " to " + std::to_string(one.high));
-  const Quotas quotas = quotas_of(settings);
-  if (!(quotas.people < quotas.bodies && quotas.bodies <= quotas.tracks))
-    throw ConfigError(locate(file, "max_bodies") + ": max_bodies is " +
-                      std::to_string(quotas.bodies) +
-                      "; it must be above max_people and at most max_tracks");
-  if (quotas.objects > quotas.known_objects)
-    throw ConfigError(locate(file, "max_objects") + ": max_objects is " +
-                      std::to_string(quotas.objects) + "; it must be at most max_known_objects");
+void check_quotas(const settings::SparkSettings& settings, const SettingsText& text) {
+  const auto is = [](std::uint32_t value) { return "is " + std::to_string(value) + ", must be "; };
+  if (!(settings.max_people < settings.max_bodies && settings.max_bodies <= settings.max_tracks))
+    text.refuse("max_bodies", is(settings.max_bodies) + "above max_people and at most max_tracks");
+  if (settings.max_objects > settings.max_known_objects)
+    text.refuse("max_objects", is(settings.max_objects) + "at most max_known_objects");
 }
 
 double arm_radius(const Coverage& reach) { return (reach.high.x() - reach.low.x()) / 2; }

@@ -4,18 +4,21 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <string>
 #include <vector>
 
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
+
+namespace handsel {
+class SettingsText;
+}
 
 namespace handsel::spark {
 
-/// Settings of the same names; a setting that is not given has the value here.
+/// Settings of the same names.
 struct Quotas {
   /// Largest numbers: bodies of an observation that become new people, tracks of people, people of
   /// a HumanState, sources of people, objects remembered, objects, boxes of a Scene, facts of
@@ -24,9 +27,9 @@ struct Quotas {
       boxes{64}, facts{256};
 };
 /// Returns the quotas of the settings; their ranges are not checked.
-Quotas quotas_of(const config::SparkSettings& settings);
-/// Throws ConfigError "file:line: key ..." when a quota is out of range.
-void check_quotas(const config::SparkSettings& settings, const std::filesystem::path& file);
+Quotas quotas_of(const settings::SparkSettings& settings);
+/// Refuses quotas that contradict each other. Throws ConfigError "file:line:key: ...".
+void check_quotas(const settings::SparkSettings& settings, const SettingsText& text);
 
 /// What a quota has left out.
 struct LeftOut {

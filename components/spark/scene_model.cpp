@@ -35,7 +35,7 @@ bool differs(const Scene& a, const Scene& b) {
 
 }  // namespace
 
-SceneModel::SceneModel(const config::SparkSettings& settings,
+SceneModel::SceneModel(const settings::SparkSettings& settings,
                        std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
                        std::vector<SceneBox> boxes)
     : settings_(settings),
@@ -64,9 +64,9 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
   for (const ObservedObject& observed : samples) {
     ObjectTrack& track = objects_[observed.id];
     if (seen < track.seen ||
-        !believes(track, observed, observation.source, seen, settings_.doubt_time()))
+        !believes(track, observed, observation.source, seen, settings_.doubt_time))
       continue;
-    add_sample(track, observed, seen, settings_.doubt_time());
+    add_sample(track, observed, seen, settings_.doubt_time);
     if (robot_.known())
       track.T_palm_object =
           robot_.hands()[track.by].T_world_palm.inverse() * observed.T_world_object;
@@ -137,7 +137,7 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
   std::erase_if(objects_, [&](const auto& entry) {
     const ObjectTrack& track = entry.second;
     return track.samples > 0 && track.object.holder == Holder::human &&
-           to_seconds(now - track.seen) > settings_.unseen_after() &&
+           to_seconds(now - track.seen) > settings_.unseen_after &&
            std::none_of(people.people.begin(), people.people.end(),
                         [&](const Person& p) { return p.id == track.object.holder_id; });
   });

@@ -10,7 +10,7 @@
 
 #include "common/base/time.hpp"
 #include "common/collision/collision_world.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/robot_capsules.hpp"
@@ -30,7 +30,7 @@ namespace handsel::spark {
 /// has described enters as its primitive. Own method: an object out of sight may have been moved.
 class SceneModel {
  public:
-  SceneModel(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
+  SceneModel(const settings::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
              ObjectLibrary objects, std::vector<SceneBox> boxes);
 
   /// What is neither described nor a primitive of a size is refused and counted.
@@ -73,7 +73,7 @@ class SceneModel {
   void forget_least_relevant();
   std::string left_out_in_reach() const;
 
-  config::SparkSettings settings_;
+  settings::SparkSettings settings_;
   ObjectLibrary library_;
   std::vector<SceneBox> boxes_;
   RobotPlacement robot_;

@@ -1,9 +1,8 @@
 #include "components/supervisor/node.hpp"
 
-#include <cmath>
-
 #include "common/config/resources.hpp"
 #include "common/config/schema/robot.pb.h"
+#include "common/config/settings_text.hpp"
 #include "common/model/manipulator.hpp"
 
 namespace handsel::supervisor {
@@ -13,39 +12,11 @@ namespace {
 /// set-points (10 ms).
 constexpr Duration kDrivePeriod = std::chrono::milliseconds(5);
 
-config::SupervisorSettings load_settings(const NodeContext& context) {
-  config::SupervisorSettings s;
-  load_text_proto(context.settings / "supervisor.txtpb", s);
-  if (s.period() <= 0 || s.go_period() <= 0 || s.health_timeout() <= 0)
-    throw ConfigError("supervisor.txtpb: period, go_period and health_timeout must be > 0");
-  if (s.speed_override() <= 0 || s.speed_override() > 1)
-    throw ConfigError("supervisor.txtpb: speed_override must be in (0, 1]");
-  if (s.domain().empty())
-    throw ConfigError(
-        "supervisor.txtpb: domain must name the file of the task domain, e.g. \"tasks.txtpb\"");
-  if (s.has_max_goals() && (s.max_goals() < 1 || s.max_goals() > 1024))
-    throw ConfigError(locate(context.settings / "supervisor.txtpb", "max_goals") +
-                      ": max_goals is " + std::to_string(s.max_goals()) +
-                      "; it must be from 1 to 1024");
-  if (s.plan_nodes() == 0 || s.plan_depth() == 0 || s.spot() <= 0)
-    throw ConfigError("supervisor.txtpb: plan_nodes, plan_depth and spot must be > 0");
-  const std::filesystem::path file = context.settings / "supervisor.txtpb";
-  const auto require = [&](bool good, const char* key, const char* range) {
-    if (!good)
-      throw ConfigError(locate(file, std::string(key) + ":") + ": " + key + " must be " + range);
-  };
-  const auto within = [](double value, double low, double high) {
-    return std::isfinite(value) && value >= low && value <= high;
-  };
-  require(within(s.lost_after(), 0, 60) && s.lost_after() > 0, "lost_after",
-          "above 0 and at most 60 s");
-  require(s.max_lost_people() >= 1 && s.max_lost_people() <= 16, "max_lost_people", "from 1 to 16");
-  require(within(s.lost_period(), 0.1, 60), "lost_period", "from 0.1 to 60 s");
-  require(within(s.store_retry(), 0.1, 60), "store_retry", "from 0.1 to 60 s");
-  require(within(s.safety_period(), 0.1, 2), "safety_period", "from 0.1 to 2 s");
-  if (!(s.missing_timeout() >= 1.0 && s.missing_timeout() <= 600.0))
-    throw ConfigError(locate(context.settings / "supervisor.txtpb", "missing_timeout:") +
-                      ": missing_timeout must be in [1, 600] s");
+settings::SupervisorSettings load_settings(const NodeContext& context) {
+  SettingsText text;
+  auto s = settings::read_supervisor_settings(context.settings / "supervisor.txtpb", &text);
+  if (s.domain.empty())
+    text.refuse("domain", "is empty, must name the file of the task domain, e.g. \"tasks.txtpb\"");
   return s;
 }
 
@@ -60,13 +31,12 @@ DurableState restore(const StateStore* store, double override_factor, Stamp now)
   return store != nullptr ? store->restore(fresh, now) : fresh;
 }
 
-Ability ability_of(const config::SupervisorSettings& settings, const NodeContext& context) {
+Ability ability_of(const settings::SupervisorSettings& settings, const NodeContext& context) {
   Ability ability;
-  ability.spot = settings.spot();
+  ability.spot = settings.spot;
   ability.objects = context.objects;
   if (context.robot == nullptr) return ability;
-  if (const auto it = settings.payload().find(context.robot->name());
-      it != settings.payload().end())
+  if (const auto it = settings.payload.find(context.robot->name()); it != settings.payload.end())
     ability.payload = it->second;
   ability.reach = arm_reach(*context.robot).length;
   if (context.description.empty()) return ability;
@@ -80,14 +50,14 @@ Ability ability_of(const config::SupervisorSettings& settings, const NodeContext
 
 Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, load_settings(context)) {}
 
-Node::Node(Bus& bus, const NodeContext& context, const config::SupervisorSettings& settings)
+Node::Node(Bus& bus, const NodeContext& context, const settings::SupervisorSettings& settings)
     : bus_(bus),
       settings_(settings),
       robot_(context.robot),
       store_(open_store(context)),
-      core_(settings_, load_domain(context.settings / settings_.domain()),
+      core_(settings_, load_domain(context.settings / settings_.domain),
             ability_of(settings_, context), static_cast<std::uint64_t>(bus.stamp_now()),
-            restore(store_.get(), settings_.speed_override(), bus.stamp_now()), bus.now()),
+            restore(store_.get(), settings_.speed_override, bus.stamp_now()), bus.now()),
       action_out_(bus.advertise<ActionGoal>()),
       status_out_(bus.advertise<TaskStatus>()),
       go_out_(bus.advertise<Go>()),
@@ -107,7 +77,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::SupervisorSetting
     core_.on(people, receipt.arrival - receipt.age, receipt.writer);
   });
   bus.set_degraded("the state of the world is not known yet");
-  bus.every(from_seconds(settings_.period()), [this](TimePoint now) { step(now); });
+  bus.every(from_seconds(settings_.period), [this](TimePoint now) { step(now); });
 }
 
 template <class M>

@@ -16,7 +16,7 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
-  Node(Bus& bus, const NodeContext& context, const config::SupervisorSettings& settings);
+  Node(Bus& bus, const NodeContext& context, const settings::SupervisorSettings& settings);
   template <class M>
   void feed();
   void on_scene(const Scene& scene, TimePoint arrival);
@@ -24,7 +24,7 @@ class Node {
   void store(const DurableState& state);
 
   Bus& bus_;
-  config::SupervisorSettings settings_;
+  settings::SupervisorSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   std::shared_ptr<const StateStore> store_;  ///< none: nothing is kept
   Supervisor core_;

@@ -9,23 +9,23 @@ constexpr std::size_t kMaxGoals = 64;
 
 }  // namespace
 
-Supervisor::Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+Supervisor::Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
                        std::uint64_t first_action, const DurableState& restored, TimePoint now)
     : settings_(settings),
       domain_(std::move(domain)),
       permission_(settings),
-      go_sender_(settings.go_period()),
+      go_sender_(settings.go_period),
       latches_(restored),
-      lost_(settings.lost_after(), settings.max_lost_people(), restored.safety.lost, now),
+      lost_(settings.lost_after, settings.max_lost_people, restored.safety.lost, now),
       keeper_(settings, restored.safety.revision),
       situation_(std::move(ability)),
       next_action_(first_action),
-      inbox_(settings.has_max_goals() ? settings.max_goals() : kMaxGoals) {}
+      inbox_(settings.max_goals) {}
 
-Supervisor::Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+Supervisor::Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
                        std::uint64_t first_action)
     : Supervisor(settings, std::move(domain), std::move(ability), first_action,
-                 fresh_state(first_action, settings.speed_override()), {}) {}
+                 fresh_state(first_action, settings.speed_override), {}) {}
 
 void Supervisor::on(const ComponentHealth& health, TimePoint arrival) {
   permission_.on(health, arrival);
@@ -206,7 +206,7 @@ void Supervisor::step(TimePoint now, Stamp stamp, Outbox& out) {
   if (state.store) out.store = std::move(state.store);
   if (state.safety) out.safety = std::move(state.safety);
   keeper_.take_answers(out.task_statuses);
-  slot_.repeat(now, settings_.status_period(), out.task_statuses);
+  slot_.repeat(now, settings_.status_period, out.task_statuses);
 }
 
 }  // namespace handsel::supervisor

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/supervisor.pb.h"
+#include "common/config/settings/supervisor.hpp"
 #include "common/messages/attention.hpp"
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
@@ -37,10 +37,10 @@ class Supervisor {
  public:
   /// `first_action`: ids of action goals grow from here; unique over restarts. `restored`: what the
   /// store has kept, ages as of `now`.
-  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+  Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
              std::uint64_t first_action, const DurableState& restored, TimePoint now);
   /// The same, started by a person: no latch stands.
-  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability,
+  Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
              std::uint64_t first_action);
 
   /// Queues the goal for the next step(). A pause that finds no room takes effect at once.
@@ -90,7 +90,7 @@ class Supervisor {
   void suspend(bool suspended);
   bool halted() const { return !latches_.permits() || suspended_; }
 
-  config::SupervisorSettings settings_;
+  settings::SupervisorSettings settings_;
   Domain domain_;
   Permission permission_;
   GoSender go_sender_;

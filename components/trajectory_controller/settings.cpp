@@ -60,42 +60,16 @@ void check_together(const settings::TrajectoryControllerSettings& in, const Sett
     text.refuse("guard", "speed_unknown must be at most speed_max");
 }
 
-}  // namespace
-
-ControllerSettings load_settings(const std::filesystem::path& file) {
-  SettingsText text;
-  const auto in = settings::read_trajectory_controller_settings(file, &text);
-  check_together(in, text);
-  ControllerSettings s;
-  s.period = in.period;
-  s.attention_lost_factor = in.attention_lost_factor;
-  s.recoil_limit = in.recoil_limit;
-  s.max_command_age = in.max_command_age;
-  s.start_tolerance = in.start_tolerance;
-  s.cost_from = in.cost_from;
-  s.cost_factor = in.cost_factor;
-  s.yield_speed = in.yield_speed;
-  s.yield_reach = in.yield_reach;
-  s.retreat_reach = in.retreat_reach;
-  s.dry_run = in.dry_run;
-  s.switch_reach = in.switch_reach;
-  s.tracking_tolerance = in.tracking_tolerance;
-  s.tracking_time = in.tracking_time;
-  s.forecast_hold = in.forecast_hold;
-  s.forecast_slow = in.forecast_slow;
-  s.head_dead_band = in.head_dead_band;
-  s.look_ahead = in.look_ahead;
-  s.look_far_ahead = in.look_far_ahead;
-  s.hand_rejoin = in.hand_rejoin;
-  s.late_limit = in.late_limit;
-
+void read_timeouts(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
   const auto& t = in.timeouts;
   s.timeouts.robot_state = t.robot_state;
   s.timeouts.human_state = t.human_state;
   s.timeouts.forecast = t.forecast;
   s.timeouts.attention = t.attention;
   s.timeouts.supervisor = t.supervisor;
+}
 
+void read_guard(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
   const auto& g = in.guard;
   s.guard.speed_max = g.speed_max;
   s.guard.speed_floor = g.speed_floor;
@@ -110,9 +84,9 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.guard.handover_speed = g.handover_speed;
   s.guard.handover_range = g.handover_range;
   s.guard.stop_persistence = g.stop_persistence;
+}
 
-  s.proof = read_stop_proof(in.stop_proof, text);
-
+void read_view(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
   const auto& v = in.view;
   s.view.require_view = v.require_view;
   s.view.max_view_age = v.max_view_age;
@@ -120,7 +94,9 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.view.ahead_margin = v.ahead_margin;
   s.view.boundary_factor = v.boundary_factor;
   s.view.floor = v.floor;
+}
 
+void read_contact(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
   const auto& c = in.contact;
   s.contact.torque = c.torque;
   s.contact.time = c.time;
@@ -131,7 +107,9 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.contact.clamp_time = c.clamp_time;
   s.contact.yield_torque = c.yield_torque;
   s.contact.yield_time = c.yield_time;
+}
 
+void read_hand(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
   const auto& h = in.hand;
   s.hand.grasp_speed = h.grasp_speed;
   s.hand.min_closing = h.min_closing;
@@ -163,7 +141,10 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.pull.timeout = h.release_timeout;
   s.hand.pull.direction_cosine = h.pull_cosine;
   s.hand.pull.away_cosine = h.pull_away_cosine;
+}
 
+void read_walls(const settings::TrajectoryControllerSettings& in, const SettingsText& text,
+                ControllerSettings& s) {
   for (const auto& w : in.walls) {
     const Vector3 normal(w.nx, w.ny, w.nz);
     if (!(normal.norm() > 1e-9))
@@ -181,6 +162,43 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
     s.walls.push_back({Vector3::UnitZ(), b.z_min});
     s.walls.push_back({-Vector3::UnitZ(), -b.z_max});
   }
+}
+
+}  // namespace
+
+ControllerSettings load_settings(const std::filesystem::path& file) {
+  SettingsText text;
+  const auto in = settings::read_trajectory_controller_settings(file, &text);
+  check_together(in, text);
+  ControllerSettings s;
+  s.period = in.period;
+  s.attention_lost_factor = in.attention_lost_factor;
+  s.recoil_limit = in.recoil_limit;
+  s.max_command_age = in.max_command_age;
+  s.start_tolerance = in.start_tolerance;
+  s.cost_from = in.cost_from;
+  s.cost_factor = in.cost_factor;
+  s.yield_speed = in.yield_speed;
+  s.yield_reach = in.yield_reach;
+  s.retreat_reach = in.retreat_reach;
+  s.dry_run = in.dry_run;
+  s.switch_reach = in.switch_reach;
+  s.tracking_tolerance = in.tracking_tolerance;
+  s.tracking_time = in.tracking_time;
+  s.forecast_hold = in.forecast_hold;
+  s.forecast_slow = in.forecast_slow;
+  s.head_dead_band = in.head_dead_band;
+  s.look_ahead = in.look_ahead;
+  s.look_far_ahead = in.look_far_ahead;
+  s.hand_rejoin = in.hand_rejoin;
+  s.late_limit = in.late_limit;
+  read_timeouts(in, s);
+  read_guard(in, s);
+  s.proof = read_stop_proof(in.stop_proof, text);
+  read_view(in, s);
+  read_contact(in, s);
+  read_hand(in, s);
+  read_walls(in, text, s);
   return s;
 }
 

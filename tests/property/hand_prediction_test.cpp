@@ -63,7 +63,7 @@ struct Errors {
 };
 
 Errors follow(const Motion& motion, unsigned seed) {
-  config::SparkSettings settings;
+  settings::SparkSettings settings;
   load_text_proto(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
   PeopleTracker tracker(settings);
   std::mt19937 random(seed);
@@ -203,7 +203,7 @@ TEST(HandPrediction, on_random_reaches_it_beats_both_baselines_and_grows_with_ti
 }
 
 TEST(HandPrediction, a_hand_out_of_sight_grows_and_a_lost_person_has_none) {
-  config::SparkSettings settings;
+  settings::SparkSettings settings;
   load_text_proto(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
   PeopleTracker tracker(settings);
   double before = 0;

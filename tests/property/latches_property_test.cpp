@@ -32,7 +32,7 @@ struct Truth {
 /// process is killed.
 class SupervisorPart {
  public:
-  explicit SupervisorPart(const config::SupervisorSettings& settings) : settings_(settings) {
+  explicit SupervisorPart(const settings::SupervisorSettings& settings) : settings_(settings) {
     start();
   }
 
@@ -71,7 +71,7 @@ class SupervisorPart {
   bool settled() const { return !writing_ && stored_ == latches_->safety().revision; }
 
  private:
-  config::SupervisorSettings settings_;
+  settings::SupervisorSettings settings_;
   std::uint64_t clock_{}, stored_{};
   std::string disk_;
   std::optional<supervisor::SafetyLatches> latches_;
@@ -165,10 +165,10 @@ class Latches {
   }
 
  private:
-  static config::SupervisorSettings settings() {
-    config::SupervisorSettings s;
-    s.set_resume_delay(0.1);
-    s.set_health_timeout(0.3);
+  static settings::SupervisorSettings settings() {
+    settings::SupervisorSettings s;
+    s.resume_delay = 0.1;
+    s.health_timeout = 0.3;
     return s;
   }
   bool chance(int one_in) { return random_() % static_cast<std::uint64_t>(one_in) == 0; }

@@ -94,7 +94,7 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> noise(0, kNoise);
   const auto happens = [&](double share) { return unit(random) < share; };
-  config::SparkSettings settings;
+  settings::SparkSettings settings;
   load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
                   settings);
   PeopleTracker tracker(settings);

@@ -12,14 +12,14 @@
 
 namespace handsel::supervisor {
 
-inline config::SupervisorSettings rig_settings() {
-  config::SupervisorSettings s;
+inline settings::SupervisorSettings rig_settings() {
+  settings::SupervisorSettings s;
   load_text_proto(resource("config/supervisor.txtpb"), s);
   s.clear_required();
-  s.add_required("spark");
-  s.set_resume_delay(0.1);
-  s.set_person_timeout(2.0);
-  s.set_missing_timeout(5.0);
+  s.required.push_back("spark");
+  s.resume_delay = 0.1;
+  s.person_timeout = 2.0;
+  s.missing_timeout = 5.0;
   return s;
 }
 

@@ -52,7 +52,7 @@ Routine<CarryPlan> plan_carry(Parts& parts, const ActionGoal& goal) {
 /// Closes the hand in use by a grasp.
 Routine<Outcome> grip(Parts& parts, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
-  const double timeout = 2 * parts.settings.hand_timeout();
+  const double timeout = 2 * parts.settings.hand_timeout;
   HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout,
                                               &grasp.hand_effort, kMassRatio);
   if (!closed.outcome.good) co_return closed.outcome;
@@ -77,7 +77,7 @@ Routine<Outcome> enclose(Parts& parts, const std::string& object, const RegraspS
     co_return Outcome::failure(step.to + " does not reach " + object + " where it stands now");
   parts.action.phase = ActionPhase::opening_hand;
   HandResult open = co_await parts.hand.run(HandAction::move, grasp->pregrasp_joints,
-                                            parts.settings.hand_timeout());
+                                            parts.settings.hand_timeout);
   if (!open.outcome.good) co_return open.outcome;
   MotionSpec approach;
   approach.phase = ActionPhase::approach;
@@ -101,7 +101,7 @@ Routine<Outcome> take_together(Parts& parts, const std::string& object, const Ca
     if (done.good) done = co_await grip(parts, step->grasp);
     if (!done.good) co_return done;
   }
-  co_await parts.waiting.pause(parts.settings.settle_time());
+  co_await parts.waiting.pause(parts.settings.settle_time);
   Outcome done = co_await use_arm(parts, plan.first.to);
   if (!done.good) co_return done;
   const SceneObject* held = parts.now.object(object);
@@ -115,7 +115,7 @@ Routine<Outcome> take_together(Parts& parts, const std::string& object, const Ca
 Routine<Outcome> back_off(Parts& parts, const std::string& object, const RegraspStep& step) {
   Outcome off = co_await use_arm(parts, step.to);
   HandResult opened = co_await parts.hand.run(HandAction::move, step.grasp.pregrasp_joints,
-                                              parts.settings.hand_timeout());
+                                              parts.settings.hand_timeout);
   if (off.good && opened.outcome.good) {
     MotionSpec back;
     back.phase = ActionPhase::backing_off;
@@ -195,7 +195,7 @@ Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, con
                                     bool& is_down) {
   const std::string& follower = plan.second.to;
   parts.action.phase = ActionPhase::lift;
-  const double height = parts.settings.lift_height();
+  const double height = parts.settings.lift_height;
   const Pose T_start = parts.now.object(object)->T_world_object;
   std::vector<Pose> up{raised(T_start, height)};
   Outcome done = co_await move_together(parts, object, follower, up);
@@ -230,7 +230,7 @@ Routine<Outcome> release_both(Parts& parts, const std::string& object, const Car
     parts.action.phase = ActionPhase::release;
     const Vector open = RobotModel::part(plan.down.after, parts.arm.fingers());
     HandResult opened =
-        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
     if (!opened.outcome.good) co_return opened.outcome;
   }
   parts.held.release();

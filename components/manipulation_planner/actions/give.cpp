@@ -15,7 +15,7 @@ MotionSpec carry_motion(const Parts& parts, const std::string& object, const Otp
                         const Person& receiver) {
   MotionSpec carry;
   carry.phase = ActionPhase::carry;
-  carry.speed = parts.settings.carry_speed();
+  carry.speed = parts.settings.carry_speed;
   carry.allowed = {object};
   carry.yields_to = receiver.id;
   aim_at(search, receiver, carry);
@@ -26,8 +26,8 @@ MotionSpec carry_motion(const Parts& parts, const std::string& object, const Otp
 Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::string& receiver) {
   Outcome last;
   const auto& settings = parts.settings;
-  const TimePoint deadline = parts.now.time() + from_seconds(settings.reach_timeout());
-  for (std::uint32_t attempt = 0; attempt < settings.motion_attempts();) {
+  const TimePoint deadline = parts.now.time() + from_seconds(settings.reach_timeout);
+  for (std::uint32_t attempt = 0; attempt < settings.motion_attempts;) {
     parts.action.phase = ActionPhase::choosing_exchange_point;
     const Person* person = parts.now.person(receiver);
     if (person == nullptr) co_return Outcome::out_of_sight("person " + receiver);
@@ -52,7 +52,7 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
     last = co_await move(parts, carry);
     if (last.end == MotionEnd::taken) co_return Outcome{};
     if (!last.good) continue;
-    if (settings.live_period() <= 0 || attempt >= settings.motion_attempts()) co_return last;
+    if (settings.live_period <= 0 || attempt >= settings.motion_attempts) co_return last;
     const Vector here = RobotModel::part(parts.arm.configuration(), parts.arm.group());
     const bool has_moved = co_await follow_receiver(parts, carry, here);
     if (!has_moved) co_return last;
@@ -66,12 +66,12 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
   parts.action.exchange_point = parts.held.T_world_object().translation();
   parts.action.exchange_engaged = true;
   const Vector open = opening(parts);
-  const double timeout = parts.settings.offer_timeout();
+  const double timeout = parts.settings.offer_timeout;
   HandResult released = co_await parts.hand.run(HandAction::release_on_pull, open, timeout);
   if (released.outcome.good && released.state == HandState::released) co_return Outcome{};
   parts.action.exchange_engaged = false;
   const Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
-  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout());
+  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout);
   if (!held.outcome.good) parts.refuse("keeping the object", held.outcome.reason);
   if (!released.outcome.good) co_return released.outcome;
   co_return Outcome::failure(receiver + " did not take " + object + " within " +
@@ -89,7 +89,7 @@ Routine<Outcome> give(Parts& parts, const std::string& object, const std::string
     co_return Outcome::failure("the hand does not hold " + object);
   parts.action.phase = ActionPhase::choosing_exchange_point;
   const auto is_seen = [&] { return parts.now.person(human) != nullptr; };
-  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
+  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout);
   if (!seen)
     co_return human.empty()
         ? Outcome::failure("nobody is in sight")

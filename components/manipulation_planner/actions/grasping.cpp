@@ -18,7 +18,7 @@ Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string
   up.is_straight = true;
   up.allowed = {object};
   up.yields_to = for_human;
-  const double height = parts.settings.lift_height();
+  const double height = parts.settings.lift_height;
   const Pose T_now = parts.arm.T_world_tool();
   for (const double ratio : kLiftRatios) {
     Pose T = T_now;
@@ -62,7 +62,7 @@ Routine<Outcome> reach_grasp(Parts& parts, const std::string& object, const Gras
 /// Closes the hand; if it holds nothing, it opens again and moves back to the stand-off.
 Routine<Outcome> close_hand(Parts& parts, const std::string& object, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
-  const double timeout = parts.settings.hand_timeout();
+  const double timeout = parts.settings.hand_timeout;
   HandResult closed =
       co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort);
   if (closed.outcome.good && closed.state == HandState::grasped) co_return Outcome{};
@@ -87,7 +87,7 @@ Routine<Outcome> use_arm(Parts& parts, const std::string& arm) {
   const auto index = static_cast<std::size_t>(wanted - all.begin());
   if (index == parts.arm.index()) co_return Outcome{};
   const bool is_idle = co_await parts.waiting.until([&parts] { return parts.worker.is_idle(); },
-                                                    parts.settings.request_timeout());
+                                                    parts.settings.request_timeout);
   if (!is_idle) co_return Outcome::failure("a computation for the other arm does not end");
   parts.arm.select(index);
   parts.held.set_grasp(std::nullopt);
@@ -130,7 +130,7 @@ MotionSpec reach_along(const Parts& parts, const std::string& object, const Gras
   reach.goals = {grasp.arm_joints};
   reach.is_straight = true;
   reach.allowed = {object};
-  reach.speed = parts.settings.approach_speed();
+  reach.speed = parts.settings.approach_speed;
   return reach;
 }
 
@@ -160,9 +160,9 @@ Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::s
   const auto is_at_rest = [&parts, &object, seen] {
     const SceneObject* thing = parts.now.object(object);
     return parts.now.scene().stamp != seen && thing != nullptr &&
-           thing->velocity.norm() < parts.settings.offer_still();
+           thing->velocity.norm() < parts.settings.offer_still;
   };
-  co_await parts.waiting.until(is_at_rest, parts.settings.settle_time());
+  co_await parts.waiting.until(is_at_rest, parts.settings.settle_time);
   const SceneObject* held = parts.now.object(object);
   if (held == nullptr) co_return Outcome::failure("object " + object + " left the scene");
   parts.held.hold(*held);
@@ -170,10 +170,10 @@ Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::s
   if (lifted.end == MotionEnd::taken) co_return Outcome{};
   if (!lifted.good) co_return lifted;
   const bool is_carried = co_await parts.waiting.until(
-      [&] { return is_held_by_robot(parts, object); }, parts.settings.settle_time());
+      [&] { return is_held_by_robot(parts, object); }, parts.settings.settle_time);
   if (is_carried) co_return lifted;
   parts.held.release();
-  co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, parts.settings.hand_timeout());
+  co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, parts.settings.hand_timeout);
   co_return Outcome::failure(object + " stayed behind when the hand went up",
                              ActionFailure::left_behind);
 }
@@ -206,7 +206,7 @@ Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::str
   std::string why = "no configuration of the arm lies there";
   for (const double ratio : kRetreatRatios) {
     Pose T = T_now;
-    T.translation() += ratio * parts.settings.retreat_distance() * away;
+    T.translation() += ratio * parts.settings.retreat_distance * away;
     const auto joints = parts.arm.reach(T);
     const bool is_straight =
         joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() < kMaxStraightTurn;

@@ -29,7 +29,7 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
                                   const std::vector<Grasp>& grasps, const Person& person,
                                   const Pose& T_world_object) {
   auto settings = parts.settings;
-  settings.set_exchange_goals(1);
+  settings.exchange_goals = 1;
   return [result = std::move(result), grasps, settings, person, T_world_object,
           robot = parts.arm.shared_robot(), scene = parts.now.scene(), layers = parts.now.layers(),
           q = parts.now.set_point()] {
@@ -42,7 +42,7 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
       else
         result->givable.push_back(
-            {i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
+            {i, search.poses.front().cost + settings.w_grasp_rank * static_cast<double>(i)});
     }
   };
 }
@@ -100,14 +100,14 @@ Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string
   if (parts.held.is_holding() && parts.held.id() == object) co_return Outcome{};
   parts.action.phase = ActionPhase::looking_for_object;
   const auto is_seen = [&] { return parts.now.object(object) != nullptr; };
-  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
+  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout);
   if (!seen) co_return Outcome::failure("object " + object + " is not in the scene");
   Outcome last;
-  const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.reach_timeout());
+  const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.reach_timeout);
   for (int round = 0; round < kRounds; ++round) {
     GraspList list;
     if (onto.empty())
-      list = co_await ask_grasps(parts, object, for_human, parts.settings.max_grasps());
+      list = co_await ask_grasps(parts, object, for_human, parts.settings.max_grasps);
     else
       list = co_await ask_grasps_onto(parts, object, onto);
     if (!list.outcome.good) {

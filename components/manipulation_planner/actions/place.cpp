@@ -37,12 +37,12 @@ bool is_person_near_hand(const Parts& parts) {
 Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
                                    const std::string& onto) {
   parts.destinations.clear();
-  GraspList list = co_await ask_grasps(parts, object, "", parts.settings.max_grasps_onto());
+  GraspList list = co_await ask_grasps(parts, object, "", parts.settings.max_grasps_onto);
   if (!list.outcome.good || parts.now.surface(onto) == nullptr ||
       parts.now.object(object) == nullptr)
     co_return list;
   parts.action.phase = ActionPhase::choosing_place;
-  const DestinationLimits limits{parts.settings.max_grasps(), kMaxPlaces};
+  const DestinationLimits limits{parts.settings.max_grasps, kMaxPlaces};
   const ServingGrasps found = co_await find_destinations(parts, object, onto, list.grasps, limits);
   if (!found.outcome.good || found.at.empty()) {
     const std::string none =
@@ -62,14 +62,14 @@ Routine<Outcome> lower(Parts& parts, const PlacingConfiguration& place) {
   MotionSpec above;
   above.phase = ActionPhase::carry;
   above.goals = {place.arm_above};
-  above.speed = parts.settings.carry_speed();
+  above.speed = parts.settings.carry_speed;
   Outcome last = co_await move(parts, above);
   if (!last.good) co_return last;
   MotionSpec down = above;
   down.phase = ActionPhase::put_down;
   down.goals = {place.arm_at};
   down.is_straight = true;
-  down.speed = parts.settings.approach_speed();
+  down.speed = parts.settings.approach_speed;
   last = co_await move(parts, down);
   co_return last;
 }
@@ -96,7 +96,7 @@ Routine<Outcome> place(Parts& parts, const std::string& object, const std::strin
     parts.destinations.clear();
     co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); }, kPersonTimeout);
     HandResult released =
-        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
     if (!released.outcome.good) co_return released.outcome;
     parts.held.release();
     const std::string nobody;

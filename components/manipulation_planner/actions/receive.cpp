@@ -60,7 +60,7 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wante
 /// Asks for grasps that keep clearance to the giver's hand.
 Routine<GraspList> ask_clear_grasps(Parts& parts, const Offer& offer) {
   parts.destinations.clear();
-  GraspList list = co_await ask_grasps(parts, offer.object, "", parts.settings.max_grasps_onto());
+  GraspList list = co_await ask_grasps(parts, offer.object, "", parts.settings.max_grasps_onto);
   if (!list.grasps.empty()) list.outcome = co_await select_clear_of_hand(parts, offer, list.grasps);
   co_return list;
 }
@@ -84,7 +84,7 @@ Routine<Outcome> rank_grasps(Parts& parts, const Offer& offer, const std::string
   };
   std::stable_sort(grasps.begin(), grasps.end(),
                    [&rank](const Grasp& a, const Grasp& b) { return rank(a) < rank(b); });
-  grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps()));
+  grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps));
   co_return Outcome{};
 }
 
@@ -137,11 +137,11 @@ Outcome nothing_offered(const std::string& wanted, const std::string& giver, dou
 Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver,
                          const std::string& onto) {
   if (parts.held.is_holding() && (wanted.empty() || parts.held.id() == wanted)) co_return Outcome{};
-  const double timeout = parts.settings.receive_timeout();
+  const double timeout = parts.settings.receive_timeout;
   Outcome last = nothing_offered(wanted, giver, timeout);
   std::set<std::uint64_t> failed;
   TimePoint deadline = parts.now.time() + from_seconds(timeout);
-  for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts();) {
+  for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
     std::optional<Offer> offer = co_await await_offer(parts, wanted, giver, deadline);
     if (!offer) break;
     parts.offers.accept(*offer);
@@ -162,7 +162,7 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
     if (last.good) co_return last;
     // Who has withdrawn it offers again where the hand leaves space; and from farther back other
     // paths lead to what is still offered.
-    const bool again = attempt < parts.settings.receive_attempts() &&
+    const bool again = attempt < parts.settings.receive_attempts &&
                        (parts.offers.is_still_offered() ? !last.target_moved()
                                                         : parts.area.is_occupied(offer->giver));
     if (again) co_await clear_offer_area(parts, offer->giver, ClearUntil::clear_offer);

@@ -22,7 +22,7 @@ constexpr double kAboveRatios[] = {1.0, 0.75};           // of the lift height
 /// again and moves off.
 Routine<Outcome> take_over(Parts& parts, const std::string& object, const Grasp& grasp) {
   parts.action.phase = ActionPhase::opening_other_hand;
-  const double timeout = parts.settings.hand_timeout();
+  const double timeout = parts.settings.hand_timeout;
   HandResult open = co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
   if (!open.outcome.good) co_return open.outcome;
   MotionSpec approach;
@@ -69,7 +69,7 @@ Routine<Outcome> draw_aside(Parts& parts) {
     MotionSpec aside;
     aside.phase = ActionPhase::clear_offer_area;
     aside.goals = {*farthest};
-    aside.speed = parts.settings.carry_speed();
+    aside.speed = parts.settings.carry_speed;
     Outcome drawn = co_await move(parts, aside);
     if (!drawn.good) continue;
     rested = co_await rest_others(parts);
@@ -136,13 +136,13 @@ Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep
   MotionSpec bring;
   bring.phase = ActionPhase::carry_to_other_hand;
   bring.goals = {*meeting};
-  bring.speed = parts.settings.carry_speed();
+  bring.speed = parts.settings.carry_speed;
   Outcome done = co_await move(parts, bring);
   if (!done.good) co_return done;
   std::optional<Grasp> grasp;
   done = co_await close_other_hand(parts, object, step, grasp);
   if (!done.good) co_return done;
-  const double settle_time = parts.settings.settle_time();
+  const double settle_time = parts.settings.settle_time;
   co_await parts.waiting.pause(settle_time);
   const SceneObject* held = parts.now.object(object);
   if (held == nullptr) co_return Outcome::failure("object " + object + " left the scene");
@@ -185,7 +185,7 @@ Routine<Outcome> put_down(Parts& parts, const std::string& object, const Regrasp
   std::optional<Vector> above;
   for (const double ratio : kAboveRatios) {
     Pose T_above = T_world_object;
-    T_above.translation().z() += ratio * parts.settings.lift_height();
+    T_above.translation().z() += ratio * parts.settings.lift_height;
     const Vector near = RobotModel::with(step.q, arm, *at);
     if (!above) above = robot.inverse(arm, T_base_world * T_above * T_object_tool, near, options);
   }

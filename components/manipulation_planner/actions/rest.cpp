@@ -17,7 +17,7 @@ Routine<Outcome> rest(Parts& parts) {
   const Vector at_rest = RobotModel::part(parts.arm.robot().rest_configuration(), arm);
   MotionSpec motion;
   motion.phase = ActionPhase::to_rest;
-  motion.speed = parts.held.is_holding() ? parts.settings.carry_speed() : 1.0;
+  motion.speed = parts.held.is_holding() ? parts.settings.carry_speed : 1.0;
   const Vector q = RobotModel::with(parts.arm.configuration(), arm, at_rest);
   const Person* person = parts.now.person("");
   if (person != nullptr && parts.area.is_occupied(*person, q))

@@ -71,7 +71,7 @@ MotionSpec approach_to(const Parts& parts, const TakeAttempt& take, const Grasp&
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {take.offer.giver};
   approach.object = ObjectTarget{object, parts.now.object(object)->T_world_object.translation(),
-                                 parts.settings.approach_slack(), grasp};
+                                 parts.settings.approach_slack, grasp};
   approach.timeout = kApproachTimeout;
   if (take.attempt > kMaxDirectAttempts) return approach;
   const double straight = (grasp.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
@@ -112,7 +112,7 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
 Routine<Outcome> back_off(Parts& parts, const Offer& offer, const Grasp& grasp,
                           const Outcome& why) {
   parts.action.phase = ActionPhase::backing_off;
-  const double timeout = parts.settings.hand_timeout();
+  const double timeout = parts.settings.hand_timeout;
   HandResult opened = co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
   if (!opened.outcome.good) parts.refuse("backing off", opened.outcome.reason);
   MotionSpec back;
@@ -120,7 +120,7 @@ Routine<Outcome> back_off(Parts& parts, const Offer& offer, const Grasp& grasp,
   back.is_straight = true;
   back.goals = {grasp.approach_joints};
   back.allowed = {offer.object, offer.giver};
-  back.speed = parts.settings.approach_speed();
+  back.speed = parts.settings.approach_speed;
   Outcome backed = co_await move(parts, back);
   if (!backed.good) parts.refuse("backing off", backed.reason);
   parts.offers.set_hand_at_offer(false);
@@ -160,7 +160,7 @@ Routine<Step> approach_offer(Parts& parts, const TakeAttempt& take, std::optiona
     return is_offered(parts, take.offer) || is_put_into_hand(parts, take) ||
            parts.offers.is_withdrawn();
   };
-  co_await parts.waiting.until(is_decided, parts.settings.sight_timeout());
+  co_await parts.waiting.until(is_decided, parts.settings.sight_timeout);
   if (is_put_into_hand(parts, take)) co_return Step{Progress::in_hand, moved};
   if (!is_offered(parts, take.offer))
     co_return Step{Progress::failed, moved_away(giver + " has drawn " + object + " back")};
@@ -191,7 +191,7 @@ Routine<Step> reach_offer(Parts& parts, const TakeAttempt& take, std::optional<G
   reach.goals = {grasp->arm_joints};
   reach.is_straight = true;
   reach.allowed = {object, giver};
-  reach.object = ObjectTarget{object, p_object, parts.settings.aim_slack(), std::nullopt};
+  reach.object = ObjectTarget{object, p_object, parts.settings.aim_slack, std::nullopt};
   reach.timeout = kReachTimeout;
   parts.offers.set_hand_at_offer(true);
   done = co_await move(parts, reach);
@@ -211,7 +211,7 @@ Routine<Outcome> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
   const Group* present = is_laid_in ? &parts.arm.robot().require_group("hand") : nullptr;
   const Vector closing =
       is_laid_in ? RobotModel::part(parts.now.set_point(), *present) : grasp.hand_joints;
-  const double timeout = parts.settings.hand_timeout();
+  const double timeout = parts.settings.hand_timeout;
   HandResult closed =
       co_await parts.hand.run(HandAction::grasp, closing, timeout, &grasp.hand_effort);
   if (!closed.outcome.good) co_return closed.outcome;
@@ -228,7 +228,7 @@ Routine<Outcome> await_release(Parts& parts, const Offer& offer) {
     return is_held_by_robot(parts, offer.object) &&
            !parts.held.is_at_hand_of(offer.giver, offer.object);
   };
-  const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.let_go_timeout());
+  const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.let_go_timeout);
   TimePoint since = parts.now.time();
   while (parts.now.time() < deadline && to_seconds(parts.now.time() - since) < kReleaseTime) {
     if (!is_given()) since = parts.now.time();
@@ -284,7 +284,7 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   back.is_straight = true;
   back.goals = {grasp->approach_joints};
   back.allowed = {object, giver};
-  back.speed = parts.settings.carry_speed();
+  back.speed = parts.settings.carry_speed;
   Outcome moved = co_await move(parts, back);
   parts.offers.set_hand_at_offer(false);
   if (!moved.good) parts.refuse("retreat", moved.reason);

@@ -150,17 +150,17 @@ Routine<Outcome> await_put_down(Parts& parts, const std::string& object) {
     co_return Outcome::failure(parts.held.id() + " is in the hand: it must be put down first");
   parts.action.phase = ActionPhase::looking_for_object;
   const auto is_seen = [&] { return parts.now.object(object) != nullptr; };
-  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
+  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout);
   if (!seen) co_return Outcome::failure("object " + object + " is not in the scene");
   const auto is_put_down = [&] {
     const SceneObject* thing = parts.now.object(object);
     return thing != nullptr && thing->holder != Holder::robot && thing->holder != Holder::human;
   };
-  const bool free = co_await parts.waiting.until(is_put_down, parts.settings.sight_timeout());
+  const bool free = co_await parts.waiting.until(is_put_down, parts.settings.sight_timeout);
   if (!free) co_return Outcome::failure(object + " is held: it must stand first");
   if (parts.now.model_of(object) == nullptr)
     co_return Outcome::failure("object " + object + " has no model");
-  co_await parts.waiting.pause(parts.settings.settle_time());
+  co_await parts.waiting.pause(parts.settings.settle_time);
   co_return Outcome{};
 }
 
@@ -168,7 +168,7 @@ Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, co
                                      const Vector& after) {
   const Vector open = RobotModel::part(after, parts.arm.fingers());
   HandResult opened =
-      co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+      co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
   if (!opened.outcome.good) co_return opened.outcome;
   if (parts.held.attachment().hand == parts.arm.hand_name()) parts.held.release();
   const RobotModel& robot = parts.arm.robot();
@@ -185,7 +185,7 @@ Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, co
     away.is_straight = true;
     away.goals = {*off};
     away.allowed = {object};
-    away.speed = parts.settings.approach_speed();
+    away.speed = parts.settings.approach_speed;
     Outcome gone = co_await move(parts, away);
     if (gone.good) co_return gone;
     why = gone.reason;

@@ -14,7 +14,7 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
   command.action = action;
   command.position = position;
   if (effort != nullptr) command.effort = *effort;
-  command.pull_force = settings_.pull_force();
+  command.pull_force = settings_.pull_force;
   if (const ObjectModel* grasped = now_.model_of(action_.object);
       action == HandAction::grasp && grasped != nullptr)
     command.payload = mass_ratio * grasped->mass;
@@ -24,8 +24,8 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
   };
   bool acknowledged = false;
   for (int tries = 0; tries < kMaxTries && !acknowledged; ++tries) {
-    const bool ready = co_await waiting_.until([this] { return link_.may_move(); },
-                                               settings_.permission_timeout());
+    const bool ready =
+        co_await waiting_.until([this] { return link_.may_move(); }, settings_.permission_timeout);
     if (!ready) break;
     command.epoch = now_.execution()->epoch;
     link_.send(command);
@@ -39,7 +39,7 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
 
 Routine<Outcome> HandCommander::await_open() {
   const bool open = co_await waiting_.until(
-      [this] { return arm_.hand_state() != HandState::moving; }, settings_.hand_timeout());
+      [this] { return arm_.hand_state() != HandState::moving; }, settings_.hand_timeout);
   co_return open ? Outcome{} : Outcome::failure("the hand does not open");
 }
 

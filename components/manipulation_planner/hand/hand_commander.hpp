@@ -15,7 +15,7 @@ class HandCommander {
  public:
   /// `action`: its object is what the hand grasps. The references must outlive what is made.
   HandCommander(ActiveArm& arm, ControllerLink& link, const Snapshot& now, Waiting& waiting,
-                const ActionStatus& action, const config::ManipulationPlannerSettings& settings)
+                const ActionStatus& action, const settings::ManipulationPlannerSettings& settings)
       : arm_(arm),
         link_(link),
         now_(now),
@@ -40,7 +40,7 @@ class HandCommander {
   const Snapshot& now_;
   Waiting& waiting_;
   const ActionStatus& action_;
-  const config::ManipulationPlannerSettings& settings_;
+  const settings::ManipulationPlannerSettings& settings_;
 };
 
 }  // namespace handsel::manipulation_planner

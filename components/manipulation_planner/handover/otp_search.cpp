@@ -42,7 +42,7 @@ double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
 /// Cost of places and poses of the object, for one person where they are now.
 class OtpCosts {
  public:
-  OtpCosts(const OtpQuery& query, const config::ManipulationPlannerSettings& settings)
+  OtpCosts(const OtpQuery& query, const settings::ManipulationPlannerSettings& settings)
       : scene_(query.scene),
         person_(query.person),
         layers_(query.layers),
@@ -73,34 +73,35 @@ class OtpCosts {
     if (comfort >= 1) return Place::out_of_reach;
     const OutsideCost outside = layers_.outside_cost(p);
     if (outside.forbidden_by != nullptr) return Place::forbidden;
-    cost = settings_.w_comfort() * comfort +
-           settings_.w_safety() * safety_cost(distance_to_body(body_, p), 0.8) +
-           settings_.w_visibility() * visibility_cost(person_, p, 3.0) +
-           settings_.w_effort() * (p - p_now_).norm() + outside.cost +
-           settings_.w_preference() * against_preference(p);
+    cost = settings_.w_comfort * comfort +
+           settings_.w_safety * safety_cost(distance_to_body(body_, p), 0.8) +
+           settings_.w_visibility * visibility_cost(person_, p, 3.0) +
+           settings_.w_effort * (p - p_now_).norm() + outside.cost +
+           settings_.w_preference * against_preference(p);
     return Place::good;
   }
   /// Cost by the person's profile: the other side, another distance; 0 without a profile.
   double against_preference(const Vector3& p) const {
     constexpr double kFull = 0.3;  // [m]
-    const auto& people = settings_.people();
+    const auto& people = settings_.people;
     const auto profile =
         std::find_if(people.begin(), people.end(),
-                     [this](const config::PersonProfile& one) { return one.id() == person_.id; });
+                     [this](const settings::PersonProfile& one) { return one.id == person_.id; });
     if (profile == people.end()) return 0;
     double cost = 0;
     const auto joint = [this](const char* name) {
       return person_.joints[static_cast<std::size_t>(body_joint_index(name))].position;
     };
-    if (profile->handed() != config::EITHER) {
+    if (profile->handed != settings::Handedness::either) {
       const Vector3 to_left = (joint("l_shoulder") - joint("r_shoulder")).stableNormalized();
       const double off =
-          (p - torso()).dot(profile->handed() == config::LEFT ? Vector3(-to_left) : to_left);
+          (p - torso())
+              .dot(profile->handed == settings::Handedness::left ? Vector3(-to_left) : to_left);
       cost += std::clamp(off / kFull, 0.0, 1.0);
     }
-    if (profile->preferred_distance() > 0)
+    if (profile->preferred_distance > 0)
       cost += std::min(
-          1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance()) / kFull);
+          1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance) / kFull);
     return cost;
   }
   /// Cost of how the hand holds the object toward the person; nullopt: they could not take it.
@@ -111,14 +112,14 @@ class OtpCosts {
     for (const Vector3& normal : barred_)
       in_the_way = std::max(in_the_way, (R_world_object * normal).dot(-toward_robot_));
     if (in_the_way > kMaxBarred) return std::nullopt;
-    return settings_.w_legibility() * ((1 - facing) / 2 + in_the_way);
+    return settings_.w_legibility * ((1 - facing) / 2 + in_the_way);
   }
 
  private:
   const Scene& scene_;
   const Person& person_;
   const LayersNow& layers_;
-  const config::ManipulationPlannerSettings& settings_;
+  const settings::ManipulationPlannerSettings& settings_;
   const std::vector<Vector3>& barred_;
   Vector3 p_now_, object_in_hand_, toward_robot_;
   SimplifiedBody body_;
@@ -182,7 +183,7 @@ std::vector<Vector3> barred_directions(const Grasp& grasp) {
 }
 
 OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
-                   const config::ManipulationPlannerSettings& settings) {
+                   const settings::ManipulationPlannerSettings& settings) {
   OtpSearch out;
   const Group& arm = robot.require_group("arm");
   const OtpCosts costs(query, settings);
@@ -201,8 +202,7 @@ OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector&
              kMinDistance;
     });
     if (is_near) continue;
-    if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.handover_tries())
-      break;
+    if (out.poses.size() >= settings.exchange_goals || out.tried >= settings.handover_tries) break;
     ++out.tried;
     const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object *
                             query.T_tool_object.inverse();
@@ -224,7 +224,7 @@ OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector&
 }
 
 std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object,
-                               const config::ManipulationPlannerSettings& settings) {
+                               const settings::ManipulationPlannerSettings& settings) {
   const OtpCosts costs(query, settings);
   double cost = 0;
   if (!costs.apart() || costs.of_place(T_world_object.translation(), cost) != OtpCosts::Place::good)

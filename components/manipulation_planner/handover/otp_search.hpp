@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/schema/manipulation_planner.pb.h"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
@@ -49,11 +49,11 @@ std::vector<Vector3> barred_directions(const Grasp& grasp);
 /// furniture as the person sees it, and those an outside layer forbids, are left out. The person
 /// must be able to draw the object toward them.
 OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
-                   const config::ManipulationPlannerSettings& settings);
+                   const settings::ManipulationPlannerSettings& settings);
 
 /// Returns the cost of a pose of the object as find_otp() counts it, whether the robot reaches the
 /// pose or not; nullopt: it is no object transfer point.
 std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object,
-                               const config::ManipulationPlannerSettings& settings);
+                               const settings::ManipulationPlannerSettings& settings);
 
 }  // namespace handsel::manipulation_planner

@@ -17,7 +17,7 @@ bool ControllerLink::may_move() const {
 
 Routine<bool> ControllerLink::await_permission() {
   const bool ready = co_await waiting_.until([this] { return may_move() && arm_.at_rest(); },
-                                             settings_.permission_timeout());
+                                             settings_.permission_timeout);
   co_return ready;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/config/schema/manipulation_planner.pb.h"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "components/manipulation_planner/active_arm.hpp"
 #include "components/manipulation_planner/clients.hpp"
 #include "components/manipulation_planner/motion/motion_end.hpp"
@@ -15,7 +15,7 @@ class ControllerLink {
  public:
   /// The references must outlive what is made.
   ControllerLink(const ActiveArm& arm, const Snapshot& now, Waiting& waiting, Outbox& outbox,
-                 Ids& ids, const config::ManipulationPlannerSettings& settings)
+                 Ids& ids, const settings::ManipulationPlannerSettings& settings)
       : arm_(arm), now_(now), waiting_(waiting), outbox_(outbox), ids_(ids), settings_(settings) {}
 
   /// Returns whether commands are permitted now.
@@ -57,7 +57,7 @@ class ControllerLink {
   Waiting& waiting_;
   Outbox& outbox_;
   Ids& ids_;
-  const config::ManipulationPlannerSettings& settings_;
+  const settings::ManipulationPlannerSettings& settings_;
   std::optional<TrajectoryCommand> dropped_stop_;
   TimePoint stop_sent_{};
 };

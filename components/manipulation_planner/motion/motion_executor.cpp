@@ -34,7 +34,7 @@ PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& mo
   request.goals = motion.goals;
   request.attachment = parts.held.attachment();
   request.allowed_contacts = motion.allowed;
-  request.time_limit = parts.settings.planning_time();
+  request.time_limit = parts.settings.planning_time;
   request.seed = parts.action.id + request.id.number;
   request.straight = motion.is_straight;
   return request;
@@ -91,7 +91,7 @@ static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSp
   const auto is_over = [&] {
     return parts.link.has_ended(running.command) || parts.monitor.must_end(motion, began);
   };
-  const bool is_replanned = parts.settings.live_period() > 0 && !motion.is_straight;
+  const bool is_replanned = parts.settings.live_period > 0 && !motion.is_straight;
   for (bool done = false; !done;) {
     const double period = is_replanned ? parts.replanner.period(parts.now.time()) : kMaxDuration;
     done = co_await parts.waiting.until(is_over, period);
@@ -147,7 +147,7 @@ static Routine<bool> free_arm(Parts& parts, const std::string& touched, const Mo
 Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
   Outcome last;
   MotionSpec motion = asked;
-  for (std::uint32_t attempt = 0; attempt < parts.settings.motion_attempts(); ++attempt) {
+  for (std::uint32_t attempt = 0; attempt < parts.settings.motion_attempts; ++attempt) {
     parts.action.phase = motion.phase;
     const bool ready = co_await parts.link.await_permission();
     if (!ready) co_return parts.link.not_permitted();
@@ -166,7 +166,7 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
       if (parts.now.is_lost(in_the_way)) {
         parts.refuse(text_of(motion.phase), last.reason);
         const auto is_gone = [&] { return !parts.now.is_lost(in_the_way); };
-        co_await parts.waiting.until(is_gone, parts.settings.permission_timeout());
+        co_await parts.waiting.until(is_gone, parts.settings.permission_timeout);
         continue;
       }
     }
@@ -194,7 +194,7 @@ std::vector<Vector3> retreat_directions_from(const Parts& parts, const std::stri
 /// search.
 static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& touched,
                                          const Vector& start) {
-  const double distance = parts.settings.retreat_distance();
+  const double distance = parts.settings.retreat_distance;
   const Pose& T_world_base = parts.now.T_world_base();
   const HumanState& people = parts.now.people();
   std::vector<Vector> goals =
@@ -218,7 +218,7 @@ Routine<Outcome> retreat_from(Parts& parts, const std::string& touched, const Mo
   MotionSpec off;
   off.phase = ActionPhase::retreat_from_person;
   off.is_straight = true;
-  off.speed = parts.settings.approach_speed();
+  off.speed = parts.settings.approach_speed;
   off.allowed = next.allowed;
   off.allowed.push_back(touched);
   const Vector start = parts.arm.configuration();

@@ -23,7 +23,7 @@ void MotionMonitor::update() {
                         std::abs(active.speed_factor) < kCreeping;
   // An arm at rest has no collision ahead: it starts, and is held back again.
   if (status && (status->causes & kBlocked) != 0) held_back_at_ = now_.time();
-  const bool is_held_back = to_seconds(now_.time() - held_back_at_) <= settings_.blocked_pause();
+  const bool is_held_back = to_seconds(now_.time() - held_back_at_) <= settings_.blocked_pause;
   if (!is_person_too_near_ && !is_held_back) free_at_ = now_.time();
   blocked_for_ = to_seconds(now_.time() - free_at_);
 }
@@ -62,7 +62,7 @@ bool MotionMonitor::is_late(const MotionSpec& motion, TimePoint began) const {
 }
 
 bool MotionMonitor::must_end(const MotionSpec& motion, TimePoint began) const {
-  return is_late(motion, began) || blocked_for_ > settings_.blocked_timeout() ||
+  return is_late(motion, began) || blocked_for_ > settings_.blocked_timeout ||
          has_target_moved(motion) || held_.is_taken_by(motion.yields_to) || is_area_cleared(motion);
 }
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "common/config/schema/manipulation_planner.pb.h"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "components/manipulation_planner/hand/held_object.hpp"
 #include "components/manipulation_planner/handover/offer_area.hpp"
 #include "components/manipulation_planner/handover/offer_detector.hpp"
@@ -16,7 +16,7 @@ class MotionMonitor {
   /// The references must outlive what is made.
   MotionMonitor(const ActiveArm& arm, const HeldObject& held, const OfferDetector& offers,
                 const OfferArea& area, const Snapshot& now,
-                const config::ManipulationPlannerSettings& settings)
+                const settings::ManipulationPlannerSettings& settings)
       : arm_(arm), held_(held), offers_(offers), area_(area), now_(now), settings_(settings) {}
 
   /// Observes, each step, what holds the arm back.
@@ -48,7 +48,7 @@ class MotionMonitor {
   const OfferDetector& offers_;
   const OfferArea& area_;
   const Snapshot& now_;
-  const config::ManipulationPlannerSettings& settings_;
+  const settings::ManipulationPlannerSettings& settings_;
   TimePoint free_at_{}, held_back_at_{};
   double blocked_for_{0};
   bool is_person_too_near_{false};

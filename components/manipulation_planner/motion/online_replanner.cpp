@@ -45,9 +45,8 @@ bool OnlineReplanner::is_over(const RunningMotion& running) const {
 
 SwitchPlanner OnlineReplanner::switch_planner() const {
   const auto& settings = parts_.settings;
-  return {parts_.arm.shared_robot(),
-          parts_.arm.group(),
-          {settings.live_slower(), settings.live_gain()}};
+  return {
+      parts_.arm.shared_robot(), parts_.arm.group(), {settings.live_slower, settings.live_gain}};
 }
 
 PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
@@ -62,7 +61,7 @@ PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
 
 Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, SwitchPoint& point) const {
   const ActiveTrajectory& active = parts_.now.active();
-  const double replan_time = parts_.settings.replan_time();
+  const double replan_time = parts_.settings.replan_time;
   if (active.trajectory != running.command ||
       active.rest.size() != static_cast<int>(parts_.arm.group().axes.size()))
     return Outcome::failure("the controller tells of another motion");
@@ -86,13 +85,13 @@ Routine<Outcome> OnlineReplanner::check(RunningMotion& running, const MotionSpec
   auto& path = parts_.clients.path;
   PathRequest request = path_request(parts_, start, motion);
   request.running = running.waypoints;
-  request.time_limit = parts_.settings.live_time();
+  request.time_limit = parts_.settings.live_time;
   ++counts_.checks;
   path.send(request);
   const auto has_come = [this, &path, &running] {
     return path.reply().has_value() || is_over(running);
   };
-  const bool has_path = co_await parts_.waiting.until(has_come, parts_.settings.replan_time());
+  const bool has_path = co_await parts_.waiting.until(has_come, parts_.settings.replan_time);
   if (!has_path || is_over(running)) co_return Outcome::failure("no path came in time");
   if (!path.reply()->solved) {
     ++counts_.refused;
@@ -113,9 +112,9 @@ Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec&
   const bool is_unchanged = outcome == PathOutcome::kept,
              is_only_cheaper = outcome == PathOutcome::improved;
   const std::vector<Vector> as_before =
-      remainder(running.waypoints, point.from.position, settings.live_reach());
+      remainder(running.waypoints, point.from.position, settings.live_reach);
   const bool is_compared =
-      is_only_cheaper || (is_unchanged && settings.live_pace() > 0 && !as_before.empty());
+      is_only_cheaper || (is_unchanged && settings.live_pace > 0 && !as_before.empty());
   if (is_compared)
     comparison.send(trajectory_request(parts_, comparison, as_before, start, motion));
   if (!is_unchanged) timing.send(trajectory_request(parts_, timing, waypoints, start, motion));
@@ -123,7 +122,7 @@ Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec&
     return ((is_unchanged || timing.reply()) && (!is_compared || comparison.reply())) ||
            is_over(running);
   };
-  const bool is_timed = co_await parts_.waiting.until(have_come, settings.replan_time());
+  const bool is_timed = co_await parts_.waiting.until(have_come, settings.replan_time);
   if (!is_timed || is_over(running)) co_return Outcome::failure("no trajectory came in time");
   if (is_unchanged) {
     ++counts_.unchanged;
@@ -134,7 +133,7 @@ Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec&
     }
     auto candidate = std::make_shared<SwitchCandidate>();
     candidate->onto = timing.reply()->trajectory;
-    candidate->max_reach = settings.live_reach();
+    candidate->max_reach = settings.live_reach;
     if (is_only_cheaper && comparison.reply()->solved)
       candidate->along = comparison.reply()->trajectory;
     const RunningMotion next{0, 0, waypoints, timing.reply()->speeds};
@@ -144,7 +143,7 @@ Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec&
     ++counts_.slower;
     if (!is_only_cheaper || is_over(running)) co_return switched;
   }
-  if (!is_compared || !comparison.reply()->solved || settings.live_pace() <= 0) co_return Outcome{};
+  if (!is_compared || !comparison.reply()->solved || settings.live_pace <= 0) co_return Outcome{};
   Outcome retimed = co_await retime(running, motion, point, as_before);
   if (retimed.good) ++counts_.retimed;
   co_return Outcome{};
@@ -162,7 +161,7 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   const SwitchPlanner planner = switch_planner();
   Switched along;
   along.trajectory = reply.trajectory;
-  for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach();
+  for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach;
        reach += kReachStep) {
     candidate->max_reach = reach;
     along = planner.join(point.from, reply.trajectory, *candidate);
@@ -170,7 +169,7 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   }
   if (!along.ok() || turns_back(along, reply.trajectory))
     co_return Outcome::failure("the arm is too fast to go over");
-  const double ratio = 1 - parts_.settings.live_pace();
+  const double ratio = 1 - parts_.settings.live_pace;
   if (!is_slower_ahead(running.speeds, reply.speeds, waypoints.size() - 1, ratio)) {
     const bool is_faster =
         is_slower_ahead(reply.speeds, running.speeds, waypoints.size() - 1, ratio);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/advised_period.hpp"
-#include "common/config/schema/manipulation_planner.pb.h"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/cost/human_cost.hpp"
 #include "components/manipulation_planner/motion/motion_spec.hpp"
 #include "components/manipulation_planner/motion/switch_planner.hpp"
@@ -31,10 +31,10 @@ struct ReplanCounts {
 class OnlineReplanner {
  public:
   /// `parts` must outlive what is made; it is used only when a motion runs.
-  OnlineReplanner(Parts& parts, const config::ManipulationPlannerSettings& settings,
+  OnlineReplanner(Parts& parts, const settings::ManipulationPlannerSettings& settings,
                   std::shared_ptr<HumanCost> cost)
       : parts_(parts),
-        period_(settings.live_period(), settings.live_max_period(), 0.0),
+        period_(settings.live_period, settings.live_max_period, 0.0),
         cost_(std::move(cost)) {}
 
   /// Takes the advised period [s] and gain of the saved cost; both hold for a moment only.

@@ -25,11 +25,11 @@ struct PlacingJob {
 };
 
 PlacingJob placing_job(Parts& parts) {
-  return {parts.arm.shared_robot(),     parts.worker.world(parts.arm.robot(), parts.now.objects()),
-          parts.now.objects(),          parts.now.scene(),
-          parts.now.people(),           parts.arm.group(),
-          parts.arm.fingers(),          parts.arm.palm(),
-          parts.settings.lift_height(), parts.arm.configuration()};
+  return {parts.arm.shared_robot(),   parts.worker.world(parts.arm.robot(), parts.now.objects()),
+          parts.now.objects(),        parts.now.scene(),
+          parts.now.people(),         parts.arm.group(),
+          parts.arm.fingers(),        parts.arm.palm(),
+          parts.settings.lift_height, parts.arm.configuration()};
 }
 
 void set_world(const PlacingJob& job) {

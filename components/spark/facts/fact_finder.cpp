@@ -35,7 +35,7 @@ double angle_to(const Person& person, const Vector3& p) {
 
 }  // namespace
 
-FactFinder::FactFinder(const config::SparkSettings& settings,
+FactFinder::FactFinder(const settings::SparkSettings& settings,
                        std::shared_ptr<const RobotModel> robot, ObjectLibrary objects)
     : settings_(settings),
       robot_(std::move(robot)),
@@ -43,7 +43,7 @@ FactFinder::FactFinder(const config::SparkSettings& settings,
       capsules_(robot_capsules(*robot_)),
       reach_(arm_reach(*robot_)),
       handover_(settings),
-      lasting_(settings.fact_dwell()),
+      lasting_(settings.fact_dwell),
       instant_(0) {}
 
 int FactFinder::zone_level(Zone& zone, double distance, TimePoint now) const {
@@ -55,9 +55,9 @@ int FactFinder::zone_level(Zone& zone, double distance, TimePoint now) const {
     return level;
   }
   const bool beyond =
-      distance > kZoneLimits[static_cast<std::size_t>(zone.level)] + settings_.zone_hysteresis();
+      distance > kZoneLimits[static_cast<std::size_t>(zone.level)] + settings_.zone_hysteresis;
   if (!beyond) zone.last_inside = now;
-  if (beyond && to_seconds(now - zone.last_inside) >= settings_.zone_dwell()) zone.level = level;
+  if (beyond && to_seconds(now - zone.last_inside) >= settings_.zone_dwell) zone.level = level;
   return zone.level;
 }
 
@@ -77,14 +77,14 @@ void FactFinder::robot_facts(const Scene& scene, const Person& person, const Rob
   const Separation gap = separation(capsules_, links_, scene.T_world_base, alone);
   const double approach = speed_toward(joint_of(person, "torso").position,
                                        joint_of(person, "torso").velocity, gap.on_robot);
-  const double limit = settings_.approach_speed();
+  const double limit = settings_.approach_speed;
   out.push_back({FactKind::approaching, person.id, "", approach, approach > limit,
                  approach > limit / kLoosely,
                  evidence("%.2f m/s toward the robot, %.2f m away", approach, gap.distance)});
   if (person.gaze_known) {
     const double angle = std::min(angle_to(person, robot.tool), angle_to(person, robot.body));
-    out.push_back({FactKind::attentive, person.id, "", angle, angle < settings_.attentive_angle(),
-                   angle < kLoosely * settings_.attentive_angle(),
+    out.push_back({FactKind::attentive, person.id, "", angle, angle < settings_.attentive_angle,
+                   angle < kLoosely * settings_.attentive_angle,
                    evidence("gaze %.0f degrees off the robot", degrees(angle))});
   }
   const int level = zone_level(zones_[person.id], gap.distance, now);
@@ -100,8 +100,7 @@ void FactFinder::gaze_facts(const Scene& scene, const HumanState& people, const 
     const double distance = (where - person.gaze_origin).norm();
     const double beside = angle_to(person, where) - std::atan2(radius, distance);
     out.push_back({FactKind::looking_at, person.id, at, std::max(0.0, beside),
-                   beside < settings_.looking_angle(),
-                   beside < kLoosely * settings_.looking_angle(),
+                   beside < settings_.looking_angle, beside < kLoosely * settings_.looking_angle,
                    evidence("gaze %.0f degrees beside it, %.1f m away",
                             degrees(std::max(0.0, beside)), distance)});
   };
@@ -115,16 +114,15 @@ void FactFinder::gaze_facts(const Scene& scene, const HumanState& people, const 
 void FactFinder::hand_facts(const Scene& scene, const Person& person,
                             std::vector<Candidate>& out) const {
   const double torso = joint_of(person, "torso").velocity.norm();
-  out.push_back({FactKind::moving, person.id, "", torso, torso > 2 * settings_.moving_speed(),
-                 torso > settings_.moving_speed(), evidence("body at %.2f m/s", torso)});
+  out.push_back({FactKind::moving, person.id, "", torso, torso > 2 * settings_.moving_speed,
+                 torso > settings_.moving_speed, evidence("body at %.2f m/s", torso)});
   for (const SceneObject& object : scene.objects) {
     double nearest = 1e9;
     for (const char* hand : {"l_hand", "r_hand"})
       nearest = std::min(
           nearest, (object.T_world_object.translation() - joint_of(person, hand).position).norm());
     out.push_back({FactKind::hand_near_object, person.id, object.id, nearest,
-                   nearest < settings_.near_distance(),
-                   nearest < kLoosely * settings_.near_distance(),
+                   nearest < settings_.near_distance, nearest < kLoosely * settings_.near_distance,
                    evidence("hand %.2f m from its middle", nearest)});
   }
 }
@@ -162,7 +160,7 @@ void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k,
     return within;
   };
   const bool nested = inside(a, ea, b, eb) | inside(b, eb, a, ea);
-  const double limit = settings_.next_distance();
+  const double limit = settings_.next_distance;
   out.push_back({FactKind::next_to, a.id, b.id, apart, !nested && apart < limit,
                  !nested && apart < kLoosely * limit, evidence("%.2f m apart", apart)});
 }
@@ -174,8 +172,8 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
     const Vector3 middle = extents_[i].box.center();
     const Vector3 where = object.T_world_object.translation();
     const double speed = object.velocity.norm();
-    out.push_back({FactKind::moving, object.id, "", speed, speed > settings_.moving_speed(),
-                   speed > settings_.moving_speed() / 2, evidence("at %.2f m/s", speed)});
+    out.push_back({FactKind::moving, object.id, "", speed, speed > settings_.moving_speed,
+                   speed > settings_.moving_speed / 2, evidence("at %.2f m/s", speed)});
     if (object.holder == Holder::surface)
       out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, true, true,
                      "its bottom on the top of " + object.holder_id});

@@ -10,7 +10,7 @@
 
 #include "common/base/time.hpp"
 #include "common/collision/collision_world.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/geometry/line_of_sight.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/arm_reach.hpp"
@@ -22,7 +22,7 @@ namespace handsel::spark {
 
 class FactFinder {
  public:
-  FactFinder(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
+  FactFinder(const settings::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
              ObjectLibrary objects);
 
   /// The facts that hold now, with how long they have held and what they rest on. Those of the
@@ -50,7 +50,7 @@ class FactFinder {
   Extent extent(const SceneObject& object) const;
   RobotPartner partner(const Scene& scene) const;
 
-  config::SparkSettings settings_;
+  settings::SparkSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   ObjectLibrary library_;
   std::vector<LinkCapsule> capsules_;

@@ -36,7 +36,7 @@ std::set<std::string> HandoverFacts::holders(const SceneObject& object) {
   const std::set<std::string>& before = holders_[object.id];
   for (const ObjectGrip& grip : object.grips)
     if (!grip.person.empty() &&
-        grip.force > (before.count(grip.person) ? settings_.grip_lost() : settings_.grip_force()))
+        grip.force > (before.count(grip.person) ? settings_.grip_lost : settings_.grip_force))
       now.insert(grip.person);
   if (object.grips.empty() && object.holder == Holder::human) now.insert(object.holder_id);
   if (object.grips.empty() && object.holder == Holder::robot) now.insert(kRobotName);
@@ -77,7 +77,7 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
       const Vector3& there = joint_of(other, "torso").position;
       const double to_them = held.dot(level(there - torso.position));
       if (other.id == giver.id || to_them < aim ||
-          (there - torso.position).norm() > settings_.offer_range())
+          (there - torso.position).norm() > settings_.offer_range)
         continue;
       partner = there;
       whom = other.id;
@@ -86,16 +86,16 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
     const double away = (partner - object.T_world_object.translation()).norm();
     const double toward = speed_toward(object.T_world_object.translation(),
                                        object.velocity - torso.velocity, partner);
-    const bool near = away < settings_.offer_range();
+    const bool near = away < settings_.offer_range;
     const bool goes_over = holders_[object.id].size() > 1 ||
                            std::any_of(released_.begin(), released_.end(),
                                        [&](const auto& r) { return r.first.first == object.id; });
-    const bool held_out = !goes_over && std::abs(toward) < settings_.offer_speed() &&
+    const bool held_out = !goes_over && std::abs(toward) < settings_.offer_speed &&
                           aim > kTowardPartner &&
                           stretch(giver, nearer_hand(giver, object.T_world_object.translation())) >
-                              settings_.stretched();
-    const bool begins = near && (toward > settings_.offer_speed() || held_out);
-    const bool back = toward < -settings_.offer_speed();
+                              settings_.stretched;
+    const bool begins = near && (toward > settings_.offer_speed || held_out);
+    const bool back = toward < -settings_.offer_speed;
     const Pair pair{giver.id, object.id};
     const std::string seen =
         evidence("toward %.40s at %.2f m/s, %.2f m away", whom.c_str(), toward, away);
@@ -126,14 +126,14 @@ void HandoverFacts::reached_for(const Person& person, const std::string& target,
   }
   const Pair pair{person.id, target};
   if (toward > -1e9)
-    out.push_back({FactKind::reaching, person.id, target, toward, toward > settings_.reach_speed(),
-                   toward > settings_.reach_speed() / 3,
+    out.push_back({FactKind::reaching, person.id, target, toward, toward > settings_.reach_speed,
+                   toward > settings_.reach_speed / 3,
                    evidence("hand at %.2f m/s, %.2f m away", toward, distance)});
-  if (toward > settings_.reach_speed())
+  if (toward > settings_.reach_speed)
     reaching_[pair] = now;
   else if (const auto reached = reaching_.find(pair);
-           reached != reaching_.end() && back < -settings_.reach_speed()) {
-    if (to_seconds(now - reached->second) < settings_.memory())
+           reached != reaching_.end() && back < -settings_.reach_speed) {
+    if (to_seconds(now - reached->second) < settings_.memory)
       withdrawn_[pair] = {now, evidence("hand back at %.2f m/s", -back)};
     reaching_.erase(reached);
   }
@@ -155,8 +155,8 @@ void HandoverFacts::waited_for(const Person& person, const Scene& scene,
     const std::set<std::string>& hold = holders_[object.id];
     const double distance = (object.T_world_object.translation() - hand).norm();
     if (hold.empty() || hold.count(person.id) || distance > arm_length(person)) continue;
-    const bool waits = most > settings_.stretched() && speed < settings_.reach_speed();
-    const bool still = most > 0.9 * settings_.stretched() && speed < 3 * settings_.reach_speed();
+    const bool waits = most > settings_.stretched && speed < settings_.reach_speed;
+    const bool still = most > 0.9 * settings_.stretched && speed < 3 * settings_.reach_speed;
     out.push_back({FactKind::waiting_to_receive, person.id, object.id, distance, waits, still,
                    evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s", 100 * most,
                             distance, speed)});
@@ -171,7 +171,7 @@ void HandoverFacts::forget(const Scene& scene, const HumanState& people, TimePoi
   std::erase_if(holders_, [&](const auto& entry) { return !there.contains(entry.first); });
   for (const Person& person : people.people) there.insert(person.id);
   const auto over = [&](const auto& entry) {
-    return to_seconds(now - entry.second) > settings_.memory() &&
+    return to_seconds(now - entry.second) > settings_.memory &&
            (!there.contains(entry.first.first) || !there.contains(entry.first.second));
   };
   std::erase_if(offering_, over);
@@ -196,8 +196,8 @@ void HandoverFacts::find(const Scene& scene, const HumanState& people, const Rob
     waited_for(person, scene, out);
   }
   const auto tell = [&](FactKind kind, std::map<Pair, Moment>& moments) {
-    std::erase_if(
-        moments, [&](const auto& m) { return to_seconds(now - m.second.at) > settings_.memory(); });
+    std::erase_if(moments,
+                  [&](const auto& m) { return to_seconds(now - m.second.at) > settings_.memory; });
     for (const auto& [pair, moment] : moments)
       out.push_back({kind, pair.first, pair.second, 1, true, true, moment.evidence});
   };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
 #include "components/spark/facts/fact_memory.hpp"
 
@@ -22,7 +22,7 @@ struct RobotPartner {
 
 class HandoverFacts {
  public:
-  explicit HandoverFacts(const config::SparkSettings& settings) : settings_(settings) {}
+  explicit HandoverFacts(const settings::SparkSettings& settings) : settings_(settings) {}
 
   /// Adds the candidates of this sample. An object with force sensors is held by everybody whose
   /// grip exceeds `grip_force` until it falls below `grip_lost`, so that both have it during the
@@ -45,7 +45,7 @@ class HandoverFacts {
   void forget(const Scene& scene, const HumanState& people, TimePoint now);
   void waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out);
 
-  config::SparkSettings settings_;
+  settings::SparkSettings settings_;
   std::map<std::string, std::set<std::string>> holders_;  // of each object
   // object and its last holder; person and what they withdrew from
   std::map<Pair, Moment> released_, withdrawn_;

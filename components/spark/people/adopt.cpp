@@ -21,11 +21,11 @@ Track* PeopleTracker::same_as(const Person& lost) {
   for (const BodyJoint& joint : lost.joints)
     body.joints.push_back({joint.name, joint.position, 1.0});
   Track* nearest = nullptr;
-  double min_distance = settings_.association_distance();
+  double min_distance = settings_.association_distance;
   for (Track& track : tracks_) {
     if (track.person.joints.empty()) continue;
     const double away = distance(track, body);
-    const double walked = settings_.association_distance() + settings_.lost_speed() * lost.age;
+    const double walked = settings_.association_distance + settings_.lost_speed * lost.age;
     if (track.person.id == lost.id && away <= walked) return &track;
     const bool taken =
         track.adopted || std::any_of(tracks_.begin(), tracks_.end(),

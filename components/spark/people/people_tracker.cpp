@@ -60,8 +60,8 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation,
       const auto known = track.bodies.find(observation.source);
       const bool same_id = known != track.bodies.end() && known->second == body.body;
       const double gap = std::max(0.0, track.age(seen));
-      const double reach = settings_.association_distance() +
-                           settings_.lost_speed() * (same_id ? gap : std::min(gap, kPause));
+      const double reach = settings_.association_distance +
+                           settings_.lost_speed * (same_id ? gap : std::min(gap, kPause));
       if ((middle - position(track.person, kTorso)).head<2>().norm() > reach + kWidest) continue;
       const double d = distance(track, body);
       if (d <= reach)
@@ -92,14 +92,14 @@ void PeopleTracker::add(const ObservedPerson& body, const std::string& source, T
   update(fresh, body, seen, 0, settings_);
   if (fresh.person.joints.empty()) return;
   fresh.came_in = from != sources_.end() &&
-                  at_boundary(from->second, position(fresh.person, kTorso), settings_.edge());
+                  at_boundary(from->second, position(fresh.person, kTorso), settings_.edge);
   tracks_.push_back(std::move(fresh));
 }
 
 /// Whether a person anywhere in the grown volume would show head or chest to a source.
 bool PeopleTracker::seen_empty(const Track& track, TimePoint now,
                                const Obstacles& obstacles) const {
-  const double radius = settings_.lost_speed() * track.age(now);
+  const double radius = settings_.lost_speed * track.age(now);
   if (radius > kFarthest) return false;
   const auto shows = [&](const Vector3& shift) {
     return std::any_of(sources_.begin(), sources_.end(), [&](const auto& entry) {
@@ -132,16 +132,16 @@ void PeopleTracker::confine(Track& track, TimePoint now) const {
     // gap stands for the time before.
     const bool observed_on =
         source.unbroken <= track.seen ||
-        (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after());
+        (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after);
     const bool watched = recent(source, now) && source.seen > track.seen && observed_on;
-    if (watched && at_boundary(source, position(track.person, kTorso), settings_.edge()))
+    if (watched && at_boundary(source, position(track.person, kTorso), settings_.edge))
       track.left_by = name, track.confined = source.seen;
   }
   const auto found = sources_.find(track.left_by);
   if (found == sources_.end()) return;
   const Source& source = found->second;
   if (source.unbroken <= track.confined ||
-      to_seconds(source.seen - source.unbroken) >= settings_.empty_after())
+      to_seconds(source.seen - source.unbroken) >= settings_.empty_after)
     track.confined = std::max(track.confined, source.seen);
 }
 
@@ -149,7 +149,7 @@ void PeopleTracker::confine(Track& track, TimePoint now) const {
 /// id.
 Track* PeopleTracker::successor(const Track& gone, TimePoint now) {
   Track* out = nullptr;
-  const double walked = settings_.association_distance() + settings_.lost_speed() * gone.age(now);
+  const double walked = settings_.association_distance + settings_.lost_speed * gone.age(now);
   double nearest = std::numeric_limits<double>::infinity();
   for (Track& other : tracks_) {
     const double d = (position(other.person, kTorso) - position(gone.person, kTorso)).norm();
@@ -168,10 +168,10 @@ Track* PeopleTracker::successor(const Track& gone, TimePoint now) {
 
 /// Returns the person who came in over a boundary since, as near as the one who left may have come.
 Track* PeopleTracker::re_entered(const Track& gone, TimePoint now) {
-  if (gone.left_by.empty() || gone.age(now) <= settings_.doubt_time()) return nullptr;
+  if (gone.left_by.empty() || gone.age(now) <= settings_.doubt_time) return nullptr;
   Track* other = successor(gone, now);
   if (other == nullptr || !other->came_in) return nullptr;
-  const double walked = settings_.association_distance() + settings_.lost_speed() * gone.age(now);
+  const double walked = settings_.association_distance + settings_.lost_speed * gone.age(now);
   return (position(other->person, kTorso) - position(gone.person, kTorso)).norm() <= walked
              ? other
              : nullptr;
@@ -188,12 +188,12 @@ void PeopleTracker::erase(std::size_t index, Track* name_goes_to) {
 void PeopleTracker::forget(TimePoint now, const Obstacles& obstacles) {
   for (std::size_t i = tracks_.size(); i-- > 0;) {
     Track& track = tracks_[i];
-    if (track.age(now) <= settings_.lost_after()) continue;
+    if (track.age(now) <= settings_.lost_after) continue;
     confine(track, now);
     const bool empty = seen_empty(track, now, obstacles);
     if (!empty) track.empty_since.reset();
     if (empty && !track.empty_since) track.empty_since = now;
-    if (empty && to_seconds(now - *track.empty_since) >= settings_.empty_after())
+    if (empty && to_seconds(now - *track.empty_since) >= settings_.empty_after)
       erase(i, successor(track, now));
     else if (Track* other = re_entered(track, now))
       erase(i, other);
@@ -234,7 +234,7 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
   source.latency = latency;
   const bool moved = source.coverage.low != observation.coverage.low ||
                      source.coverage.high != observation.coverage.high;
-  if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory())
+  if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory)
     source.unbroken = seen;
   source.coverage = observation.coverage;
   source.seen = seen;
@@ -263,7 +263,7 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
 
 std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
   return std::erase_if(tracks_, [&](const Track& track) {
-    return track.age(now) > settings_.lost_after() && (id.empty() || track.person.id == id);
+    return track.age(now) > settings_.lost_after && (id.empty() || track.person.id == id);
   });
 }
 
@@ -271,11 +271,11 @@ std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
 double PeopleTracker::inflation(const Track& track, TimePoint now) const {
   double out = 0;
   const double unseen = std::max(0.0, track.age(now));
-  if (unseen > settings_.lost_after()) {
-    out = std::min(kMaxInflation, settings_.lost_speed() * unseen);
+  if (unseen > settings_.lost_after) {
+    out = std::min(kMaxInflation, settings_.lost_speed * unseen);
     if (!track.left_by.empty())
-      out = std::min(out, settings_.edge() + settings_.lost_speed() *
-                                                 std::max(0.0, to_seconds(now - track.confined)));
+      out = std::min(out, settings_.edge + settings_.lost_speed *
+                                               std::max(0.0, to_seconds(now - track.confined)));
   }
   return now < track.doubted_until ? std::max(out, track.doubt) : out;
 }
@@ -309,15 +309,15 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
     Person person = track.person;
     person.age = std::max(0.0, track.age(now));
     person.gaze_known =
-        track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory();
+        track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory;
     person.inflation = inflation(track, now);
-    if (person.age <= settings_.lost_after()) person.hands = hands_ahead(track, person, now);
+    if (person.age <= settings_.lost_after) person.hands = hands_ahead(track, person, now);
     out.people.push_back(std::move(person));
   }
   std::vector<Coverage> observed;
   for (const auto& [name, source] : sources_)
     if (live(source, now)) observed.push_back(source.coverage);
-  out.views = views_of(sources_, now, settings_.max_view_age());
+  out.views = views_of(sources_, now, settings_.max_view_age);
   out.covered = covers(observed, reach);
   const LeftOut left_out = spark::keep_nearest(out.people, quotas_of(settings_).people, reach);
   out.left_out = left_out.count;
@@ -329,7 +329,7 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
 std::string PeopleTracker::trouble(TimePoint now) const {
   std::string out;
   for (const auto& [name, source] : sources_) {
-    const std::string why = why_not_active(source, now, settings_.max_view_age());
+    const std::string why = why_not_active(source, now, settings_.max_view_age);
     if (!why.empty()) out += (out.empty() ? "source " : "; source ") + name + " " + why;
   }
   return out;

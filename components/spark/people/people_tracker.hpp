@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
 #include "components/spark/people/track.hpp"
 #include "components/spark/quotas.hpp"
@@ -34,7 +34,7 @@ namespace handsel::spark {
 class PeopleTracker {
  public:
   /// `eyes`: viewpoint of each source, by name [m]; without, a source sees all of its coverage.
-  explicit PeopleTracker(const config::SparkSettings& settings,
+  explicit PeopleTracker(const settings::SparkSettings& settings,
                          std::map<std::string, Vector3> eyes = {})
       : settings_(settings), eyes_(std::move(eyes)) {}
 
@@ -73,10 +73,10 @@ class PeopleTracker {
   bool room_for_source(TimePoint seen);
   Source* find_source(const HumanObservation& observation, TimePoint seen);
   bool live(const Source& source, TimePoint now) const {
-    return source.age(now) <= settings_.max_view_age();
+    return source.age(now) <= settings_.max_view_age;
   }
   bool recent(const Source& source, TimePoint now) const {
-    return to_seconds(now - source.seen) <= settings_.coverage_memory();
+    return to_seconds(now - source.seen) <= settings_.coverage_memory;
   }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
   void confine(Track& track, TimePoint now) const;
@@ -87,7 +87,7 @@ class PeopleTracker {
   void add(const ObservedPerson& body, const std::string& source, TimePoint seen);
   void forget(TimePoint now, const Obstacles& obstacles);
 
-  config::SparkSettings settings_;
+  settings::SparkSettings settings_;
   std::map<std::string, Vector3> eyes_;
   std::vector<Track> tracks_;
   std::map<std::string, Source> sources_;

@@ -36,9 +36,9 @@ const Vector3& joint_position(const Person& person, int joint) {
 }
 
 /// Returns the height of the person's profile [m]; 0: there is none.
-double height(const config::SparkSettings& settings, const std::string& id) {
-  for (const config::PersonProfile& one : settings.people())
-    if (one.id() == id) return one.height();
+double height(const settings::SparkSettings& settings, const std::string& id) {
+  for (const settings::PersonProfile& one : settings.people)
+    if (one.id == id) return one.height;
   return 0;
 }
 
@@ -113,7 +113,7 @@ double distance(const Track& track, const ObservedPerson& body) {
 }
 
 void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump,
-            const config::SparkSettings& settings) {
+            const settings::SparkSettings& settings) {
   if (body.has_gaze && (!track.gaze_seen || seen >= *track.gaze_seen)) {
     track.person.gaze_origin = body.gaze_origin;
     track.person.gaze_direction = body.gaze_direction;
@@ -159,18 +159,18 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   guess_unseen(track, fitted);
   std::array<double, kJoints> noise{};
   for (std::size_t i = 0; i < kJoints; ++i)
-    noise[i] = lately[i] ? 0.0 : settings.joint_noise() * (sighted[i] ? 1.0 : kGuessed);
+    noise[i] = lately[i] ? 0.0 : settings.joint_noise * (sighted[i] ? 1.0 : kGuessed);
   track.motion.update(fitted, noise, at);
   const auto doubt = [&](double by, double time) {
     track.doubt = seen < track.doubted_until ? track.doubt + by : by;
     track.doubted_until = std::max(track.doubted_until, seen + from_seconds(time));
   };
-  if (known && dt > settings.lost_after())
-    doubt(settings.lost_speed() * dt + jump, kConfirmed);
+  if (known && dt > settings.lost_after)
+    doubt(settings.lost_speed * dt + jump, kConfirmed);
   else if (known && jump > kFastest * (dt + behind) + kSettled)
-    doubt(jump, settings.doubt_time());
+    doubt(jump, settings.doubt_time);
   person.joints = std::move(fitted);
-  follow_hands(track, sighted, at, settings.joint_noise());
+  follow_hands(track, sighted, at, settings.joint_noise);
   track.seen = at;
   track.empty_since.reset();
   track.left_by.clear();

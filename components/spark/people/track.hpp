@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/human/human_body.hpp"
 #include "components/spark/people/body_motion.hpp"
@@ -50,7 +50,7 @@ double distance(const Track& track, const ObservedPerson& body);
 /// Merges an observed body, captured at `seen`, into the track. `jump`: distance of the body from
 /// the track [m]; one too far for a person inflates the track for some time.
 void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump,
-            const config::SparkSettings& settings);
+            const settings::SparkSettings& settings);
 
 /// Returns where the hands of the track will be. `person`: the person of the track as of `now`,
 /// whose inflation widens the volumes.

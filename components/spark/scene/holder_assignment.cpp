@@ -45,7 +45,7 @@ void HolderAssignment::attribute_grips(ObjectTrack& track) const {
   track.object.grips.clear();
   for (const ObservedGrip& felt : track.grips) {
     ObjectGrip grip{"", felt.force};
-    double nearest = in_.settings.grip_distance();
+    double nearest = in_.settings.grip_distance;
     const auto claim = [&](const std::string& person, const Vector3& hand) {
       const double distance = (hand - felt.position).norm();
       if (distance >= nearest) return;
@@ -68,10 +68,10 @@ bool HolderAssignment::keep_gripped(SceneObject& object) const {
   const std::string now = object.holder == Holder::robot ? kRobotName : object.holder_id;
   for (const ObjectGrip& grip : object.grips) {
     if (grip.person.empty()) continue;
-    const bool keeps = object.holder >= Holder::robot && grip.person == now &&
-                       grip.force > in_.settings.grip_lost();
+    const bool keeps =
+        object.holder >= Holder::robot && grip.person == now && grip.force > in_.settings.grip_lost;
     if (keeps) return true;
-    if (grip.force > in_.settings.grip_force() &&
+    if (grip.force > in_.settings.grip_force &&
         (strongest == nullptr || grip.force > strongest->force))
       strongest = &grip;
   }
@@ -120,7 +120,7 @@ void HolderAssignment::assign(ObjectTrack& track) const {
     track.T_palm_object = in_.robot.hands()[*by].T_world_palm.inverse() * object.T_world_object;
   }
   if (const SceneBox* box =
-          support_under(object, robot_may ? kClearOfSupport : in_.settings.support_gap())) {
+          support_under(object, robot_may ? kClearOfSupport : in_.settings.support_gap)) {
     object.holder = Holder::surface;
     object.holder_id = box->id;
     return;
@@ -130,7 +130,7 @@ void HolderAssignment::assign(ObjectTrack& track) const {
     object.holder_id = in_.robot.hands()[*by].name;
     return;
   }
-  double nearest = in_.settings.near_distance();
+  double nearest = in_.settings.near_distance;
   for (const auto& person : in_.people.people) {
     if (!object.grips.empty()) break;  // nobody grips it
     for (const char* hand : {"l_hand", "r_hand"}) {
@@ -142,9 +142,9 @@ void HolderAssignment::assign(ObjectTrack& track) const {
       object.holder_id = person.id;
     }
   }
-  const bool human_went = object.holder == Holder::human && nearest >= in_.settings.near_distance();
+  const bool human_went = object.holder == Holder::human && nearest >= in_.settings.near_distance;
   const bool robot_went = object.holder == Holder::robot || object.holder == Holder::surface;
-  if (nearest >= in_.settings.near_distance() && (human_went || robot_went)) {
+  if (nearest >= in_.settings.near_distance && (human_went || robot_went)) {
     object.holder = Holder::nobody;
     object.holder_id.clear();
   }

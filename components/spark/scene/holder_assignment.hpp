@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/collision/collision_world.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
 #include "components/spark/scene/object_track.hpp"
 #include "components/spark/scene/robot_placement.hpp"
@@ -19,11 +19,11 @@ class HolderAssignment {
  public:
   /// What the holders are decided from.
   struct Inputs {
-    const config::SparkSettings& settings;  ///< distances and forces
-    const ObjectLibrary& library;           ///< described models
-    const std::vector<SceneBox>& boxes;     ///< fixed boxes
-    const RobotPlacement& robot;            ///< located
-    const HumanState& people;               ///< as of now
+    const settings::SparkSettings& settings;  ///< distances and forces
+    const ObjectLibrary& library;             ///< described models
+    const std::vector<SceneBox>& boxes;       ///< fixed boxes
+    const RobotPlacement& robot;              ///< located
+    const HumanState& people;                 ///< as of now
   };
   explicit HolderAssignment(const Inputs& inputs) : in_(inputs) {}
 

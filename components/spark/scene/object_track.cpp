@@ -122,22 +122,22 @@ void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint se
 }
 
 void mislay(ObjectTrack& track, const HumanState& people, TimePoint now,
-            const config::SparkSettings& settings) {
-  const double unseen = to_seconds(now - track.seen) - settings.unseen_after();
+            const settings::SparkSettings& settings) {
+  const double unseen = to_seconds(now - track.seen) - settings.unseen_after;
   const double since = std::clamp(to_seconds(now - track.evaluated), 0.0, std::max(0.0, unseen));
   track.evaluated = now;
   SceneObject& object = track.object;
   if (object.holder == Holder::robot) track.wandered = 0;
-  double speed = object.holder == Holder::robot ? 0 : settings.unseen_drift(), with = 0;
+  double speed = object.holder == Holder::robot ? 0 : settings.unseen_drift, with = 0;
   for (const Person& person : people.people) {
     if (object.holder == Holder::human && object.holder_id == person.id) with = person.inflation;
     for (const char* hand : {"l_hand", "r_hand"})
       if ((joint_of(person, hand).position - object.T_world_object.translation()).norm() <
-              2 * settings.near_distance() + person.inflation &&
+              2 * settings.near_distance + person.inflation &&
           object.holder != Holder::robot)
-        speed = settings.touched_drift();
+        speed = settings.touched_drift;
   }
-  track.wandered = std::min(track.wandered + since * speed, settings.unseen_most());
+  track.wandered = std::min(track.wandered + since * speed, settings.unseen_most);
   object.uncertainty = track.wandered + with;
   if (now < track.spread_until) object.uncertainty += track.spread;
   if (now < track.jump_until) object.uncertainty = std::max(object.uncertainty, track.jump);

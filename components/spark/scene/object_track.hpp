@@ -9,7 +9,7 @@
 
 #include "common/base/time.hpp"
 #include "common/collision/collision_world.hpp"
-#include "common/config/schema/spark.pb.h"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/world.hpp"
 
@@ -61,6 +61,6 @@ void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint se
 /// Computes the uncertainty from the distance that the object may have moved unseen; with a person
 /// no farther than that person may have gone.
 void mislay(ObjectTrack& track, const HumanState& people, TimePoint now,
-            const config::SparkSettings& settings);
+            const settings::SparkSettings& settings);
 
 }  // namespace handsel::spark

@@ -6,8 +6,8 @@
 namespace handsel::supervisor {
 
 void Permission::on(const ComponentHealth& health, TimePoint arrival) {
-  if (std::find(settings_.required().begin(), settings_.required().end(), health.component) ==
-      settings_.required().end())
+  if (std::find(settings_.required.begin(), settings_.required.end(), health.component) ==
+      settings_.required.end())
     return;
   if (health.state == HealthState::ok || health.state == HealthState::degraded)
     alive_[health.component] = arrival;
@@ -23,9 +23,9 @@ void Permission::on(const ExecutionStatus& status, TimePoint) {
 
 void Permission::find_missing(TimePoint now) {
   missing_.clear();
-  for (const auto& component : settings_.required()) {
+  for (const auto& component : settings_.required) {
     const auto it = alive_.find(component);
-    if (it == alive_.end() || to_seconds(now - it->second) > settings_.health_timeout())
+    if (it == alive_.end() || to_seconds(now - it->second) > settings_.health_timeout)
       missing_.push_back(component);
   }
 }
@@ -106,7 +106,7 @@ const Go& Permission::step(const PermissionState& state, TimePoint now) {
       waits && state.stored && (status_.causes & ~kPermission) == 0 && acknowledged;
   if (now_clear && !clear_) clear_since_ = now;
   clear_ = now_clear;
-  if (clear_ && to_seconds(now - clear_since_) >= settings_.resume_delay()) grant(fault);
+  if (clear_ && to_seconds(now - clear_since_) >= settings_.resume_delay) grant(fault);
   return go_;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/supervisor.pb.h"
+#include "common/config/settings/supervisor.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
@@ -29,7 +29,7 @@ struct PermissionState {
 /// is suspended, and, once the running trajectory has ended, when a required component is gone.
 class Permission {
  public:
-  explicit Permission(const config::SupervisorSettings& settings) : settings_(settings) {}
+  explicit Permission(const settings::SupervisorSettings& settings) : settings_(settings) {}
 
   /// Notes that a required component is alive (ok, degraded) or gone (stopping).
   void on(const ComponentHealth& health, TimePoint arrival);
@@ -63,7 +63,7 @@ class Permission {
   void acknowledge_drives();
   void grant(bool fault);
 
-  config::SupervisorSettings settings_;
+  settings::SupervisorSettings settings_;
   std::map<std::string, TimePoint> alive_;
   std::vector<std::string> missing_;
   bool status_known_{false}, first_status_{false}, suspended_{false};

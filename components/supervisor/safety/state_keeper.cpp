@@ -2,10 +2,10 @@
 
 namespace handsel::supervisor {
 
-StateKeeper::StateKeeper(const config::SupervisorSettings& settings, std::uint64_t stored)
-    : lost_period_(settings.lost_period()),
-      store_retry_(settings.store_retry()),
-      safety_period_(settings.safety_period()),
+StateKeeper::StateKeeper(const settings::SupervisorSettings& settings, std::uint64_t stored)
+    : lost_period_(settings.lost_period),
+      store_retry_(settings.store_retry),
+      safety_period_(settings.safety_period),
       stored_(stored) {}
 
 void StateKeeper::on_stored(std::uint64_t revision) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/schema/supervisor.pb.h"
+#include "common/config/settings/supervisor.hpp"
 #include "common/messages/task.hpp"
 #include "components/supervisor/safety/lost_people.hpp"
 #include "components/supervisor/safety/safety_latches.hpp"
@@ -25,7 +25,7 @@ struct StateOutput {
 class StateKeeper {
  public:
   /// `stored`: revision that the store holds at the start.
-  StateKeeper(const config::SupervisorSettings& settings, std::uint64_t stored);
+  StateKeeper(const settings::SupervisorSettings& settings, std::uint64_t stored);
 
   /// The state of this revision has been stored.
   void on_stored(std::uint64_t revision);

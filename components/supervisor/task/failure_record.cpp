@@ -6,21 +6,25 @@
 
 namespace handsel::supervisor {
 
-static_assert(static_cast<int>(ActionFailure::cancelled) == config::FailureRule::CANCELLED);
+using Rule = settings::FailureRule;
 
-const config::FailureRule* FailureRecord::rule(ActionKind kind, ActionFailure failure) const {
-  const auto& rules = settings_.failures();
-  const auto found = std::find_if(rules.begin(), rules.end(), [&](const config::FailureRule& r) {
-    const bool of_failure = r.failure() == 0 || r.failure() == static_cast<int>(failure);
-    return of_failure && (r.kind().empty() || r.kind() == name(kind));
+static_assert(static_cast<int>(ActionFailure::cancelled) ==
+              static_cast<int>(Rule::Failure::cancelled));
+
+const settings::FailureRule* FailureRecord::rule(ActionKind kind, ActionFailure failure) const {
+  const auto& rules = settings_.failures;
+  const auto found = std::find_if(rules.begin(), rules.end(), [&](const settings::FailureRule& r) {
+    const bool of_failure =
+        r.failure == Rule::Failure::any || static_cast<int>(r.failure) == static_cast<int>(failure);
+    return of_failure && (r.kind.empty() || r.kind == name(kind));
   });
   return found != rules.end() ? &*found : nullptr;
 }
 
-bool FailureRecord::retry(const config::FailureRule* rule, const std::string& action) {
-  if (rule == nullptr || rule->then() != config::FailureRule::AGAIN) return false;
+bool FailureRecord::retry(const settings::FailureRule* rule, const std::string& action) {
+  if (rule == nullptr || rule->then != Rule::Answer::again) return false;
   std::uint32_t& tries = tries_[action];
-  if (tries >= rule->tries()) return false;
+  if (tries >= rule->tries) return false;
   ++tries;
   return true;
 }

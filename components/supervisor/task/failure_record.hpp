@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "common/config/schema/supervisor.pb.h"
+#include "common/config/settings/supervisor.hpp"
 #include "common/messages/task.hpp"
 
 namespace handsel::supervisor {
@@ -15,12 +15,12 @@ namespace handsel::supervisor {
 class FailureRecord {
  public:
   /// `settings` must outlive this object.
-  explicit FailureRecord(const config::SupervisorSettings& settings) : settings_(settings) {}
+  explicit FailureRecord(const settings::SupervisorSettings& settings) : settings_(settings) {}
 
   /// Returns the first rule for this failure of an action; nullptr: none.
-  const config::FailureRule* rule(ActionKind kind, ActionFailure failure) const;
+  const settings::FailureRule* rule(ActionKind kind, ActionFailure failure) const;
   /// Returns whether the rule allows another attempt at the action, and counts the attempt.
-  bool retry(const config::FailureRule* rule, const std::string& action);
+  bool retry(const settings::FailureRule* rule, const std::string& action);
   /// Remembers the first action that failed for good.
   void note(const std::string& action, const std::string& reason);
   /// The first action that failed for good, with its reason; empty: none.
@@ -33,10 +33,10 @@ class FailureRecord {
   /// Why the task was given up; empty: it was not.
   const std::string& reason() const { return given_up_; }
   /// Counts an action of the recovery that failed. Returns whether others may be tried.
-  bool may_recover_otherwise() { return ++failed_recoveries_ <= settings_.max_recoveries(); }
+  bool may_recover_otherwise() { return ++failed_recoveries_ <= settings_.max_recoveries; }
 
  private:
-  const config::SupervisorSettings& settings_;
+  const settings::SupervisorSettings& settings_;
   std::map<std::string, std::uint32_t> tries_;
   std::string given_up_;
   std::string first_;

@@ -4,7 +4,7 @@
 
 namespace handsel::supervisor {
 
-PlanningProblem::PlanningProblem(const config::SupervisorSettings& settings, const Domain& domain,
+PlanningProblem::PlanningProblem(const settings::SupervisorSettings& settings, const Domain& domain,
                                  Situation& situation, const TaskGoal& goal)
     : settings_(settings),
       domain_(domain),
@@ -25,7 +25,7 @@ Plan PlanningProblem::plan(int task, const std::vector<std::string>& args,
                            const State& state) const {
   World world = situation_.world();
   world.state = state;
-  const PlanLimits limits{settings_.plan_nodes(), settings_.plan_depth()};
+  const PlanLimits limits{settings_.plan_nodes, settings_.plan_depth};
   return make_plan(domain_, world, task, args, forbidden_, limits);
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/schema/supervisor.pb.h"
+#include "common/config/settings/supervisor.hpp"
 #include "components/supervisor/situation.hpp"
 #include "components/supervisor/task/htn.hpp"
 #include "components/supervisor/task/task_planner.hpp"
@@ -18,7 +18,7 @@ namespace handsel::supervisor {
 class PlanningProblem {
  public:
   /// `settings`, `domain` and `situation` must outlive this object.
-  PlanningProblem(const config::SupervisorSettings& settings, const Domain& domain,
+  PlanningProblem(const settings::SupervisorSettings& settings, const Domain& domain,
                   Situation& situation, const TaskGoal& goal);
 
   /// Goal of the task.
@@ -59,7 +59,7 @@ class PlanningProblem {
  private:
   Plan plan(int task, const std::vector<std::string>& args, const State& state) const;
 
-  const config::SupervisorSettings& settings_;
+  const settings::SupervisorSettings& settings_;
   const Domain& domain_;
   Situation& situation_;
   TaskGoal goal_;

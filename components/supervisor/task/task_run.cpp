@@ -30,13 +30,13 @@ std::string object_of(const PlannedAction& action, Situation& situation) {
 
 }  // namespace
 
-TaskRun::TaskRun(const config::SupervisorSettings& settings, const Domain& domain,
+TaskRun::TaskRun(const settings::SupervisorSettings& settings, const Domain& domain,
                  Situation& situation, const TaskGoal& goal, TimePoint now)
     : settings_(settings),
       situation_(situation),
       problem_(settings, domain, situation, normal(goal)),
-      effects_(domain, settings.effect_timeout()),
-      dispatch_(settings.goal_retry()),
+      effects_(domain, settings.effect_timeout),
+      dispatch_(settings.goal_retry),
       failures_(settings),
       accepted_(now) {
   status_.id = goal.id;
@@ -71,7 +71,7 @@ TaskRun::Start TaskRun::start(TimePoint now) {
   const TaskGoal& goal = problem_.goal();
   TaskQuery query = problem_.resolve(goal);
   status_.reason = query.reason;
-  const bool young = situation_.known_for(now) < settings_.sight_timeout();
+  const bool young = situation_.known_for(now) < settings_.sight_timeout;
   const bool person = !query.unseen.empty() && query.unseen == goal.human;
   if (person && situation_.met(goal.human)) query.needs_person = true;
   problem_.set_query(query);
@@ -111,7 +111,7 @@ Plan TaskRun::plan_from(const State& state) const {
 }
 
 bool TaskRun::replan(TimePoint now) {
-  if (++replans_ > settings_.max_replans()) return false;
+  if (++replans_ > settings_.max_replans) return false;
   if (!failures_.recovering()) {
     const TaskQuery query = problem_.resolve(problem_.goal());
     if (query.reason.empty()) problem_.set_query(query);
@@ -150,7 +150,7 @@ void TaskRun::search(TimePoint now, TaskWishes& wishes) {
     return;
   }
   const bool person = query.needs_person || query.unseen == problem_.goal().human;
-  if (person && to_seconds(now - accepted_) < settings_.person_timeout()) return;
+  if (person && to_seconds(now - accepted_) < settings_.person_timeout) return;
   wishes.changed = true;
   finish(TaskState::failed,
          query.needs_person ? "nobody is in sight to " + problem_.text() : query.reason);
@@ -159,7 +159,7 @@ void TaskRun::search(TimePoint now, TaskWishes& wishes) {
 /// A required component that stays away ends the task, unless an action runs that may end without
 /// it.
 bool TaskRun::is_stranded(TimePoint now, const std::vector<std::string>& missing) {
-  const bool long_missing = missing_.lasts(!missing.empty(), now, settings_.missing_timeout());
+  const bool long_missing = missing_.lasts(!missing.empty(), now, settings_.missing_timeout);
   return long_missing && (dispatch_.state() == ActionDispatch::State::idle ||
                           std::find(missing.begin(), missing.end(), kRunsActions) != missing.end());
 }
@@ -169,7 +169,7 @@ void TaskRun::step(TimePoint now, const std::vector<std::string>& missing, std::
   if (over() || status_.state == TaskState::paused || !situation_.known()) return;
   if (is_stranded(now, missing)) {
     wishes.changed = true;
-    const std::string timeout = std::to_string(std::lround(settings_.missing_timeout())) + " s";
+    const std::string timeout = std::to_string(std::lround(settings_.missing_timeout)) + " s";
     return finish(TaskState::failed, missing.front() + " has not been there for " + timeout);
   }
   if (stage_ == Stage::searching) return search(now, wishes);
@@ -186,7 +186,7 @@ void TaskRun::step(TimePoint now, const std::vector<std::string>& missing, std::
     const bool other = hopeless_.holds() ? false : replan(now);
     if (other) return;
     // A fact may flicker: it must be so for a while before anything is given up for it.
-    if (hopeless_.lasts(true, now, settings_.settle_time())) {
+    if (hopeless_.lasts(true, now, settings_.settle_time)) {
       hopeless_.reset();
       if (!replan(now)) give_up(status_.reason.empty() ? impossible : status_.reason, now);
     }
@@ -241,7 +241,7 @@ void TaskRun::send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id
 void TaskRun::watch(TimePoint now, TaskWishes& wishes) {
   const PlannedAction& running = *progress_.current();
   const std::string why = problem_.why_broken(running);
-  if (broken_.lasts(!why.empty(), now, settings_.settle_time())) {
+  if (broken_.lasts(!why.empty(), now, settings_.settle_time)) {
     const std::string fate = running.object.empty() ? "" : situation_.fate_of(running.object);
     dispatch_.stop(fate.empty() ? why : fate, now, wishes.action_goals);
     return;
@@ -250,9 +250,9 @@ void TaskRun::watch(TimePoint now, TaskWishes& wishes) {
   if (later.empty()) return;
   const State after = problem_.after(running);
   const bool obsolete = !problem_.why_impossible(later, after).empty();
-  if (!obsolete_.lasts(obsolete, now, settings_.settle_time())) return;
+  if (!obsolete_.lasts(obsolete, now, settings_.settle_time)) return;
   obsolete_.reset();
-  if (replans_ >= settings_.max_replans()) return;
+  if (replans_ >= settings_.max_replans) return;
   Plan plan = plan_from(after);
   if (!plan.found) return;  // evaluated again when this action has ended
   ++replans_;
@@ -296,10 +296,10 @@ void TaskRun::ended(TimePoint now) {
 void TaskRun::answer_failure(ActionFailure failure, const std::string& reason, TimePoint now) {
   const PlannedAction failed = *progress_.current();
   const std::string text = failed.text();
-  const config::FailureRule* rule = failures_.rule(failed.kind, failure);
+  const settings::FailureRule* rule = failures_.rule(failed.kind, failure);
   if (failures_.retry(rule, text)) {
     progress_.again(reason);
-    not_before_ = now + from_seconds(rule->pause());
+    not_before_ = now + from_seconds(rule->pause);
     status_.phase = "again: " + reason;
     return;
   }
@@ -311,7 +311,7 @@ void TaskRun::answer_failure(ActionFailure failure, const std::string& reason, T
       finish(TaskState::failed, failures_.reason());
     return;
   }
-  const bool otherwise = rule == nullptr || rule->then() != config::FailureRule::GIVE_UP;
+  const bool otherwise = rule == nullptr || rule->then != settings::FailureRule::Answer::give_up;
   if (!otherwise || !replan(now)) give_up(failures_.first(), now);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/schema/supervisor.pb.h"
+#include "common/config/settings/supervisor.hpp"
 #include "components/supervisor/situation.hpp"
 #include "components/supervisor/task/action_dispatch.hpp"
 #include "components/supervisor/task/expected_effects.hpp"
@@ -24,7 +24,7 @@ struct TaskWishes {
 
 class TaskRun {
  public:
-  TaskRun(const config::SupervisorSettings& settings, const Domain& domain, Situation& situation,
+  TaskRun(const settings::SupervisorSettings& settings, const Domain& domain, Situation& situation,
           const TaskGoal& goal, TimePoint now);
 
   enum class Start { begun, refused, unsure };
@@ -77,7 +77,7 @@ class TaskRun {
   void say(const std::string& phase, TaskWishes& wishes);
   bool is_stranded(TimePoint now, const std::vector<std::string>& missing);
 
-  const config::SupervisorSettings& settings_;
+  const settings::SupervisorSettings& settings_;
   Situation& situation_;
   PlanningProblem problem_;
   ExpectedEffects effects_;

@@ -12,10 +12,9 @@
 
 namespace handsel::manipulation_planner::rig {
 
-inline config::ManipulationPlannerSettings settings() {
-  config::ManipulationPlannerSettings s;
-  load_text_proto(resource("config/manipulation_planner.txtpb"), s);
-  return s;
+inline settings::ManipulationPlannerSettings settings() {
+  return settings::read_manipulation_planner_settings(
+      resource("config/manipulation_planner.txtpb"));
 }
 
 // Plays the planners and the controller: every request is answered at once unless the test says

@@ -28,9 +28,9 @@ class OnlineReplannerTest : public testing::Test {
     report(kCommand, MotionState::running);
     run_at(0.3);
   }
-  static config::ManipulationPlannerSettings settings() {
+  static settings::ManipulationPlannerSettings settings() {
     auto settings = rig::settings();
-    settings.set_replan_time(0.2);
+    settings.replan_time = 0.2;
     return settings;
   }
   const Group& arm() const { return robot_->require_group("arm"); }
@@ -109,7 +109,7 @@ TEST_F(OnlineReplannerTest, asks_for_a_path_from_where_the_arm_will_be) {
   start();
   ASSERT_EQ(parts_.outbox.path_requests.size(), 1u);
   const PathRequest& request = parts_.outbox.path_requests.front();
-  const Vector expected = whole_.at(0.3 + parts_.settings.replan_time()).position;
+  const Vector expected = whole_.at(0.3 + parts_.settings.replan_time).position;
   EXPECT_LT((RobotModel::part(request.start, arm()) - expected).norm(), 1e-9);
   EXPECT_EQ(request.running.size(), running_.waypoints.size());
   EXPECT_EQ(parts_.replanner.counts().checks, 1u);
@@ -121,7 +121,7 @@ TEST_F(OnlineReplannerTest, leaves_a_motion_alone_that_is_not_its_own_or_nearly_
   ASSERT_TRUE(check_.done());
   EXPECT_FALSE(check_.result().good);
   running_.command = kCommand;
-  run_at(whole_.duration() - parts_.settings.replan_time());
+  run_at(whole_.duration() - parts_.settings.replan_time);
   start();
   ASSERT_TRUE(check_.done());
   EXPECT_FALSE(check_.result().good);
@@ -165,7 +165,7 @@ TEST_F(OnlineReplannerTest, switches_to_another_path_in_time_and_without_a_jump)
   cycle();
   ASSERT_EQ(parts_.outbox.trajectories.size(), 1u) << check_.result().reason;
   const TrajectoryCommand command = parts_.outbox.trajectories.front();
-  const double switch_time = 0.3 + parts_.settings.replan_time();
+  const double switch_time = 0.3 + parts_.settings.replan_time;
   EXPECT_NEAR(command.switch_at, switch_time, 1e-9);
   const MotionState3 before = whole_.at(switch_time), after = command.trajectory.at(0);
   EXPECT_LT((before.position - after.position).norm() + (before.velocity - after.velocity).norm(),
@@ -185,7 +185,7 @@ TEST_F(OnlineReplannerTest, a_path_that_is_ready_too_late_is_refused) {
   other[1] -= 0.3;
   const Vector from = RobotModel::part(parts_.outbox.path_requests.front().start, arm());
   answer_path(PathOutcome::replanned, {from, other});
-  run_at(0.3 + parts_.settings.replan_time());
+  run_at(0.3 + parts_.settings.replan_time);
   answer_trajectory();
   cycle();
   ASSERT_TRUE(check_.done());

@@ -8,16 +8,15 @@ namespace handsel::manipulation_planner {
 namespace {
 
 using rig::Rig;
-using rig::settings;
 
 class OtpSearchTest : public ::testing::Test {
  protected:
   OtpSearch find(const LayersNow& layers = {},
-                 const std::vector<config::PersonProfile>& people = {}) {
-    auto many = settings();
-    many.set_w_preference(0.4);
-    for (const config::PersonProfile& profile : people) *many.add_people() = profile;
-    many.set_exchange_goals(20);
+                 const std::vector<settings::PersonProfile>& people = {}) {
+    auto many = rig::settings();
+    many.w_preference = 0.4;
+    many.people = people;
+    many.exchange_goals = 20;
     const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
                T_tool_mug = make_pose({0.08, 0.02, 0.23});
     const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}};
@@ -39,7 +38,7 @@ TEST_F(OtpSearchTest, places_under_a_table_are_none) {
 }
 
 TEST_F(OtpSearchTest, is_where_the_profile_of_the_person_says) {
-  const auto across_and_away = [&](const config::PersonProfile& profile) {
+  const auto across_and_away = [&](const settings::PersonProfile& profile) {
     const OtpSearch search = find({}, {profile});
     EXPECT_FALSE(search.poses.empty()) << search.reason;
     const auto joint = [&](const char* name) {
@@ -49,19 +48,19 @@ TEST_F(OtpSearchTest, is_where_the_profile_of_the_person_says) {
     return std::pair(from_torso.dot((joint("l_shoulder") - joint("r_shoulder")).normalized()),
                      from_torso.head<2>().norm());
   };
-  config::PersonProfile profile;
-  profile.set_id(anna_.id);
-  profile.set_handed(config::LEFT);
+  settings::PersonProfile profile;
+  profile.id = anna_.id;
+  profile.handed = settings::Handedness::left;
   EXPECT_GT(across_and_away(profile).first, -1e-6);
-  profile.set_handed(config::RIGHT);
+  profile.handed = settings::Handedness::right;
   EXPECT_LT(across_and_away(profile).first, 1e-6);
-  profile.set_handed(config::EITHER);
-  profile.set_preferred_distance(0.45);
+  profile.handed = settings::Handedness::either;
+  profile.preferred_distance = 0.45;
   const double near = across_and_away(profile).second;
-  profile.set_preferred_distance(0.8);
+  profile.preferred_distance = 0.8;
   EXPECT_GT(across_and_away(profile).second, near + 0.05);
   const double usual = find().poses.front().cost;
-  profile.set_id("somebody else");
+  profile.id = "somebody else";
   EXPECT_EQ(find({}, {profile}).poses.front().cost, usual);
 }
 
@@ -102,8 +101,8 @@ TEST_F(OtpSearchTest, poses_are_sorted_apart_and_cost_what_they_are_said_to_cost
   const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
              T_tool_mug = make_pose({0.08, 0.02, 0.23});
   const LayersNow layers;
-  auto many = settings();
-  many.set_w_preference(0.4);
+  auto many = rig::settings();
+  many.w_preference = 0.4;
   const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}};
   for (std::size_t i = 0; i < search.poses.size(); ++i) {
     const OtpPose& pose = search.poses[i];
@@ -134,7 +133,7 @@ TEST_F(OtpSearchTest, a_finger_in_the_direction_of_the_pull_makes_a_pose_impossi
   to_person.z() = 0;
   const std::vector<Vector3> barred{T_best.linear().transpose() * to_person.normalized()};
   const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, barred};
-  EXPECT_FALSE(otp_cost(query, T_best, settings()));
+  EXPECT_FALSE(otp_cost(query, T_best, rig::settings()));
 }
 
 TEST_F(OtpSearchTest, only_a_hand_that_pinches_bars_directions) {

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-config::SparkSettings shipped() {
-  config::SparkSettings settings;
+settings::SparkSettings shipped() {
+  settings::SparkSettings settings;
   load_text_proto(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
   return settings;
 }
@@ -235,7 +235,7 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
   if (!found) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
   const test::RecordedHandover& recorded = *found;
   const auto robot = test::small_robot();
-  const config::SparkSettings settings = shipped();
+  const settings::SparkSettings settings = shipped();
   PeopleTracker tracker(settings);
   SceneModel model(settings, robot, nullptr, {});
   FactFinder finder(settings, robot, nullptr);

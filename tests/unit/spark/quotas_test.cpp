@@ -24,8 +24,8 @@ using ::testing::HasSubstr;
 const Coverage kReach{{-1, -1, 0.1}, {1, 1, 1.9}};
 const Coverage kRoom{{-30, -30, -0.5}, {30, 30, 2.6}};
 
-config::SparkSettings shipped() {
-  config::SparkSettings settings;
+settings::SparkSettings shipped() {
+  settings::SparkSettings settings;
   load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
                   settings);
   return settings;
@@ -49,7 +49,7 @@ ObservedObject thing(const std::string& id, const Vector3& where) {
   return {id, "", make_pose(where), 0.9, {}, {PrimitiveKind::box, {0.05, 0.05, 0.05}}};
 }
 
-SceneModel model(const config::SparkSettings& settings, std::vector<SceneBox> boxes = {}) {
+SceneModel model(const settings::SparkSettings& settings, std::vector<SceneBox> boxes = {}) {
   return {settings, std::make_shared<const RobotModel>(), ObjectLibrary{}, std::move(boxes)};
 }
 
@@ -136,8 +136,8 @@ TEST(Quotas, a_person_known_before_a_crowd_came_is_followed_and_does_not_turn_in
 }
 
 TEST(Quotas, a_lost_person_counts_by_how_far_they_may_have_come) {
-  config::SparkSettings settings = shipped();
-  settings.set_max_people(1);
+  settings::SparkSettings settings = shipped();
+  settings.max_people = 1;
   PeopleTracker tracker(settings, {{"camera", {0, 0, 1.6}}});
   Obstacles wall;  // behind it no place is seen empty
   wall.boxes.push_back({make_pose({2.5, 0, 1}), {0.2, 40, 4}});
@@ -176,8 +176,8 @@ TEST(Quotas, ten_thousand_bodies_over_time_leave_a_bounded_number_of_tracks) {
 }
 
 TEST(Quotas, a_new_source_takes_the_place_of_a_silent_one_only) {
-  config::SparkSettings settings = shipped();
-  settings.set_max_sources(2);
+  settings::SparkSettings settings = shipped();
+  settings.max_sources = 2;
   PeopleTracker tracker(settings);
   const auto observe = [&](const std::string& source, double t) {
     HumanObservation observation = seen({body_at("anna", 2 + 1e-3 * t, 0)});
@@ -255,7 +255,7 @@ TEST(Quotas, of_three_hundred_boxes_the_nearest_are_published) {
 }
 
 TEST(Quotas, facts_of_safety_and_exchange_stay_when_there_are_too_many) {
-  const config::SparkSettings settings = shipped();
+  const settings::SparkSettings settings = shipped();
   const auto robot = test::small_robot();
   FactFinder finder(settings, robot, ObjectLibrary{});
   Scene scene;
@@ -293,7 +293,7 @@ TEST(Quotas, a_quota_out_of_range_is_refused_with_file_line_and_key) {
   const std::filesystem::path file = folder.path() / "spark.txtpb";
   const auto refusal = [&](const std::string& text) -> std::string {
     std::ofstream(file) << text;
-    config::SparkSettings settings;
+    settings::SparkSettings settings;
     load_text_proto(file, settings);
     try {
       check_quotas(settings, file);

@@ -60,7 +60,7 @@ class SceneObjects : public ::testing::Test {
     return nullptr;
   }
 
-  config::SparkSettings settings_;
+  settings::SparkSettings settings_;
   ObjectModel mug_;
   std::optional<SceneModel> model_;
   HumanState people_;
@@ -98,13 +98,13 @@ TEST_F(SceneObjects, out_of_sight_grows_uncertain_and_seen_again_is_sure) {
     EXPECT_GT(now, before);
     before = now;
   }
-  EXPECT_NEAR(before, settings_.unseen_drift() * 9.45, 0.01);
+  EXPECT_NEAR(before, settings_.unseen_drift * 9.45, 0.01);
   const std::uint64_t revision = wait(10, 10).revision;
   see(10.1, {mug("mug", {0.72, 0, 0.74})});
   const Scene again = wait(10.1, 10.1);
   EXPECT_EQ(find(again, "mug")->uncertainty, 0);
   EXPECT_GT(again.revision, revision) << "planners are told";
-  EXPECT_LE(find(wait(11, 200), "mug")->uncertainty, settings_.unseen_most());
+  EXPECT_LE(find(wait(11, 200), "mug")->uncertainty, settings_.unseen_most);
 }
 
 TEST_F(SceneObjects, a_hand_near_what_nobody_sees_makes_it_uncertain_fast) {

@@ -11,21 +11,21 @@
 namespace handsel::spark {
 namespace {
 
-config::SparkSettings settings() {
-  config::SparkSettings s;
-  s.set_publish_period(0.1);
-  s.set_human_period(0.05);
-  s.set_lost_speed(1.6);
-  s.set_lost_after(0.2);
-  s.set_coverage_memory(0.5);
-  s.set_max_view_age(0.25);
-  s.set_association_distance(0.35);
-  s.set_joint_noise(0.01);
-  s.set_gaze_memory(0.5);
-  s.set_empty_after(0.5);
-  s.set_doubt_time(0.5);
-  s.set_edge(0.5);
-  s.set_unseen_after(0.5);
+settings::SparkSettings settings() {
+  settings::SparkSettings s;
+  s.publish_period = 0.1;
+  s.human_period = 0.05;
+  s.lost_speed = 1.6;
+  s.lost_after = 0.2;
+  s.coverage_memory = 0.5;
+  s.max_view_age = 0.25;
+  s.association_distance = 0.35;
+  s.joint_noise = 0.01;
+  s.gaze_memory = 0.5;
+  s.empty_after = 0.5;
+  s.doubt_time = 0.5;
+  s.edge = 0.5;
+  s.unseen_after = 0.5;
   return s;
 }
 
@@ -466,7 +466,7 @@ TEST(PeopleTracker, any_subset_of_joints_makes_a_body_of_its_own_size) {
 }
 
 TEST(PeopleTracker, whose_height_is_known_is_that_tall_whatever_is_seen_of_them) {
-  config::SparkSettings known = settings();
+  settings::SparkSettings known = settings();
   auto* profile = known.add_people();
   profile->set_id("anna");
   profile->set_height(1.62);

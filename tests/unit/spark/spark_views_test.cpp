@@ -18,8 +18,8 @@ const Coverage kRoom{{-4, -4, -0.5}, {4, 4, 2.6}}, kReach{{-1, -1, 0.1}, {1, 1, 
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 Stamp stamp_at(double t) { return kStart + from_seconds(t).count(); }
 
-config::SparkSettings shipped() {
-  config::SparkSettings s;
+settings::SparkSettings shipped() {
+  settings::SparkSettings s;
   load_text_proto(std::string(HANDSEL_SOURCE_DIR) + "/deploy/config/spark.txtpb", s);
   return s;
 }
@@ -49,15 +49,15 @@ TEST(CaptureAge, of_a_picture_from_the_future_is_unknown_beyond_the_error_of_the
 }
 
 TEST(CaptureAge, takes_the_clock_of_each_source_from_the_settings) {
-  config::SparkSettings s = shipped();
-  config::SourceClock& old = *s.add_clocks();
-  old.set_source("old");
-  old.set_assumed_latency(0.2);
-  EXPECT_EQ(clock_of(s, "camera").error, s.clock_error());
+  settings::SparkSettings s = shipped();
+  settings::SourceClock& old = s.clocks.emplace_back();
+  old.source = "old";
+  old.assumed_latency = 0.2;
+  EXPECT_EQ(clock_of(s, "camera").error, s.clock_error);
   EXPECT_FALSE(clock_of(s, "camera").assumed_latency);
-  EXPECT_EQ(clock_of(s, "old").error, s.clock_error());
+  EXPECT_EQ(clock_of(s, "old").error, s.clock_error);
   EXPECT_EQ(clock_of(s, "old").assumed_latency, 0.2);
-  old.set_clock_error(0.5);
+  old.clock_error = 0.5;
   EXPECT_EQ(clock_of(s, "old").error, 0.5);
 }
 
@@ -78,8 +78,8 @@ class Views : public testing::Test {
     picture.coverage = kRoom;
     picture.people = std::move(people);
     picture.stamp = stamp;
-    const CaptureAge age = capture_age(stamp, stamp_at(now), 0.0, settings.min_latency(),
-                                       clock_of(settings, "camera"));
+    const CaptureAge age =
+        capture_age(stamp, stamp_at(now), 0.0, settings.min_latency, clock_of(settings, "camera"));
     if (age.unknown.empty())
       tracker.observe(picture, at(now - age.age), {}, nullptr, age.age);
     else
@@ -99,7 +99,7 @@ class Views : public testing::Test {
     return all.views.empty() ? SourceView{} : all.views[0];
   }
 
-  config::SparkSettings settings = shipped();
+  settings::SparkSettings settings = shipped();
   PeopleTracker tracker{settings};
   double now{10.0};
 };
@@ -113,7 +113,7 @@ TEST_F(Views, name_a_live_source_with_its_box_and_age) {
   EXPECT_EQ(v.reason, "");
   EXPECT_EQ(v.low, kRoom.low);
   EXPECT_EQ(v.high, kRoom.high);
-  EXPECT_NEAR(v.age, 0.04 + kPeriod + settings.clock_error(), 1e-6);
+  EXPECT_NEAR(v.age, 0.04 + kPeriod + settings.clock_error, 1e-6);
   EXPECT_TRUE(state().covered);
 }
 

@@ -1,0 +1,43 @@
+#include "components/path_planner/load.hpp"
+
+#include "common/model/platform.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+Settings core_settings(const settings::PathPlannerSettings& s) {
+  Settings out;
+  out.step = s.step;
+  out.verify_step = s.verify_step;
+  out.connect_range = s.connect_range;
+  out.transition_range = s.transition_range;
+  out.initial_temperature = s.initial_temperature;
+  out.search_fraction = s.search_fraction;
+  out.cost_step = s.cost_step;
+  out.length_weight = s.length_weight;
+  out.smoothing_rounds = s.smoothing_rounds;
+  out.max_idle_rounds = s.max_idle_rounds;
+  out.max_edge = s.max_edge;
+  return out;
+}
+
+}  // namespace
+
+SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
+  SolverSettings out;
+  out.search = core_settings(s);
+  out.live.min_gain = s.live_gain;
+  out.live.rounds = s.live_rounds;
+  out.live.tries = s.live_tries;
+  out.replan_margins = {s.live_margin, s.live_turning_margin};
+  out.roam = s.roam;
+  out.head_room = s.head_room;
+  return out;
+}
+
+std::optional<RobotModel> mobile_of(const NodeContext& context) {
+  if (context.description.empty()) return std::nullopt;
+  return on_platform(*context.robot, context.description);
+}
+
+}  // namespace handsel::path_planner
