@@ -16,7 +16,7 @@ AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, cons
     throw ConfigError("attention: behaviour " + what + ": far must be above near");
   if (!(settings.weber_gain > 0))
     throw ConfigError("attention: behaviour " + what + ": weber_gain must be above 0");
-  if (settings.law == ClockLaw::fixed &&
+  if (settings.rule == ClockLaw::fixed &&
       !(settings.period >= settings.p_min && settings.period <= settings.p_max))
     throw ConfigError("attention: behaviour " + what +
                       ": period must be from p_min to p_max where the law is FIXED");
@@ -25,9 +25,9 @@ AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, cons
 void AdaptiveClock::fire(double stimulus, TimePoint now) {
   const double s =
       std::isfinite(stimulus) ? std::clamp(stimulus, 0.0, settings_.far) : settings_.far;
-  if (settings_.law == ClockLaw::fixed) {
+  if (settings_.rule == ClockLaw::fixed) {
     period_ = settings_.period;
-  } else if (settings_.law == ClockLaw::linear) {
+  } else if (settings_.rule == ClockLaw::linear) {
     period_ =
         settings_.p_max * (0.1 + 0.9 * (s - settings_.near) / (settings_.far - settings_.near));
   } else {

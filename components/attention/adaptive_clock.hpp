@@ -18,7 +18,7 @@ enum class ClockLaw {
 
 /// Range and rule of the period of one behaviour.
 struct ClockSettings {
-  ClockLaw law{ClockLaw::linear};  ///< rule that gives the next period
+  ClockLaw rule{ClockLaw::linear};  ///< rule that gives the next period
   double p_min{0.033};             ///< shortest period [s], > 0, at least that of the source
   double p_max{0.3};               ///< longest period [s], >= p_min
   double near{0.1};                ///< stimulus at which the period is a tenth of p_max

@@ -44,11 +44,12 @@ class [[nodiscard]] Routine {
 
   Routine() = default;
   explicit Routine(Handle handle) : handle_(handle) {}
-  Routine(Routine&& other) noexcept : handle_(std::exchange(other.handle_, {})) {}
+  Routine(Routine&& other) noexcept { std::swap(handle_, other.handle_); }
   Routine& operator=(Routine&& other) noexcept {
     if (this != &other) {
       if (handle_) handle_.destroy();
-      handle_ = std::exchange(other.handle_, {});
+      handle_ = {};
+      std::swap(handle_, other.handle_);
     }
     return *this;
   }
@@ -85,7 +86,8 @@ class Waiting {
   void poll(TimePoint now) {
     now_ = now;
     if (!handle_ || (!holds_(condition_) && now < deadline_)) return;
-    const auto handle = std::exchange(handle_, {});
+    const auto handle = handle_;
+    handle_ = {};
     handle.resume();
   }
   /// Drops the condition: the routine that waits is not resumed any more. Needed where that routine

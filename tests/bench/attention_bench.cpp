@@ -20,7 +20,7 @@ int run(int rounds) {
   const NodeContext context = load_context("jido");
   AttentionSettings settings = load_settings(context.settings / "attention.txtpb");
   for (BehaviourSettings& b : settings.behaviours) {
-    b.clock.law = ClockLaw::fixed;
+    b.clock.rule = ClockLaw::fixed;
     b.clock.period = b.clock.p_max = b.clock.p_min = 1e-3;
   }
   const Body body(*context.robot, Vector3(0, 0, 0.1));

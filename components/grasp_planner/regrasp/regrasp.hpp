@@ -74,7 +74,7 @@ struct RegraspPlan {
   Refusals rejected;               ///< steps that were checked and why they cannot be made
   /// Steps checked in detail; pairs of grasps of two hands that do not collide.
   std::uint64_t checked{}, double_grasps{};
-  std::vector<LoadShare> shares;  ///< of two hands at once, one an arm: grip of each
+  std::vector<LoadShare> load_shares;  ///< of two hands at once, one an arm: grip of each
 };
 
 /// Keeps what it found about an object on a robot in a scene: later tasks with the same object are

@@ -112,9 +112,9 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
         planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
     answer.checked = plan.checked;
     write(plan, sides, answer.reply);
-    for (std::size_t a = 0; a < plan.shares.size(); ++a) {
-      answer.reply.steps[a].grasp.hand_effort = plan.shares[a].effort;
-      answer.reply.steps[a].grasp.margin = plan.shares[a].margin;
+    for (std::size_t a = 0; a < plan.load_shares.size(); ++a) {
+      answer.reply.steps[a].grasp.hand_effort = plan.load_shares[a].effort;
+      answer.reply.steps[a].grasp.margin = plan.load_shares[a].margin;
     }
     return answer;
   }

@@ -180,7 +180,7 @@ RegraspPlan SequenceSearch::run(const std::function<bool()>& cancelled) {
     if (out_.checked >= check_.settings().max_steps_tried || (cancelled && cancelled())) {
       out_.reason = cancelled && cancelled() ? "cancelled"
                                              : "the budget of " + std::to_string(out_.checked) +
-                                                   " judged steps was used up";
+                                                   " checked steps was used up";
       return finish();
     }
   }

@@ -215,7 +215,7 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
     auto steps = check_pair(d, why);
     if (steps) {
       out_.steps = std::move(*steps);
-      out_.shares = shares_of(d);
+      out_.load_shares = shares_of(d);
       out_.solved = true;
       break;
     }

@@ -33,7 +33,7 @@ class ActionDispatch {
   const std::string& stop_reason() const { return stop_reason_; }
 
   /// Begins an action. Returns whether it runs already, so that nothing has to be sent: after a
-  /// restart of this process the action may be on its way. `next_id`: last id used, counted up.
+  /// restart of this process the action may be running. `next_id`: last id used, counted up.
   bool begin(const ActionGoal& goal, const std::optional<ActionStatus>& running,
              std::uint64_t& next_id);
   /// Sends the goal of the action under its id.

@@ -19,8 +19,8 @@ class RobotInput {
   /// Notes the beginning of a cycle; after a gap of more than 0.1 s this process has slept.
   void begin_cycle(TimePoint now) noexcept;
   /// Returns whether set-points may be sent. They may not while this process has slept and has not
-  /// heard the robot since, nor at rest when nobody is known to follow them: they would be the
-  /// first ones of a robot side that comes up elsewhere.
+  /// received a state of the robot since, nor at rest when nobody is known to follow them: they
+  /// would be the first ones of a robot side that comes up elsewhere.
   bool may_send(TimePoint now, bool at_rest) noexcept;
   /// Notes that the newest state was used.
   void mark_used() noexcept { new_state_ = false; }

@@ -60,7 +60,7 @@ std::string reason(const StatusSources& from) {
     return std::string(name(Cause::blind)) + ": " + why_blind(from) + "; " + refusal;
   }
   if (supervisor.mode() >= Mode::hold) return held_reason(from);
-  const Cause cause = most_severe(supervisor.verdict().causes);
+  const Cause cause = worst_of(supervisor.verdict().causes);
   if (cause == Cause::none) return from.dry_run ? "dry run: no set-point is sent" : "";
   std::string out = name(cause);
   if (cause == Cause::blind) out += ": " + why_blind(from);

@@ -75,7 +75,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   return verdict;
 }
 
-Cause most_severe(std::uint32_t causes) {
+Cause worst_of(std::uint32_t causes) {
   constexpr Cause kOrder[] = {Cause::limit_violation,
                               Cause::tracking_error,
                               Cause::drive_not_enabled,

@@ -69,6 +69,6 @@ class ModeMachine {
 };
 
 /// Returns the most severe of the causes (bits of Cause), for reports to people; none for 0.
-Cause most_severe(std::uint32_t causes);
+Cause worst_of(std::uint32_t causes);
 
 }  // namespace handsel::trajectory_controller

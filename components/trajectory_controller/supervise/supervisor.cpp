@@ -19,7 +19,7 @@ void Supervisor::update(const SupervisorInputs& in, TimePoint now) noexcept {
     latched_cause_ = Cause::none;
     return;
   }
-  const Cause cause = most_severe(verdict_.causes & ~bit(Cause::no_go));
+  const Cause cause = worst_of(verdict_.causes & ~bit(Cause::no_go));
   if (cause != Cause::none)
     latched_cause_ = cause;
   else if (latched_cause_ == Cause::none)

@@ -78,7 +78,7 @@ void add_components(BadFiles& table) {
   Settings(table, "path_planner", "path_planner.txtpb")
       .key("step", "inf", "is inf, must be")
       .key("verify_step", "\"small\"", "Expected double")
-      .key("patience", "0", "is 0, must be")
+      .key("max_idle_rounds", "0", "is 0, must be")
       .key("smoothing_rounds", "-5", "is -5, must be");
   Settings(table, "grasp_planner", "grasp_planner.txtpb")
       .key("positions", "4000000000", "is 4e+09, must be")

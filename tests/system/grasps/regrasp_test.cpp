@@ -258,10 +258,10 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
   const RegraspPlan plan = planner.plan_together(T_start, T_goal);
   ASSERT_TRUE(plan.solved) << plan.reason;
   ASSERT_EQ(plan.steps.size(), 3U);
-  ASSERT_EQ(plan.shares.size(), 2U);
+  ASSERT_EQ(plan.load_shares.size(), 2U);
   for (std::size_t a = 0; a < 2; ++a) {
-    EXPECT_GT(plan.shares[a].margin, 0);
-    EXPECT_EQ(plan.shares[a].effort.size(),
+    EXPECT_GT(plan.load_shares[a].margin, 0);
+    EXPECT_EQ(plan.load_shares[a].effort.size(),
               arms[a].list->grasps[plan.steps[a].grasp_to].grasp.hand_joints.size());
     // The same hand alone, the load as it hangs at its side.
     const BearingHand alone{arms[a].hand_geometry,

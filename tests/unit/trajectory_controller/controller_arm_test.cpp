@@ -63,7 +63,7 @@ TEST_F(PartsTest, set_points_are_at_rest_until_one_that_moves_is_sent) {
   EXPECT_FALSE(set_points_.any_moves({0, 2}));
   set_points_.end_cycle(robot_->guard_limits(), kPeriod);
   EXPECT_FALSE(set_points_.at_rest());
-  EXPECT_GT(set_points_.shares().velocity, 0.0);
+  EXPECT_GT(set_points_.ratios().velocity, 0.0);
 }
 
 TEST_F(PartsTest, a_trajectory_runs_to_its_end) {

@@ -34,7 +34,7 @@ TEST(ModeMachine, the_gravest_cause_decides_and_all_are_named) {
   const ModeVerdict v = machine.update(in);
   EXPECT_EQ(v.mode, Mode::fault);
   EXPECT_EQ(v.causes, bit(Cause::cycle_late) | bit(Cause::separation) | bit(Cause::tracking_error));
-  EXPECT_EQ(most_severe(v.causes), Cause::tracking_error);
+  EXPECT_EQ(worst_of(v.causes), Cause::tracking_error);
 }
 
 TEST(ModeMachine, every_drive_mode_but_enabled_stops) {
