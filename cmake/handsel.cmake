@@ -25,6 +25,8 @@ set(HANDSEL_UNITY_BATCH 6)
 function(handsel_unity target)
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD ${HANDSEL_UNITY} UNITY_BUILD_BATCH_SIZE ${HANDSEL_UNITY_BATCH})
+  # In a group the compiler takes a private type of a source file for one of a header.
+  target_compile_options(${target} PRIVATE $<$<BOOL:${HANDSEL_UNITY}>:-Wno-subobject-linkage>)
 endfunction()
 
 # handsel_library(<name> SOURCES a.cpp ... LINK lib ...): static library handsel_<name>.
