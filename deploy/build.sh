@@ -18,8 +18,6 @@ fi
 # Objects are the same wherever the tree lies, precompiled headers included.
 export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$root}" CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros}"
 cmake --build build/release --target "${@:-all}" >&2
-# The system runs without its page; a test of the page does not pass without it.
-"$root/components/bridge/web/build.sh" "$root/build/release/web" $for_tests || {
+# The system runs without its page, and so do all tests but those of the page, which fail.
+"$root/components/bridge/web/build.sh" "$root/build/release/web" $for_tests ||
   echo "build: the page could not be built (are the npm packages within reach?); the system runs without it" >&2
-  [ -z "$for_tests" ]
-}
