@@ -66,28 +66,7 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
   for (int i = 0; i < n; ++i)
     multibody_->setJointPos(i, bodies_[i].factor * q_[bodies_[i].dof] + bodies_[i].offset);
   world_.addMultiBody(multibody_.get());
-
-  for (int i = 0; i < n; ++i) {
-    Body& b = bodies_[i];
-    std::vector<PlacedShape> parts;
-    for (int link = 0; link < static_cast<int>(model.links().size()); ++link) {
-      if (body_of_link_[link] != i) continue;
-      for (PlacedShape part : model.links()[link].collision) {
-        part.T_parent_shape = T_body_link_[link] * part.T_parent_shape;
-        parts.push_back(part);
-      }
-    }
-    Pose T_principal_body = Pose::Identity();
-    T_principal_body.linear() = b.R_body_principal.transpose();
-    T_principal_body.translation() = -(b.R_body_principal.transpose() * b.com);
-    if (btCollisionShape* shape = world.shapes.combine(parts, T_principal_body)) {
-      b.collider = std::make_unique<btMultiBodyLinkCollider>(multibody_.get(), i);
-      b.collider->setCollisionShape(shape);
-      b.collider->setFriction(1.0);
-      world_.addCollisionObject(b.collider.get(), world.collision_group, world.collision_mask);
-      multibody_->getLink(i).m_collider = b.collider.get();
-    }
-  }
+  add_colliders(world);
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> origins;
   multibody_->forwardKinematics(rotations, origins);
@@ -108,6 +87,30 @@ RobotBody::~RobotBody() {
     if (b.collider) world_.removeCollisionObject(b.collider.get());
   }
   world_.removeMultiBody(multibody_.get());
+}
+
+void RobotBody::add_colliders(const BodyWorld& world) {
+  for (int i = 0; i < bodies(); ++i) {
+    Body& b = bodies_[i];
+    std::vector<PlacedShape> parts;
+    for (int link = 0; link < static_cast<int>(model_.links().size()); ++link) {
+      if (body_of_link_[link] != i) continue;
+      for (PlacedShape part : model_.links()[link].collision) {
+        part.T_parent_shape = T_body_link_[link] * part.T_parent_shape;
+        parts.push_back(part);
+      }
+    }
+    Pose T_principal_body = Pose::Identity();
+    T_principal_body.linear() = b.R_body_principal.transpose();
+    T_principal_body.translation() = -(b.R_body_principal.transpose() * b.com);
+    if (btCollisionShape* shape = world.shapes.combine(parts, T_principal_body)) {
+      b.collider = std::make_unique<btMultiBodyLinkCollider>(multibody_.get(), i);
+      b.collider->setCollisionShape(shape);
+      b.collider->setFriction(1.0);
+      world_.addCollisionObject(b.collider.get(), world.collision_group, world.collision_mask);
+      multibody_->getLink(i).m_collider = b.collider.get();
+    }
+  }
 }
 
 void RobotBody::lump(const RobotModel& model) {

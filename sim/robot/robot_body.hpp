@@ -105,6 +105,7 @@ class RobotBody {
   static bool follows(const Body& b) { return b.leader >= 0 && b.finger >= 0; }
   void lump(const RobotModel&);
   void find_fingers();
+  void add_colliders(const BodyWorld&);
   void forward();
   void soften_fingers();
   Eigen::MatrixXd mass_matrix(const std::vector<int>& bodies);
