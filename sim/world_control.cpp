@@ -1,0 +1,99 @@
+// What is done to the emulated world from outside.
+#include <limits>
+
+#include "sim/world_parts.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+/// Where a source looks that looks elsewhere, from where it looked [m].
+const Vector3 kElsewhere(100.0, 100.0, 0.0);
+
+}  // namespace
+
+/// `how`: empty: by a person; "protective": by the robot's own protection, which ends by itself;
+/// "unannounced": without saying so.
+std::string SimWorld::Impl::stop_robot(const std::string& how) {
+  if (how.empty())
+    side.user_stop();
+  else if (how == "protective")
+    side.stop(DriveMode::protective_stop);
+  else if (how == "unannounced")
+    side.stop(DriveMode::enabled);
+  else
+    return "robot_stop is protective, unannounced or, without a subject, by a person; not \"" +
+           how + "\"";
+  return "";
+}
+
+/// Of the source, or of all sources of people.
+std::string SimWorld::Impl::disturb(const std::string& source, const SensorFault& fault) {
+  bool any = false;
+  for (HumanSensor& sensor : human_sensors) {
+    if (!source.empty() && sensor.settings().source != source) continue;
+    sensor.disturb(fault);
+    any = true;
+  }
+  return any ? "" : "there is no source of people " + source;
+}
+
+std::string SimWorld::Impl::control(const SimControl& c) {
+  const auto everyone = [&](auto&& act) -> std::string {
+    bool any = false;
+    for (std::size_t p = 0; p < people->size(); ++p) {
+      if (!c.subject.empty() && people->model(p).id() != c.subject) continue;
+      const bool any_may =
+          c.action == SimAction::person_freeze || c.action == SimAction::person_unfreeze;
+      if (!any_may && !people->model(p).source().empty()) continue;
+      act(people->model(p));
+      any = true;
+    }
+    return any ? "" : "there is no person " + c.subject;
+  };
+  const double until = c.value > 0 ? now() + c.value : std::numeric_limits<double>::infinity();
+  switch (c.action) {
+    case SimAction::person_freeze:
+      return everyone([](PersonModel& p) { p.freeze(true); });
+    case SimAction::person_unfreeze:
+      return everyone([](PersonModel& p) { p.freeze(false); });
+    case SimAction::person_dart:
+      return everyone([&](PersonModel& p) { p.dart(c.value > 0 ? c.value : 1.0); });
+    case SimAction::person_leave:
+      return everyone([](PersonModel& p) { p.leave(); });
+    case SimAction::person_refuse:
+      return everyone([](PersonModel& p) { p.refuse(); });
+    case SimAction::robot_stop:
+      return stop_robot(c.subject);
+    case SimAction::emergency_stop:
+      side.stop(DriveMode::emergency_stop);
+      return "";
+    case SimAction::robot_enable:
+      side.enable();
+      return "";
+    case SimAction::silence_human:
+      human_silent_until = until;
+      return "";
+    case SimAction::silence_robot_state:
+      state_silent_until = until;
+      return "";
+    case SimAction::human_frozen:
+      return disturb(c.subject, {SensorFaultKind::frozen, now(), until - now()});
+    case SimAction::human_empty:
+      return disturb(c.subject, {SensorFaultKind::repeated_empty, now(), until - now()});
+    case SimAction::human_late:
+      return disturb(c.subject,
+                     {SensorFaultKind::late, now(), std::numeric_limits<double>::infinity(),
+                      Vector3::Zero(), c.value});
+    case SimAction::human_elsewhere:
+      return disturb(c.subject, {SensorFaultKind::elsewhere, now(), until - now(), kElsewhere});
+    case SimAction::restore:
+      human_silent_until = state_silent_until = 0;
+      for (HumanSensor& sensor : human_sensors) sensor.restore();
+      return "";
+    default:
+      return "";
+  }
+}
+
+}  // namespace handsel::sim

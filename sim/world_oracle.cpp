@@ -1,0 +1,149 @@
+// What happened in the emulated world: collisions, separation, the handover, ground truth.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "sim/world_parts.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+constexpr double kCollisionForce = 0.5;  // [N]
+// The person's hand and the robot's overlap by more, before both have the object [m].
+constexpr double kFingersMeet = 0.002;
+constexpr double kFloorHeight = 0.02;  // an object's origin lower than this lies on the floor [m]
+
+}  // namespace
+
+void SimWorld::Impl::evaluate() {
+  bool collided = false;
+  for (const Touch& t : touches) {
+    if (t.a != Owner::robot) continue;
+    const bool by_hand = of_hand(t.index_a);
+    if (t.b == Owner::object && by_hand) continue;
+    const bool yields = t.b == Owner::person && people->yields(t.index_b);
+    const bool fingers_meet =
+        yields && by_hand && t.distance < -kFingersMeet && handover && !handover->shared();
+    if (!fingers_meet && (yields || t.normal_force < kCollisionForce)) continue;
+    if (!collided) {
+      last_collision = robot->name_of(t.index_a) + " hits " +
+                       (t.b == Owner::fixed    ? setup.boxes[t.index_b].id
+                        : t.b == Owner::floor  ? std::string("floor")
+                        : t.b == Owner::object ? objects[t.index_b].start().id
+                                               : people->id(t.index_b));
+    }
+    collided = true;
+  }
+  if (collided) ++collisions;
+
+  people->volumes(tool_state(hands.front()).T_world_body.translation(), person_volumes);
+  near = separations.separation(*robot, person_volumes);
+  min_separation = std::min(min_separation, near.distance);
+  if (near.link >= 0 && near.distance < 0.5) {
+    const Vector3 n = (near.on_person - near.on_robot).stableNormalized();
+    const Vector3 v =
+        robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
+    closing.add(v.dot(n));
+  }
+  const bool given_way = is_pushed();
+  if (steps % ssm_every == 0 && !given_way &&
+      separations.violates(near, *robot, reference.velocity, reference.acceleration))
+    ssm_violations += ssm_every;
+
+  if (watched >= 0) handover->observe(situation(), settings.step);
+  add_to_hash();
+}
+
+/// A person pushes the robot, or has just done so, and it does not press against them: from the
+/// touch on it is the push that says where it goes, and the volumes that stand for hand and arm
+/// overlap.
+bool SimWorld::Impl::is_pushed() {
+  const auto person = [](const Touch& t) {
+    return t.a == Owner::robot && t.b == Owner::person && t.normal_force > 0;
+  };
+  if (std::any_of(touches.begin(), touches.end(), person)) {
+    pushed_at = now();
+    pushes.clear();
+    std::copy_if(touches.begin(), touches.end(), std::back_inserter(pushes), person);
+  }
+  return now() < pushed_at + kPush && !separations.presses(*robot, pushes, reference.velocity);
+}
+
+ObjectSituation SimWorld::Impl::situation() const {
+  ObjectSituation s;
+  const ObjectBody& object = objects[watched];
+  s.height = object.state().T_world_body.translation().z();
+  s.robot_grips = grips(watched);
+  s.on_floor = object.T_world_object().translation().z() < kFloorHeight;
+  for (const Touch& t : touches) {
+    if (t.a == Owner::robot && t.b == Owner::object && t.index_b == watched && t.normal_force > 0)
+      s.robot_touches = true;
+    if (t.a != Owner::object || t.index_a != watched) continue;
+    if (t.b == Owner::floor) s.on_floor = true;
+    if (t.b == Owner::fixed && setup.boxes[t.index_b].supports) s.on_surface = true;
+  }
+  s.human_grips = people->grips(watched);
+  s.human_touches = people->touches(watched);
+  return s;
+}
+
+void SimWorld::Impl::add_to_hash() {
+  hash.add_all(robot->position());
+  hash.add_all(robot->velocity());
+  for (const ObjectBody& object : objects) {
+    hash.add_all(object.state().T_world_body.translation());
+    hash.add_all(object.state().velocity);
+    hash.add_all(object.state().angular_velocity);
+  }
+  for (std::size_t p = 0; p < people->size(); ++p) {
+    for (const BodyJoint& joint : people->model(p).body().joints) hash.add_all(joint.position);
+  }
+}
+
+void SimWorld::ground_truth(GroundTruth& out) const {
+  const Impl& w = *impl_;
+  out.sim_time = w.now();
+  if (w.watched >= 0) {
+    out.object = w.objects[w.watched].start().id;
+    out.T_world_object = w.objects[w.watched].T_world_object();
+    w.handover->write(out);
+    out.hold = !w.grips(w.watched) ? "" : w.constraint_carries ? "constraint" : "contact";
+    out.held_time = w.held_time;
+    out.constraint_time = w.constraint_time;
+  }
+  out.separation = w.near.distance;
+  out.min_separation = w.min_separation;
+  out.ssm_violations = w.ssm_violations;
+  out.peak_closing_speed = w.closing.peak();
+  out.contact_force = w.hands.front().measured.largest_contact();
+  out.limit_ratio_velocity = w.limits.ratio_velocity();
+  out.limit_ratio_acceleration = w.limits.ratio_acceleration();
+  out.limit_ratio_jerk = w.limits.ratio_jerk();
+  out.limit_violations = w.limits.violations();
+  out.self_or_scene_collisions = w.collisions;
+  out.commanders = w.limits.writers();
+  out.setpoint_gap_max = w.limits.max_gap();
+  out.set_points = w.limits.count();
+  out.hash = w.hash.value;
+  out.robot_moving = false;
+  const auto of_arm = [](const Impl::Hand& hand, Eigen::Index axis) {
+    return hand.arm == nullptr ||
+           std::find(hand.arm->axes.begin(), hand.arm->axes.end(), axis) != hand.arm->axes.end();
+  };
+  for (Eigen::Index i = 0; i < w.robot->velocity().size(); ++i) {
+    const bool counts = std::any_of(w.hands.begin(), w.hands.end(),
+                                    [&](const Impl::Hand& hand) { return of_arm(hand, i); });
+    if (counts && std::abs(w.robot->velocity()[i]) > 1e-3) out.robot_moving = true;
+  }
+  out.person.clear();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < w.people->size(); ++p) {
+    const Person& person = w.people->model(p).body();
+    const double d = (person.joints.front().position - w.setup.T_world_base.translation()).norm();
+    if (d < least) least = d, out.person = person.joints;
+  }
+}
+
+}  // namespace handsel::sim
