@@ -234,14 +234,21 @@ bool touch(const CollisionShape& a, const Pose& T_world_a, const CollisionShape&
   return false;
 }
 
+namespace {
+struct ShapeAtPose {
+  const CollisionShape& shape;
+  const Pose& T_world_shape;
+};
+}  // namespace
+
 /// The shape itself, or the triangle of a mesh.
-static ConvexCore nearest_core(const CollisionShape& shape, const Pose& T_world_shape,
-                               int triangle) {
-  if (!shape.is_mesh()) return convex_core(shape.shape(), T_world_shape);
+static ConvexCore nearest_core(const ShapeAtPose& placed, int triangle) {
+  const CollisionShape& shape = placed.shape;
+  if (!shape.is_mesh()) return convex_core(shape.shape(), placed.T_world_shape);
   const TriangleMesh& mesh = *std::get<MeshPtr>(shape.shape());
   ConvexCore core;
   core.kind = ConvexCore::Kind::triangle;
-  core.T_world_core = T_world_shape;
+  core.T_world_core = placed.T_world_shape;
   const auto& corners = mesh.triangles[static_cast<std::size_t>(triangle)];
   for (std::size_t i = 0; i < 3; ++i)
     core.corners[i] = mesh.vertices[static_cast<std::size_t>(corners[i])];
@@ -250,21 +257,20 @@ static ConvexCore nearest_core(const CollisionShape& shape, const Pose& T_world_
 
 /// FCL's own points are wrong for meshes against other shapes, and so are the triangles it names:
 /// there all are looked through.
-static void nearest_points(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b,
-                           const Pose& T_world_b, const fcl::DistanceResultd& result, Vector3* on_a,
-                           Vector3* on_b) {
-  if (a.is_mesh() && b.is_mesh()) {
-    convex_distance(nearest_core(a, T_world_a, static_cast<int>(result.b1)),
-                    nearest_core(b, T_world_b, static_cast<int>(result.b2)), on_a, on_b);
+static void nearest_points(const ShapeAtPose& a, const ShapeAtPose& b,
+                           const fcl::DistanceResultd& result, Vector3* on_a, Vector3* on_b) {
+  if (a.shape.is_mesh() && b.shape.is_mesh()) {
+    convex_distance(nearest_core(a, static_cast<int>(result.b1)),
+                    nearest_core(b, static_cast<int>(result.b2)), on_a, on_b);
     return;
   }
-  const CollisionShape& mesh = a.is_mesh() ? a : b;
+  const CollisionShape& mesh = a.shape.is_mesh() ? a.shape : b.shape;
   const int triangles = static_cast<int>(std::get<MeshPtr>(mesh.shape())->triangles.size());
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < triangles; ++i) {
     Vector3 point_a, point_b;
-    const double distance = convex_distance(nearest_core(a, T_world_a, i),
-                                            nearest_core(b, T_world_b, i), &point_a, &point_b);
+    const double distance =
+        convex_distance(nearest_core(a, i), nearest_core(b, i), &point_a, &point_b);
     if (distance >= least || distance <= 0) continue;
     least = distance;
     if (on_a != nullptr) *on_a = point_a;
@@ -284,7 +290,7 @@ double gap(const CollisionShape& a, const Pose& T_world_a, const CollisionShape&
   fcl::distance(a.exact().geometry.get(), T_world_a, b.exact().geometry.get(), T_world_b, request,
                 result);
   if (on_a != nullptr || on_b != nullptr)
-    nearest_points(a, T_world_a, b, T_world_b, result, on_a, on_b);
+    nearest_points({a, T_world_a}, {b, T_world_b}, result, on_a, on_b);
   return std::max(0.0, result.min_distance);
 }
 

@@ -37,7 +37,7 @@ const AxisState& SetpointFilter::toward_velocity(double velocity, double acceler
   velocity = usable(velocity, limits_.velocity);
   acceleration = reachable_acceleration(velocity, acceleration, limits_, dt);
   AxisProfile profile;
-  critical_movement(state_.velocity, state_.acceleration, velocity, acceleration,
+  critical_movement({state_.velocity, state_.acceleration}, {velocity, acceleration},
                     limits_.acceleration, limits_.jerk, profile);
   follow(profile, dt);
   return state_;

@@ -60,7 +60,7 @@ bool SetpointGate::stops_within_bounds(const AxisState& s, Eigen::Index axis,
                                        const AxisLimits& limits) const noexcept {
   if (lower_[axis] >= upper_[axis]) return true;
   AxisProfile stop;
-  critical_movement(s.velocity, s.acceleration, 0, 0, limits.acceleration, limits.jerk, stop);
+  critical_movement({s.velocity, s.acceleration}, {}, limits.acceleration, limits.jerk, stop);
   const AxisExtremes reach = extremes(s, stop.segments.data(), stop.count);
   return reach.lowest >= lower_[axis] - margin(axis) &&
          reach.highest <= upper_[axis] + margin(axis);

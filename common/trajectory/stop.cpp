@@ -5,17 +5,18 @@
 
 namespace handsel {
 
-void critical_movement(double v, double a, double v_end, double a_end, double A, double J,
+void critical_movement(const AxisRates& start, const AxisRates& end, double A, double J,
                        AxisProfile& out) noexcept {
   out.clear();
+  double v = start.velocity, a = start.acceleration;
   if (std::abs(a) > A) {
     const double side = a > 0 ? 1 : -1, t = (std::abs(a) - A) / J;
     out.push(t, -side * J);
     v += t * (a - side * J * t / 2);
     a = side * A;
   }
-  a_end = std::clamp(a_end, -A, A);
-  const double change = v_end - v;
+  const double a_end = std::clamp(end.acceleration, -A, A);
+  const double change = end.velocity - v;
   const double direct = (a + a_end) / 2 * std::abs(a_end - a) / J;
   const double side = change >= direct ? 1.0 : -1.0;
   const double a0 = side * a, af = side * a_end, dv = side * change;
@@ -34,7 +35,7 @@ void critical_movement(double v, double a, double v_end, double a_end, double A,
 
 StopMeasure measure_stop(double v, double a, double A, double J) noexcept {
   AxisProfile p;
-  critical_movement(v, a, 0, 0, A, J, p);
+  critical_movement({v, a}, {}, A, J, p);
   AxisState s{0, v, a};
   for (int k = 0; k < p.count; ++k) s = advanced(s, p.segments[k].duration, p.segments[k].jerk);
   return {p.duration(), s.position};
@@ -42,7 +43,7 @@ StopMeasure measure_stop(double v, double a, double A, double J) noexcept {
 
 void JerkLimitedStop::init(const AxisState& state, const AxisLimits& limits) noexcept {
   state_ = segment_start_ = state;
-  critical_movement(state.velocity, state.acceleration, 0, 0, limits.acceleration, limits.jerk,
+  critical_movement({state.velocity, state.acceleration}, {}, limits.acceleration, limits.jerk,
                     profile_);
   segment_ = 0;
   elapsed_ = 0;
@@ -73,7 +74,7 @@ Trajectory stop_trajectory(const MotionState3& state, const KinematicLimits& lim
   Trajectory out;
   for (Eigen::Index i = 0; i < state.position.size(); ++i) {
     AxisProfile p;
-    critical_movement(state.velocity[i], state.acceleration[i], 0, 0, limits.acceleration[i],
+    critical_movement({state.velocity[i], state.acceleration[i]}, {}, limits.acceleration[i],
                       limits.jerk[i], p);
     out.axes.push_back({{state.position[i], state.velocity[i], state.acceleration[i]},
                         {p.segments.begin(), p.segments.begin() + p.count}});

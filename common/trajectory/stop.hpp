@@ -6,12 +6,16 @@
 
 namespace handsel {
 
-/// Fastest change from (v, a) to (v_end, a_end), position free: at most three segments, four when
-/// |a| starts beyond the limit. The velocity goes beyond both ends only where the start
-/// acceleration makes it. Never fails for finite numbers and positive limits.
-void critical_movement(double velocity, double acceleration, double velocity_end,
-                       double acceleration_end, double max_acceleration, double max_jerk,
-                       AxisProfile& out) noexcept;
+/// Velocity and acceleration of one axis where its position does not matter.
+struct AxisRates {
+  double velocity{}, acceleration{};  ///< [rad/s], [rad/s^2]
+};
+
+/// Computes the fastest change from `start` to `end`, position free: at most three segments, four
+/// when |acceleration| starts beyond the limit. The velocity goes beyond both ends only where the
+/// start acceleration makes it. Never fails for finite numbers and positive limits.
+void critical_movement(const AxisRates& start, const AxisRates& end, double max_acceleration,
+                       double max_jerk, AxisProfile& out) noexcept;
 
 /// Time and distance of the minimum-time stop.
 struct StopMeasure {

@@ -18,16 +18,22 @@ struct RowPerson {
   float w_safety, w_visibility, w_comfort;  ///< their sum is 1
 };
 
-/// Fills the points (i * step, y, z) with i < n, n at most 128. `comfort` is read (255 counts as
-/// cost 1), the others are written as cost * 254.
-using FillRow = void (*)(const RowPerson& person, float y, float z, float step, int n,
+/// The points (i * step, y, z) with i < n, lengths in m.
+struct RowPoints {
+  float y, z, step;
+  int n;  ///< at most 128
+};
+
+/// Fills the points of a row. `comfort` is read (255 counts as cost 1), the others are written as
+/// cost * 254.
+using FillRow = void (*)(const RowPerson& person, const RowPoints& points,
                          const std::uint8_t* comfort, std::uint8_t* safety,
                          std::uint8_t* visibility, std::uint8_t* total) noexcept;
 
-void fill_row_base(const RowPerson&, float, float, float, int, const std::uint8_t*, std::uint8_t*,
+void fill_row_base(const RowPerson&, const RowPoints&, const std::uint8_t*, std::uint8_t*,
                    std::uint8_t*, std::uint8_t*) noexcept;
 #ifdef HANDSEL_SIMD_UNITS
-void fill_row_avx2(const RowPerson&, float, float, float, int, const std::uint8_t*, std::uint8_t*,
+void fill_row_avx2(const RowPerson&, const RowPoints&, const std::uint8_t*, std::uint8_t*,
                    std::uint8_t*, std::uint8_t*) noexcept;
 #endif
 /// The widest this processor has.

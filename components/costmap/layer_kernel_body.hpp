@@ -5,11 +5,13 @@
 #include "components/costmap/layer_kernel.hpp"
 
 namespace handsel::costmap::detail {
-void HANDSEL_FILL_ROW(const RowPerson& person, float y, float z, float step, int n,
+void HANDSEL_FILL_ROW(const RowPerson& person, const RowPoints& points,
                       const std::uint8_t* __restrict comfort, std::uint8_t* __restrict safety,
                       std::uint8_t* __restrict visibility,
                       std::uint8_t* __restrict total) noexcept {
   const RowPerson h = person;
+  const float y = points.y, z = points.z, step = points.step;
+  const int n = points.n;
   const float dy = y - h.axis_y, from_bottom = z - h.bottom,
               above = std::fmax(-from_bottom, from_bottom - h.height);
   const float hy = y - h.head[1], hz = z - h.head[2], head_yz = hy * hy + hz * hz;

@@ -134,8 +134,10 @@ void MapMaker::fill_others(const Person& person) {
   std::size_t at = 0;
   for (std::uint32_t k = 0; k < grid.nz; ++k)
     for (std::uint32_t j = 0; j < grid.ny; ++j, at += grid.nx)
-      fill(h, static_cast<float>(j) * step, static_cast<float>(k) * step, step,
-           static_cast<int>(grid.nx), &layers_[kComfort].values[at], &layers_[kSafety].values[at],
+      fill(h,
+           {static_cast<float>(j) * step, static_cast<float>(k) * step, step,
+            static_cast<int>(grid.nx)},
+           &layers_[kComfort].values[at], &layers_[kSafety].values[at],
            &layers_[kVisibility].values[at], &layers_[kTotal].values[at]);
 }
 

@@ -386,7 +386,7 @@ TEST_F(Refusals, a_motion_too_fast_to_stop_before_a_bound_is_refused_before_it) 
                J = 0.5 * robot().guard_limits().jerk[2];
   const double V = 0.99 * robot().guard_limits().velocity[2], upper = robot().axes()[2].upper;
   AxisProfile profile;
-  critical_movement(0, 0, V, 0, A, J, profile);
+  critical_movement({}, {V, 0}, A, J, profile);
   double t = 0, highest = 0;
   for (int k = 0; k < 20000 && side_.refused() == 0; ++k) {
     t += kStep;

@@ -70,6 +70,11 @@ struct Blend {
   Motion a, b;
 };
 
+/// Where evaluate() writes the state of all axes, one number an axis in each array.
+struct BatchState {
+  double *position, *velocity, *acceleration;
+};
+
 struct BatchKernels {
   const char* name;
   /// Reads as many axes as its third argument says; returns the bits of the odd ones, whose minimum
@@ -83,8 +88,8 @@ struct BatchKernels {
                           std::uint32_t* blocked) noexcept;
   /// State `t` after the start of a segment: `row` has positions, velocities, accelerations and
   /// jerks of all axes, each part `stride` long, a multiple of kBatchAxes; on 64 bytes.
-  void (*evaluate)(const double* row, int axes, int stride, double t, double* position,
-                   double* velocity, double* acceleration) noexcept;
+  void (*evaluate)(const double* row, int axes, int stride, double t,
+                   const BatchState& out) noexcept;
   /// Velocities, accelerations, jerks of the path at that time; each part `stride` long, on 64
   /// bytes. The same layout is read below.
   void (*rates)(const double* row, int stride, double t, double* out) noexcept;

@@ -8,8 +8,10 @@
 namespace handsel::detail {
 namespace {
 
-void evaluate(const double* row, int axes, int stride, double time, double* position,
-              double* velocity, double* acceleration) noexcept {
+void evaluate(const double* row, int axes, int stride, double time,
+              const BatchState& out) noexcept {
+  double *const position = out.position, *const velocity = out.velocity,
+                *const acceleration = out.acceleration;
   const V t = time, t2 = 0.5 * time, t3 = time * (1.0 / 3);
   for (int i = 0; i < axes; i += kWidth, row += kWidth) {
     const V x = load(row), v = load(row + stride), a = load(row + 2 * stride),

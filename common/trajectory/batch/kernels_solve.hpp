@@ -149,10 +149,17 @@ Family get(const AxisBatch::Family& in, int g) noexcept {
           load(in.reversed + g) > 0.5};
 }
 
-/// First root of displacement(s) = D from s_lo on, where displacement(s_lo) - D = f_from < 0.
-/// `todo`: axes that matter; axes that need care are added to `odd`.
-V root(const Family& f, const V& D, const V& f_from, const Limits& l, const M& todo, M* odd,
-       V* cruise) noexcept {
+/// displacement(s) = D is to be solved from s_lo on, where displacement(s_lo) - D = f_from < 0, for
+/// the axes `todo`.
+struct RootProblem {
+  V D, f_from;
+  M todo;
+};
+
+/// First root; axes that need care are added to `odd`.
+V root(const Family& f, const RootProblem& problem, const Limits& l, M* odd, V* cruise) noexcept {
+  const V &D = problem.D, &f_from = problem.f_from;
+  const M& todo = problem.todo;
   const V to = min(l.A, f.s_hi);
   V lo = f.s_lo, hi = to, f_lo = f_from;
   M concave(false);
@@ -257,7 +264,7 @@ M prepare_any(const AxisGroup& in, AxisBatch& block, int g) noexcept {
   M odd = island_up || island_down || !(rises || falls || still);
   const Family f = chosen(rises, up, down);
   V cruise = 0;
-  V s = root(f, pick(rises, D, -D), pick(rises, highest - D, D - lowest), l, !odd && !still, &odd,
+  V s = root(f, {pick(rises, D, -D), pick(rises, highest - D, D - lowest), !odd && !still}, l, &odd,
              &cruise);
   where(still, s) = 0;
   const V minimum = pick(still, 0, f.duration(s, l) + cruise);

@@ -91,7 +91,7 @@ void SegmentTable::evaluate(double t, int& cursor, MotionState3& out) const noex
   t = std::clamp(t, 0.0, duration());
   cursor = find(t, cursor);
   kernels_->evaluate(row(cursor), axes_, stride_, t - knots_[static_cast<std::size_t>(cursor)],
-                     out.position.data(), out.velocity.data(), out.acceleration.data());
+                     {out.position.data(), out.velocity.data(), out.acceleration.data()});
 }
 
 }  // namespace handsel

@@ -47,8 +47,8 @@ void AxisMover::stop(const AxisLimits& limits) noexcept {
     reset(state_.position);
     return;
   }
-  critical_movement(state_.velocity, state_.acceleration, 0.0, 0.0, limits.acceleration,
-                    limits.jerk, profile_);
+  critical_movement({state_.velocity, state_.acceleration}, {}, limits.acceleration, limits.jerk,
+                    profile_);
   begin();
   AxisState end = state_;
   for (int k = 0; k < profile_.count; ++k)

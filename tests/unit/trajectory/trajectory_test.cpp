@@ -175,7 +175,7 @@ TEST(JerkLimitedStop, critical_movement_ends_at_its_end_for_small_speeds_too) {
     AxisState s{0, draw(-1, 1) * std::pow(10, draw(-4, 0)),
                 draw(-1, 1) * A * std::pow(10, draw(-4, 0))};
     AxisProfile p;
-    critical_movement(s.velocity, s.acceleration, 0, 0, A, J, p);
+    critical_movement({s.velocity, s.acceleration}, {}, A, J, p);
     for (int i = 0; i < p.count; ++i)
       s = advanced(s, p.segments[static_cast<std::size_t>(i)].duration,
                    p.segments[static_cast<std::size_t>(i)].jerk);

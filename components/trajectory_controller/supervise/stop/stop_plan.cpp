@@ -84,8 +84,8 @@ void StopPlan::plan(const MotionState3& state, double delay) noexcept {
     // |a| t / 2 beyond it.
     axis.max_speed = std::max(std::abs(axis.start.velocity), std::abs(s.velocity));
     axis.travel = axis.max_speed * delay;
-    critical_movement(s.velocity, s.acceleration, 0.0, 0.0, limits_.acceleration[i],
-                      limits_.jerk[i], axis.profile);
+    critical_movement({s.velocity, s.acceleration}, {}, limits_.acceleration[i], limits_.jerk[i],
+                      axis.profile);
     axis.duration = delay;
     for (int k = 0; k < axis.profile.count; ++k) {
       const Segment& segment = axis.profile.segments[static_cast<std::size_t>(k)];
