@@ -20,9 +20,9 @@ struct RequestLimits {
 };
 
 /// What a newer request of a client means for its older ones.
-enum class Newer {
-  beside,    ///< nothing: each is answered
-  replaces,  ///< they are superseded
+enum class OlderRequests {
+  keep,       ///< each is answered
+  supersede,  ///< a newer one replaces them
 };
 
 /// Open requests and kept replies. `Reply::id` has the fields `client` and `number`; the numbers of
@@ -31,8 +31,8 @@ template <class Reply>
 class RequestQueue {
  public:
   using Id = decltype(Reply::id);
-  explicit RequestQueue(Newer newer, const RequestLimits& limits = {})
-      : newer_(newer), limits_(limits) {}
+  explicit RequestQueue(OlderRequests older, const RequestLimits& limits = {})
+      : older_(older), limits_(limits) {}
 
   enum class Admission {
     fresh,       ///< new: to be worked on
@@ -49,17 +49,19 @@ class RequestQueue {
     if (std::find(open_.begin(), open_.end(), id) != open_.end()) return Admission::under_way;
     Client& client = client_of(id);
     if (client.any_cancelled && id.number <= client.cancelled) return Admission::cancelled;
-    if (newer_ == Newer::replaces && id.number < client.newest) return Admission::superseded;
+    if (older_ == OlderRequests::supersede && id.number < client.newest)
+      return Admission::superseded;
     if (open_.size() >= limits_.open) return Admission::full;
     client.newest = std::max(client.newest, id.number);
     open_.push_back(id);
     return Admission::fresh;
   }
   /// Returns whether the client has sent a newer request that replaces this one; false under
-  /// Newer::beside and for unknown clients.
+  /// OlderRequests::keep and for unknown clients.
   bool superseded(const Id& id) const {
     const auto client = find(id.client);
-    return newer_ == Newer::replaces && client != clients_.end() && client->newest > id.number;
+    return older_ == OlderRequests::supersede && client != clients_.end() &&
+           client->newest > id.number;
   }
   /// Marks this request and all older ones of the client as cancelled. Returns those that are open.
   std::vector<Id> cancel(const Id& id) {
@@ -117,7 +119,7 @@ class RequestQueue {
     return clients_.back();
   }
 
-  Newer newer_;
+  OlderRequests older_;
   RequestLimits limits_;
   std::vector<Id> open_;
   std::deque<Reply> answers_;

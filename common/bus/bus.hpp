@@ -155,8 +155,8 @@ class Bus {
   /// Calls `on_time` once, after `delay`.
   virtual void after(Duration delay, std::function<void(TimePoint)> on_time) = 0;
   /// Runs long work: `work` runs off the executor (LocalBus: at once, finishing `modelled` later),
-  /// then `done` on the executor, always, cancelled or not. `work` returns the modelled compute
-  /// time for LocalBus. Jobs of a bus run one after the other.
+  /// then `done` on the executor, always, cancelled or not. `work` returns the modelled computing
+  /// time, which only LocalBus uses. Jobs of a bus run one after the other.
   virtual CancelToken run_job(std::function<Duration(const CancelToken&)> work,
                               std::function<void()> done) = 0;
   /// Returns the component's time: all ages, timers and deadlines refer to it.

@@ -25,6 +25,8 @@ namespace handsel {
 /// Returns the time on CLOCK_MONOTONIC.
 TimePoint monotonic_now();
 
+/// Event loop of one thread, with timers, and a worker thread for jobs. With simulated time the
+/// simulator grants the time up to which timers are served.
 class Executor {
  public:
   using Log = std::function<void(const std::string&)>;
@@ -33,45 +35,48 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  /// Returns the callbacks' time. While a timer is served with granted time, that is the instant
-  /// the timer was due at, so that a process scheduled late computes the same as one on time.
+  /// Returns the time of the callbacks. With simulated time, in the callback of a timer: the time
+  /// at which the timer was due, so that a process that is scheduled late computes the same.
   TimePoint now();
-  /// Returns the time at which the monotonic clock showed `wall`, which is past.
-  TimePoint past(TimePoint wall) { return clock_.past(wall); }
-  /// Returns PacedClock::stale() now.
+  /// Converts a past time of CLOCK_MONOTONIC to the time of the executor.
+  TimePoint past(TimePoint monotonic) { return clock_.past(monotonic); }
+  /// Returns whether no new grant of time has arrived for too long: the simulator does not answer.
   bool stale() const { return clock_.stale(monotonic_now()); }
-  /// As PacedClock::grant(); at the first grant the timers move back with the time.
+  /// Takes a grant of time; returns whether it was accepted (PacedClock::grant()). The first one
+  /// replaces CLOCK_MONOTONIC by the time of the simulator; timers keep the time that is left.
   bool grant(const TimeGrant& grant);
 
   /// As Bus::every(). Throws std::invalid_argument unless the period is > 0.
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick);
-  /// As every(), but on the monotonic clock whatever is granted; the callback receives that clock's
-  /// time.
+  /// As every(), but on CLOCK_MONOTONIC also with simulated time; the callback receives the time of
+  /// that clock.
   void every_real(Duration period, std::function<void(TimePoint)> on_tick);
   /// As Bus::after(); a delay below 1 ns counts as 1 ns.
   void after(Duration delay, std::function<void(TimePoint)> on_time);
-  /// As Bus::run_job() on a worker thread at normal priority; after end_jobs() the job is dropped
-  /// and `done` not called.
+  /// As Bus::run_job(), on a worker thread at normal priority; the time that `work` returns is not
+  /// used. After end_jobs() new jobs are dropped and `done` is not called.
   CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done);
 
-  /// Sets what is called on the executor after wake(); once, before running.
+  /// Sets the function that the executor calls after wake(). To be set at most once, before run().
   void on_wake(std::function<void()> drain) { drain_ = std::move(drain); }
-  /// Makes the executor call the function of on_wake() and finish jobs. Any thread; simultaneous
-  /// wake-ups are one.
+  /// Makes the executor call the function of on_wake() and finish jobs. Any thread; wake-ups
+  /// that are pending at the same time lead to one call.
   void wake() noexcept;
 
   /// Serves callbacks on the calling thread until stop().
   void run();
-  /// Serves callbacks until `done` holds (asked before each turn) or the real time `limit` is over
-  /// or stop() was called; returns whether it held.
+  /// Serves callbacks until `done` holds (checked before each round of the event loop) or the real
+  /// time `limit` is over or stop() was called; returns whether it held.
   bool run_until(const std::function<bool()>& done, Duration limit);
-  /// Ends run() after the current turn. Any thread, or a signal handler.
+  /// Ends run() and run_until() after the current round of the event loop. Any thread, or a signal
+  /// handler.
   void stop() noexcept;
   /// Cancels all jobs, drops those that wait, and waits for the running one; false if it is still
   /// at work after `limit`.
   bool end_jobs(Duration limit);
 
-  /// Returns whether the running job has given no sign of life for two seconds.
+  /// Returns whether the running job has not called CancelToken::cancelled() for two seconds. To be
+  /// asked regularly: the count of calls is compared with that of the last time. `now`: monotonic.
   bool job_silent(TimePoint now);
 
  private:

@@ -9,8 +9,8 @@
 
 namespace handsel {
 
-/// Returns whether the row is one of the table. Types of other rows are not compared: their writers
-/// may not announce them.
+/// Returns whether the row is an element of kTopics, by its address. For any other row the bus does
+/// not compare the types, which external writers may not announce.
 inline bool in_table(const TopicRow& row) {
   return !std::less<>()(&row, std::begin(kTopics)) && std::less<>()(&row, std::end(kTopics));
 }

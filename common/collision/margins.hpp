@@ -1,5 +1,5 @@
-// Clearance of an arm in motion to what it passes: it is not exactly where it is commanded to be,
-// and the head turns meanwhile. Own method: narrow places get smaller margins instead of no motion.
+// Clearance of an arm in motion to obstacles. It covers the tracking error and the turning of the
+// head meanwhile. Own method: narrow places get smaller margins instead of no motion.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,15 @@
 namespace handsel {
 
 struct Margins {
-  double boxes{};    ///< boxes of the scene are larger by this on every side [m]
-  double turning{};  ///< and links that axes beside the moving ones turn [m]
+  double boxes{};  ///< boxes of the scene are larger by this on every side [m]
+  /// Links that are driven by other axes than those of the motion, e.g. the head, are larger by
+  /// this [m].
+  double turning{};
 };
 
-/// Puts the scene into the world with the margins, or with the largest fraction of them (1, 0.3 or
-/// 0) at which `ends` (all axes) are free: a motion that begins near an obstacle must stay
-/// possible. The scene itself, moving axes, people and attachment are set before.
+/// Sets the scene of a world whose moving axes, people and attachment are set already. The margins
+/// are multiplied by the largest factor (1, 0.3 or 0) at which all configurations `ends` (all axes)
+/// are free: a motion that begins near an obstacle must stay possible.
 void set_scene_with_margins(CollisionWorld& world, const Scene& scene, const Margins& margins,
                             const std::vector<Vector>& ends);
 

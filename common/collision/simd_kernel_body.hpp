@@ -1,4 +1,5 @@
-// The one source of the SIMD kernels, compiled once per register width.
+// SIMD kernels of collision and distance. Included only by the source file of each register width,
+// which sets kWidth by simd_math.hpp.
 #pragma once
 
 #include <algorithm>
@@ -9,21 +10,26 @@
 namespace handsel::detail {
 namespace {
 
-constexpr float kRootAtRest[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+constexpr float kIdentityPose[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
+/// Collision check of kWidth states of the robot, one in each lane of a register.
 struct Pass {
-  const SimdTables& tables;
-  SimdMemory& memory;
-  bool swept{}, any{};
+  const SimdTables& tables;  ///< robot and scene: joints, sphere trees, solids, pairs
+  SimdMemory& memory;        ///< scratch memory of the check
+  bool swept{};              ///< each state stands for all within +-half of it
+  bool stop_at_first{};      ///< one state in collision is enough
 
-  /// Nothing more is to be learnt from the states left.
+  /// Returns whether the search can stop: no state is left, or one collision is enough and found.
   bool settled(const M& found, const M& left) const noexcept {
-    return !any_of(left) || (any && any_of(found));
+    return !any_of(left) || (stop_at_first && any_of(found));
   }
 
+  /// Returns the pose of a body: rows of a 3x4 matrix, kWidth states each.
   float* pose(int body) const noexcept { return memory.pose + body * 12 * kBatchStates; }
 
-  void spread(const float* half) const noexcept {
+  /// Writes for each body how far its points may move within +-half of the states [m]. `half`: a
+  /// row for each joint, kBatchStates columns [rad].
+  void compute_sweep_margins(const float* half) const noexcept {
     for (int body = 0; body <= tables.joint_count; ++body) {
       V sum = 0.0f;
       const float* reach = tables.reach + body * tables.joint_count;
@@ -34,6 +40,7 @@ struct Pass {
       store(sum, memory.margin + body * kBatchStates);
     }
   }
+  /// Returns how far the two bodies of a pair may move relative to each other within +-half [m].
   V pair_margin(int pair, const float* half) const noexcept {
     V sum = 0.0f;
     const float* reach = tables.pair_reach + pair * tables.joint_count;
@@ -44,7 +51,9 @@ struct Pass {
     return sum;
   }
 
-  const float* place(int index) const noexcept {
+  /// Returns the centre of a sphere in the root frame: x, y and z of kWidth states each [m].
+  /// Computed once in a pass.
+  const float* node_position(int index) const noexcept {
     float* at = memory.position + index * 3 * kBatchStates;
     if (memory.stamp[index] == memory.now) return at;
     memory.stamp[index] = memory.now;
@@ -57,6 +66,7 @@ struct Pass {
     return at;
   }
 
+  /// Returns in which states a sphere touches or overlaps a solid; NaN counts as a collision.
   [[gnu::always_inline]] static M meets(const SimdSolid& s, const V& x, const V& y, const V& z,
                                         const V& r) noexcept {
     const V lx = x * s.axes[0] + y * s.axes[1] + (z * s.axes[2] - s.at[0]);
@@ -72,9 +82,11 @@ struct Pass {
     return !(dx * dx + dy * dy + dz * dz > reach * reach);
   }
 
-  M below(int index, const std::int32_t* list, int count, M todo, int depth) const noexcept {
+  /// Returns the states in which the spheres of the tree under `index` collide with one of the
+  /// listed solids.
+  M descend(int index, const std::int32_t* list, int count, M todo, int depth) const noexcept {
     const SimdNode& node = tables.nodes[index];
-    const float* at = place(index);
+    const float* at = node_position(index);
     const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
     V r = node.radius;
     if (swept) r += load(memory.margin + node.body * kBatchStates);
@@ -95,7 +107,7 @@ struct Pass {
     }
     if (leaf || left == 0) return found;
     for (int c = 0; c < node.children; ++c) {
-      const M hit = below(node.first_child + c, kept, left, todo, depth + 1);
+      const M hit = descend(node.first_child + c, kept, left, todo, depth + 1);
       found = found || hit;
       todo = todo && !hit;
       if (settled(found, todo)) return found;
@@ -103,11 +115,11 @@ struct Pass {
     return found;
   }
 
-  /// Solids that can be met by the root in any state: its sphere around all states against sixteen
-  /// solids at once.
+  /// Broad phase: writes to `kept` the solids that the root sphere can reach in at least one of the
+  /// states, and returns their number.
   int near(const SimdSearch& s, const M& todo, std::int32_t* kept) const noexcept {
     const SimdNode& node = tables.nodes[s.root];
-    const float* at = place(s.root);
+    const float* at = node_position(s.root);
     const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
     const float low[3] = {hmin(where(todo, x)), hmin(where(todo, y)), hmin(where(todo, z))};
     const float high[3] = {hmax(where(todo, x)), hmax(where(todo, y)), hmax(where(todo, z))};
@@ -141,15 +153,16 @@ struct Pass {
     return left;
   }
 
+  /// Returns the states in which a part of the robot collides with its solids.
   M search(const SimdSearch& s, M todo) const noexcept {
     const std::int32_t* list = tables.solid_list + s.first_solid;
     if (s.nodes == 0) {
-      if (s.first_row < 0) return below(s.root, list, s.solids, todo, 0);
+      if (s.first_row < 0) return descend(s.root, list, s.solids, todo, 0);
       const int left = near(s, todo, memory.lists);
-      return left == 0 ? M(false) : below(s.root, memory.lists, left, todo, 1);
+      return left == 0 ? M(false) : descend(s.root, memory.lists, left, todo, 1);
     }
     const SimdNode& node = tables.nodes[s.root];
-    const float* at = place(s.root);
+    const float* at = node_position(s.root);
     const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
     V r = node.radius;
     if (swept) r += load(memory.margin + node.body * kBatchStates);
@@ -159,7 +172,7 @@ struct Pass {
       if (any_of(todo && meets(tables.solids[list[k]], x, y, z, r))) kept[left++] = list[k];
     M found(false);
     for (int i = 0; left > 0 && i < s.nodes; ++i) {
-      const M hit = below(tables.node_list[s.first_node + i], kept, left, todo, 1);
+      const M hit = descend(tables.node_list[s.first_node + i], kept, left, todo, 1);
       found = found || hit;
       todo = todo && !hit;
       if (settled(found, todo)) break;
@@ -167,9 +180,10 @@ struct Pass {
     return found;
   }
 
-  M apart(int a, int b, const V& margin, const M& todo) const noexcept {
+  /// Returns the states in which two sphere trees overlap, or are within `margin` [m].
+  M overlap(int a, int b, const V& margin, const M& todo) const noexcept {
     const SimdNode &na = tables.nodes[a], &nb = tables.nodes[b];
-    const float *pa = place(a), *pb = place(b);
+    const float *pa = node_position(a), *pb = node_position(b);
     const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth),
             z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
     const V reach = margin + (na.radius + nb.radius);
@@ -179,8 +193,8 @@ struct Pass {
     const SimdNode& split = first ? na : nb;
     M found(false);
     for (int c = 0; c < split.children; ++c) {
-      const M hit = first ? apart(split.first_child + c, b, margin, open)
-                          : apart(a, split.first_child + c, margin, open);
+      const M hit = first ? overlap(split.first_child + c, b, margin, open)
+                          : overlap(a, split.first_child + c, margin, open);
       found = found || hit;
       open = open && !hit;
       if (settled(found, open)) break;
@@ -188,10 +202,11 @@ struct Pass {
     return found;
   }
 
+  /// Returns the states in collision with the scene or with the robot itself.
   M run(const float* q, const float* half, M todo) const noexcept {
     const M asked = todo;
-    forward(tables.joints, tables.joint_count, kRootAtRest, q, memory.pose);
-    if (swept) spread(half);
+    forward(tables.joints, tables.joint_count, kIdentityPose, q, memory.pose);
+    if (swept) compute_sweep_margins(half);
     for (int i = 0; i < tables.search_count; ++i) {
       todo = todo && !search(tables.searches[i], todo);
       if (settled(asked && !todo, todo)) return asked && !todo;
@@ -200,7 +215,7 @@ struct Pass {
       const SimdPair& pair = tables.pairs[i];
       const V margin = swept ? pair_margin(i, half) : V(0.0f);
       const SimdNode &na = tables.nodes[pair.a], &nb = tables.nodes[pair.b];
-      const float *pa = place(pair.a), *pb = place(pair.b);
+      const float *pa = node_position(pair.a), *pb = node_position(pair.b);
       const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth),
               z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
       const V reach = margin + (na.radius + nb.radius);
@@ -209,7 +224,7 @@ struct Pass {
       M open = near;
       for (int k = 0; k < pair.pairs && any_of(open); ++k) {
         const SimdNodePair& nodes = tables.node_pairs[pair.first + k];
-        open = open && !apart(nodes.a, nodes.b, margin, open);
+        open = open && !overlap(nodes.a, nodes.b, margin, open);
       }
       todo = todo && !(near && !open);
       if (settled(asked && !todo, todo)) return asked && !todo;
@@ -218,10 +233,13 @@ struct Pass {
   }
 };
 
+/// Checks the states of `state_bits`. `q`, `half`: a row for each joint, kBatchStates columns
+/// [rad]; with `half` each state stands for all within +-half of it. Returns a bit for each state
+/// in collision; with `stop_at_first` perhaps not all of them.
 std::uint32_t check(const SimdTables& tables, SimdMemory& memory, const float* q, const float* half,
-                    std::uint32_t state_bits, bool any) noexcept {
+                    std::uint32_t state_bits, bool stop_at_first) noexcept {
   std::uint32_t out = 0;
-  const Pass pass{tables, memory, half != nullptr, any};
+  const Pass pass{tables, memory, half != nullptr, stop_at_first};
   for (int g = 0; g < kBatchStates; g += kWidth) {
     const std::uint32_t here = state_bits >> g;
     if (here == 0) break;
@@ -229,11 +247,14 @@ std::uint32_t check(const SimdTables& tables, SimdMemory& memory, const float* q
     if (!any_of(todo)) continue;
     ++memory.now;
     out |= bits(pass.run(q + g, half == nullptr ? nullptr : half + g, todo)) << g;
-    if (any && out != 0) break;
+    if (stop_at_first && out != 0) break;
   }
   return out;
 }
 
+/// Writes the distances of `count` capsules of the robot to 16 of people [m]: distance[16 * i + k]
+/// is exact where it is at most `slack` above the smallest, else a lower bound. Returns the
+/// smallest; negative: overlap.
 float distances(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack,
                 float* distance) noexcept {
   float nearest = 1e30f;

@@ -50,7 +50,7 @@ class Node {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
-  RequestQueue<PathReply> requests_{Newer::replaces};
+  RequestQueue<PathReply> requests_{OlderRequests::supersede};
   std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>>
       running_;    ///< By client and number.
   Solver solver_;  ///< Solves in jobs only, which run one after the other.

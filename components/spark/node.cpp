@@ -15,7 +15,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     : bus_(bus),
       settings_(load_settings(context.settings)),
       calibration_(context.settings / "calibration.txtpb"),
-      eyes_(eyes_of(place, calibration_)),
+      eyes_(viewpoints_of(place, calibration_)),
       tracker_(settings_, eyes_),
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot, context.objects),

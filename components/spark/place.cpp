@@ -30,8 +30,8 @@ std::vector<SceneBox> boxes_of(const config::Scenario& scenario) {
   return boxes;
 }
 
-std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario,
-                                       const Calibration& calibration) {
+std::map<std::string, Vector3> viewpoints_of(const config::Scenario& scenario,
+                                             const Calibration& calibration) {
   std::map<std::string, Vector3> eyes;
   for (const auto& [name, source] : calibration.sources())
     if (source.own_frame) eyes[name] = source.T_world_camera.translation();

@@ -13,9 +13,9 @@ namespace handsel::spark {
 
 /// Returns the floor and the boxes of the scenario, in this order.
 std::vector<SceneBox> boxes_of(const config::Scenario& scenario);
-/// Returns the viewpoint of each source that has one, by name, world [m]: of a calibrated camera,
-/// or of a sensor of the scenario that things can hide people from.
-std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario,
-                                       const Calibration& calibration);
+/// Returns the viewpoint of each source that has one, by the name of the source, world [m]:
+/// calibrated cameras, and sensors of the scenario whose view objects can occlude.
+std::map<std::string, Vector3> viewpoints_of(const config::Scenario& scenario,
+                                             const Calibration& calibration);
 
 }  // namespace handsel::spark

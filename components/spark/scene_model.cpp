@@ -47,7 +47,7 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
   robot_.locate();
   std::vector<ObservedObject> samples;
   for (ObservedObject observed : observation.objects) {
-    if (has_shape(observed, library_)) {
+    if (select_shape(observed, library_)) {
       samples.push_back(std::move(observed));
       continue;
     }
@@ -60,16 +60,16 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
                " with a size above 0";
   }
   shorten(samples);
-  unswap(samples, objects_, seen);
+  correct_swapped_ids(samples, objects_, seen);
   for (const ObservedObject& observed : samples) {
     ObjectTrack& track = objects_[observed.id];
     if (seen < track.seen ||
-        !believes(track, observed, observation.source, seen, settings_.doubt_time))
+        !accept_source(track, observed, observation.source, seen, settings_.doubt_time))
       continue;
     add_sample(track, observed, seen, settings_.doubt_time);
     if (robot_.known())
       track.T_palm_object =
-          robot_.hands()[track.by].T_world_palm.inverse() * observed.T_world_object;
+          robot_.hands()[track.robot_hand].T_world_palm.inverse() * observed.T_world_object;
   }
   forget_least_relevant();
 }
@@ -152,10 +152,10 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
     holders.attribute_grips(track);
     if (track.object.age > kVelocityGap) track.object.velocity.setZero();
     if (!holders.carry(track)) holders.assign(track);
-    mislay(track, people, now, settings_);
+    update_uncertainty(track, people, now, settings_);
     SceneObject object = track.object;
-    if (object.holder == Holder::robot && object.age > kMissed)
-      object.T_world_object = robot_.hands()[track.by].T_world_palm * track.T_palm_object;
+    if (object.holder == Holder::robot && object.age > kFollowHandAfter)
+      object.T_world_object = robot_.hands()[track.robot_hand].T_world_palm * track.T_palm_object;
     out.objects.push_back(std::move(object));
   }
   const Quotas quotas = quotas_of(settings_);

@@ -44,7 +44,7 @@ class Node {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
-  RequestQueue<TrajectoryReply> requests_{Newer::beside};
+  RequestQueue<TrajectoryReply> requests_{OlderRequests::keep};
 
   // Used by jobs only, which run one after the other.
   CollisionWorld world_;

@@ -55,8 +55,9 @@ class DdsBus : public Bus, public RawBus {
   void set_stopping();
   /// Returns the random number of this process start, as in ComponentHealth.
   std::uint64_t incarnation() const;
-  /// Runs for at most `wait`, looking for another living process of the same component. Of two that
-  /// start together only the one with the larger incarnation sees the other as its twin.
+  /// Serves callbacks for at most `wait`. Returns whether another live process of the same
+  /// component exists. Of two that start together only the one with the larger incarnation gets
+  /// true, so that one of them remains.
   bool has_twin(Duration wait);
   /// Returns the participants and endpoints discovered on the domain so far. For tools: allocates
   /// memory and queries the transport.

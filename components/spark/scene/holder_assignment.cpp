@@ -103,10 +103,10 @@ std::optional<std::size_t> HolderAssignment::loaded_hand(const ObjectTrack& trac
     if (!strongest || hand.payload > in_.robot.hands()[*strongest].payload) strongest = i;
   }
   if (!strongest || !(together > kHeldRatio * model->mass)) return std::nullopt;
-  const RobotPlacement::Hand& before = in_.robot.hands()[track.by];
+  const RobotPlacement::Hand& before = in_.robot.hands()[track.robot_hand];
   const bool kept =
       track.object.holder == Holder::robot && before.payload > kKeptRatio * model->mass;
-  return kept ? track.by : *strongest;
+  return kept ? track.robot_hand : *strongest;
 }
 
 void HolderAssignment::assign(ObjectTrack& track) const {
@@ -115,8 +115,8 @@ void HolderAssignment::assign(ObjectTrack& track) const {
   const Vector3 where = object.T_world_object.translation();
   const std::optional<std::size_t> by = loaded_hand(track);
   const bool robot_may = by.has_value();
-  if (robot_may && *by != track.by) {
-    track.by = *by;
+  if (robot_may && *by != track.robot_hand) {
+    track.robot_hand = *by;
     track.T_palm_object = in_.robot.hands()[*by].T_world_palm.inverse() * object.T_world_object;
   }
   if (const SceneBox* box =
@@ -156,9 +156,9 @@ bool HolderAssignment::carry(ObjectTrack& track) const {
   const auto person = std::find_if(in_.people.people.begin(), in_.people.people.end(),
                                    [&](const Person& p) { return p.id == object.holder_id; });
   if (person == in_.people.people.end()) return false;
-  if (track.object.age <= kMissed) {
-    if (track.gripped == track.seen) return false;
-    track.gripped = track.seen;
+  if (track.object.age <= kFollowHandAfter) {
+    if (track.hand_offset_time == track.seen) return false;
+    track.hand_offset_time = track.seen;
     double nearest = std::numeric_limits<double>::infinity();
     for (const char* hand : {"l_hand", "r_hand"}) {
       const Vector3 p = object.T_world_object.translation() - joint_of(*person, hand).position;

@@ -52,7 +52,7 @@ void follow(ObjectTrack& track, const ObservedObject& observed, TimePoint seen) 
 
 }  // namespace
 
-bool has_shape(ObservedObject& observed, const ObjectLibrary& library) {
+bool select_shape(ObservedObject& observed, const ObjectLibrary& library) {
   const bool described =
       !observed.model.empty() && (!library || library(observed.model) != nullptr);
   if (described) {
@@ -64,7 +64,8 @@ bool has_shape(ObservedObject& observed, const ObjectLibrary& library) {
   return true;
 }
 
-void unswap(std::vector<ObservedObject>& observed, const ObjectTracks& tracks, TimePoint at) {
+void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTracks& tracks,
+                         TimePoint at) {
   for (std::size_t i = 0; i < observed.size(); ++i) {
     for (std::size_t k = i + 1; k < observed.size(); ++k) {
       const auto a = tracks.find(observed[i].id), b = tracks.find(observed[k].id);
@@ -87,8 +88,8 @@ void unswap(std::vector<ObservedObject>& observed, const ObjectTracks& tracks, T
   }
 }
 
-bool believes(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
-              TimePoint seen, double doubt_time) {
+bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
+                   TimePoint seen, double doubt_time) {
   if (track.samples == 0 || track.source == source || to_seconds(seen - track.seen) > kTrust) {
     track.source = source;
     return true;
@@ -121,8 +122,8 @@ void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint se
   track.wandered = 0;
 }
 
-void mislay(ObjectTrack& track, const HumanState& people, TimePoint now,
-            const settings::SparkSettings& settings) {
+void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint now,
+                        const settings::SparkSettings& settings) {
   const double unseen = to_seconds(now - track.seen) - settings.unseen_after;
   const double since = std::clamp(to_seconds(now - track.evaluated), 0.0, std::max(0.0, unseen));
   track.evaluated = now;

@@ -25,16 +25,16 @@ void AxisMover::begin() noexcept {
 }
 
 void AxisMover::go_to(double target, const AxisLimits& limits,
-                      const AxisLimits& max_velocity) noexcept {
+                      const AxisLimits& fallback_limits) noexcept {
   AxisLimits used = limits;
   if (std::abs(state_.velocity + state_.acceleration * std::abs(state_.acceleration) /
                                      (2.0 * limits.jerk)) > limits.velocity) {
-    used.acceleration = max_velocity.acceleration;
-    used.jerk = max_velocity.jerk;
+    used.acceleration = fallback_limits.acceleration;
+    used.jerk = fallback_limits.jerk;
   }
   AxisProfile profile;
   if (solve_axis(state_, {target, 0.0, 0.0}, used, profile) != AxisOutcome::ok) {
-    stop(max_velocity);
+    stop(fallback_limits);
     return;
   }
   profile_ = profile;

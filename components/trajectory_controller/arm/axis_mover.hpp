@@ -8,22 +8,24 @@ namespace handsel::trajectory_controller {
 
 class AxisMover {
  public:
-  /// At rest at `position`.
+  /// Starts at rest at `position` [rad or m].
   void reset(double position) noexcept;
-  /// In motion at `state`; comes to rest as fast as it can.
+  /// Starts in motion at `state` and stops in minimum time.
   void take_over(const AxisState& state, const AxisLimits& limits) noexcept;
-  /// Minimum-time motion from the present state to rest at `target`. Where `limits` would let the
-  /// present state continue to a velocity beyond theirs, acceleration and jerk may be as large as
-  /// `max_velocity`.
-  void go_to(double target, const AxisLimits& limits, const AxisLimits& max_velocity) noexcept;
-  /// Minimum-time stop from the present state.
+  /// Plans a minimum-time motion from the present state to rest at `target`. If the present
+  /// acceleration would carry the velocity beyond that of `limits`, acceleration and jerk of
+  /// `fallback_limits` are used to prevent that.
+  void go_to(double target, const AxisLimits& limits, const AxisLimits& fallback_limits) noexcept;
+  /// Plans a minimum-time stop from the present state.
   void stop(const AxisLimits& limits) noexcept;
-  const AxisState& step(double dt) noexcept;  ///< state dt later
+  /// Returns the state `dt` [s] later.
+  const AxisState& step(double dt) noexcept;
 
-  /// State after the last step() or take-over.
+  /// State after the last step(), reset() or take_over().
   const AxisState& state() const noexcept { return state_; }
   double target() const noexcept { return target_; }  ///< where it comes to rest
-  /// Returns whether the motion has ended; false while it stands for a moment in between.
+  /// Returns whether the motion has ended; false at the zero velocity of a
+  /// reversal.
   bool at_rest() const noexcept { return segment_ >= profile_.count; }
 
  private:

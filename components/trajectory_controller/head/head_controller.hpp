@@ -1,5 +1,5 @@
-// Turns the head to where attention looks, as far as no part of the robot is in between. Pure; no
-// heap in step().
+// Turns the head to the gaze target of attention where the head collides with nothing there. Pure;
+// no heap in step().
 #pragma once
 
 #include <vector>
@@ -17,13 +17,14 @@ class HeadController {
   HeadController(const RobotModel& robot, const std::vector<int>& axes, double dead_band,
                  double period);
 
-  /// Turns to the gaze target of the advice where that is new and free of collisions, here and at
-  /// `path_end`, where the arm comes to rest (both: all axes).
+  /// Turns to the gaze target of the advice if the target is new and the head collides with nothing
+  /// there, with the other axes at `here` (present) and at `path_end` (where the arm comes to
+  /// rest); else keeps the target before.
   void aim_at(const AttentionAdvice& advice, const Pose& T_world_base, const Vector& here,
               const Vector& path_end);
-  /// Begins at rest at `position`, all axes, with no gaze target.
+  /// Starts at rest at `position` (all axes), with no gaze target.
   void reset(const Vector& position) noexcept;
-  /// Writes the axes of the head of the next set-point.
+  /// Writes the axes of the head of the next set-point. `may_move`: false: the head stops.
   void step(bool may_move, MotionState3& next) noexcept;
   /// Movers of the axes of the head.
   AxisMovers& movers() noexcept { return movers_; }

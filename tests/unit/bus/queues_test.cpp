@@ -15,7 +15,7 @@ using Queue = RequestQueue<PathReply>;
 using Admission = Queue::Admission;
 
 TEST(RequestQueue, works_once_and_lets_newer_requests_replace_older_ones) {
-  Queue queue(Newer::replaces);
+  Queue queue(OlderRequests::supersede);
   EXPECT_EQ(queue.admit({1, 1}), Admission::fresh);
   EXPECT_EQ(queue.admit({1, 1}), Admission::under_way);
   EXPECT_EQ(queue.admit({1, 2}), Admission::fresh);
@@ -32,14 +32,14 @@ TEST(RequestQueue, works_once_and_lets_newer_requests_replace_older_ones) {
 }
 
 TEST(RequestQueue, leaves_requests_beside_each_other_where_all_are_wanted) {
-  Queue queue(Newer::beside);
+  Queue queue(OlderRequests::keep);
   EXPECT_EQ(queue.admit({1, 5}), Admission::fresh);
   EXPECT_EQ(queue.admit({1, 3}), Admission::fresh);
   EXPECT_FALSE(queue.superseded({1, 3}));
 }
 
 TEST(RequestQueue, cancels_what_is_not_answered_and_what_comes_late) {
-  Queue queue(Newer::beside);
+  Queue queue(OlderRequests::keep);
   for (std::uint64_t number : {1, 2, 3}) queue.admit({7, number});
   EXPECT_EQ(queue.cancel({7, 2}).size(), 2u);
   EXPECT_EQ(queue.admit({7, 0}), Admission::cancelled);
@@ -48,7 +48,7 @@ TEST(RequestQueue, cancels_what_is_not_answered_and_what_comes_late) {
 }
 
 TEST(RequestQueue, is_full_at_its_bound_and_has_room_again_after_an_answer) {
-  Queue queue(Newer::beside, {.open = 4});
+  Queue queue(OlderRequests::keep, {.open = 4});
   for (std::uint64_t number = 1; number <= 4; ++number)
     EXPECT_EQ(queue.admit({number, 1}), Admission::fresh);
   EXPECT_EQ(queue.admit({9, 1}), Admission::full);
@@ -59,7 +59,7 @@ TEST(RequestQueue, is_full_at_its_bound_and_has_room_again_after_an_answer) {
 }
 
 TEST(RequestQueue, does_not_grow_with_ever_new_clients) {
-  Queue queue(Newer::replaces);
+  Queue queue(OlderRequests::supersede);
   std::mt19937_64 random(1);
   for (int i = 0; i < 10000; ++i) {
     const RequestId id{random(), 1 + random() % 3};
