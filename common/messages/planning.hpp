@@ -163,6 +163,15 @@ struct Contact {
   double curvature{};  ///< interpolated mean curvature, normalised to [0, 1]
 };
 
+/// A grasp of a person's hand beside that of the robot's hand on the same object.
+struct PartnerGrasp {
+  std::uint64_t id{};  ///< unique per object and hand
+  /// Wrist of the person's hand in the object frame: z along the fingers, x out of the palm.
+  Pose T_object_wrist{Pose::Identity()};
+  double opposition{};  ///< angle between the directions of the two wrists [rad]
+  double quality{};     ///< the smaller of the two grasps, [0, 1]
+};
+
 /// A grasp of one hand on one object (chapter section 3.2.1).
 struct Grasp {
   std::uint64_t id{};                    ///< unique per object
@@ -184,6 +193,8 @@ struct Grasp {
   Vector3 platform{Vector3::Zero()};
   /// Fraction of the object that its receiver (else the robot's head) sees past the hand.
   double visible{};
+  /// Right hands of the person it is for that find room beside it, best first.
+  std::vector<PartnerGrasp> partners;
 };
 
 /// Topic GraspRequest, profile request.

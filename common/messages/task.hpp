@@ -171,6 +171,11 @@ struct ActionStatus {
   Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
   /// Until the object changes hands, as foreseen [s].
   double time_to_handover{std::numeric_limits<double>::infinity()};
+  bool has_partner{};  ///< the handover is planned for a grasp of the person
+  /// Wrist of the person's hand at the handover: z along the fingers, x out of the palm; world.
+  Pose T_world_partner_wrist{Pose::Identity()};
+  /// Largest fraction of its range that wrist or arm of the person uses there.
+  double partner_strain{};
   ActionFailure failure{};  ///< of a state failed or cancelled
   std::string reason;       ///< of a failure, one sentence
   Refusals refusals;        ///< grasps, paths and places discarded during the action

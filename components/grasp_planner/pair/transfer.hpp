@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/grasp_planner/pair/double_grasp.hpp"
-#include "components/grasp_planner/pair/human_wrist.hpp"
+#include "common/model/human/human_wrist.hpp"
 
 namespace handsel::grasp_planner {
 

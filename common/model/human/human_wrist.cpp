@@ -1,4 +1,4 @@
-#include "components/grasp_planner/pair/human_wrist.hpp"
+#include "common/model/human/human_wrist.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "common/model/human/human_body.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel {
 namespace {
 
 constexpr double kStretched = 0.95;  // share of its length an arm reaches comfortably
@@ -84,4 +84,4 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
   return best;
 }
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel

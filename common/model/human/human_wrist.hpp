@@ -6,7 +6,7 @@
 
 #include "common/messages/world.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel {
 
 /// Where an arm starts and how long it is.
 struct HumanArm {
@@ -48,4 +48,4 @@ inline constexpr double kComfortableStrain = 0.6;
 /// m.
 std::optional<WristPosture> wrist_posture(const HumanArm&, const Pose& T_world_wrist);
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel
