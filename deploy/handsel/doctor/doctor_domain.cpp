@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -16,12 +15,11 @@
 #include "common/base/errors.hpp"
 #include "common/bus/dds/dds_configuration.hpp"
 #include "common/bus/writer_pin.hpp"
-#include "common/config/resources.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/robot.hpp"
-#include "components/spark/calibration.hpp"
 #include "deploy/handsel/doctor/doctor.hpp"
+#include "deploy/handsel/doctor/domain_findings.hpp"
 #include "deploy/handsel/doctor/probe.hpp"
 #include "deploy/handsel/system/launcher.hpp"
 #include "deploy/handsel/system/machine.hpp"
@@ -37,24 +35,8 @@ constexpr Duration kEnter = std::chrono::seconds(5);  // for one participant, on
 constexpr Duration kMeet = std::chrono::seconds(3);   // for all to hear each other
 constexpr Duration kLook = std::chrono::milliseconds(800);
 constexpr Duration kSpeak = std::chrono::milliseconds(50);
-constexpr double kOffset =
-    0.05;  // of clocks [s]; more than any transit on one machine or a local network
-constexpr double kFuture = 0.01;  // a measurement from so far ahead cannot be [s]
-constexpr double kOld = 1.0;      // older measurements than any sensor's latency [s]
-constexpr double kJump = 0.005;   // of the wall clock against the monotonic one while looked at [s]
-constexpr double kBaseOff = 0.01,
-                 kBaseTurned = 0.01;  // of the robot's base from its calibration [m], [rad]
 constexpr const char* kDefaultRemedy =
     "correct it, or unset CYCLONEDDS_URI: Handsel then uses deploy/dds/loopback.xml";
-
-std::string where(int domain) { return "domain " + std::to_string(domain); }
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 double wall_minus_monotonic() {
   timespec wall{}, monotonic{};
@@ -227,11 +209,12 @@ Finding check_configuration(const DdsConfiguration& dds) {
   std::size_t largest = 0;
   for (const TopicRow& row : topics()) largest = std::max(largest, row.largest);
   if (dds.max_sample_size && *dds.max_sample_size < largest) {
-    return {"DDS settings", Verdict::bad,
-            format("MaxSampleSize is %.2f MiB in %s; messages of up to %.2f MiB would be dropped",
-                   static_cast<double>(*dds.max_sample_size) / (1 << 20), source.c_str(),
-                   static_cast<double>(largest) / (1 << 20)),
-            "set Internal/MaxSampleSize to 8MiB"};
+    return {
+        "DDS settings", Verdict::bad,
+        finding_text("MaxSampleSize is %.2f MiB in %s; messages of up to %.2f MiB would be dropped",
+                     static_cast<double>(*dds.max_sample_size) / (1 << 20), source.c_str(),
+                     static_cast<double>(largest) / (1 << 20)),
+        "set Internal/MaxSampleSize to 8MiB"};
   }
   if (!dds.max_sample_size) {
     return {
@@ -267,7 +250,7 @@ Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, s
   const std::string share = (entered == 0 ? "no process"
                                           : "only " + std::to_string(entered) + " of " +
                                                 std::to_string(wanted) + " processes") +
-                            " can enter " + where(options.domain) + ": ";
+                            " can enter " + domain_text(options.domain) + ": ";
   if (said.find("free participant index") == std::string::npos) {
     if (what.find("join") != std::string::npos) {
       return {"DDS", Verdict::bad,
@@ -298,8 +281,9 @@ Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, s
 
 Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const Json& seen,
                 std::size_t speakers) {
-  const std::string text = format("%zu of %zu processes on domain %d are found within 3 s",
-                                  seen["received"].get<std::size_t>(), speakers, options.domain);
+  const std::string text =
+      finding_text("%zu of %zu processes on domain %d are found within 3 s",
+                   seen["received"].get<std::size_t>(), speakers, options.domain);
   if (dds.peers.empty()) {
     return {"DDS", Verdict::bad,
             text + ": no peer is named and multicast does not reach this machine's own processes",
@@ -317,198 +301,6 @@ Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const
               " do not answer",
           "look whether a firewall drops UDP on the interface, and whether the peers name this "
           "machine"};
-}
-
-/// check_perception looks closer at people and objects.
-bool left_to_perception(const DoctorOptions& options, const std::string& topic) {
-  return options.perception && topic != TopicOf<RobotState>::row.topic;
-}
-
-void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
-  const double jump = seen["jump"];
-  if (std::abs(jump) > kJump) {
-    out.push_back({"clocks", Verdict::bad,
-                   format("the wall clock jumped by %.3f s while it was checked", jump),
-                   "let one service alone set the clock (chrony or PTP), and let it slew"});
-  }
-  double worst = 0.0;
-  for (const auto& [component, offset] : seen["clocks"].items()) {
-    const double by = offset;
-    if (std::abs(by) > std::abs(worst)) worst = by;
-    if (std::abs(by) <= kOffset) continue;
-    out.push_back({"clocks", Verdict::bad,
-                   format("the clock of %s is %.3f s %s this machine's", component.c_str(),
-                          std::abs(by), by > 0 ? "behind" : "ahead of"),
-                   "run chrony or PTP on both hosts"});
-  }
-  for (const Json& input : seen["inputs"]) {
-    if (input["least"].is_null() || left_to_perception(options, input["topic"])) continue;
-    const double by = input["least"];
-    if (by >= -kFuture && by <= kOld) continue;
-    out.push_back(
-        {"clocks", Verdict::bad,
-         format("measurements of %s are stamped %.3f s %s",
-                input["what"].get<std::string>().c_str(), std::abs(by),
-                by > 0 ? "ago when they come" : "in the future"),
-         "stamp them with the time of measurement, and run chrony or PTP on the host that does"});
-  }
-  if (!out.empty() && out.back().subject == "clocks") return;
-  if (seen["clocks"].empty()) {
-    out.push_back({"clocks", Verdict::good,
-                   "this machine's clock runs steadily; nobody else is on " + where(options.domain),
-                   ""});
-  } else {
-    out.push_back({"clocks", Verdict::good,
-                   format("stamps and arrivals differ by at most %.1f ms", 1e3 * std::abs(worst)),
-                   ""});
-  }
-}
-
-/// The inputs asked for must come, at half their rate or more and well formed; others are only
-/// mentioned when they are malformed.
-void judge_inputs(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
-  for (const Json& input : seen["inputs"]) {
-    const std::string what = input["what"], topic = input["topic"];
-    const double rate = input["rate"], wanted = input["wanted"];
-    if (left_to_perception(options, topic)) continue;
-    if (input["rejected"].get<std::uint64_t>() > 0) {
-      out.push_back(
-          {"inputs", Verdict::bad,
-           "malformed samples on " + topic + ": " + input["last_rejection"].get<std::string>(),
-           "correct the program that sends them; idl/ says what each field means"});
-      continue;
-    }
-    if (!options.driver || topic != TopicOf<RobotState>::row.topic) continue;
-    if (rate == 0.0) {
-      out.push_back({"inputs", Verdict::missing,
-                     "nothing comes on " + topic + " of " + where(options.domain),
-                     "start the program that measures " + what + " on this domain"});
-    } else if (rate < wanted / 2.0) {
-      out.push_back(
-          {"inputs", Verdict::bad,
-           format("%s comes %.0f times a second instead of %.0f", topic.c_str(), rate, wanted),
-           "look at the load of its program and of the network"});
-    } else {
-      out.push_back({"inputs", Verdict::good,
-                     format("%s comes %.0f times a second", topic.c_str(), rate), ""});
-    }
-  }
-}
-
-/// What the calibration says against what comes. Its own mistakes are told with the descriptions.
-void judge_calibration(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
-  const std::string file = resource("config/calibration.txtpb");
-  spark::Calibration calibration;
-  try {
-    calibration = spark::Calibration(file);
-  } catch (const std::exception&) {
-    return;
-  }
-  const std::set<std::string> heard = seen["sources"];
-  const std::size_t before = out.size();
-  for (const std::string& source : heard)
-    if (!calibration.sources().empty() && !calibration.sources().contains(source))
-      out.push_back({"calibration", Verdict::bad,
-                     "source " + source + " publishes, and is not in " + file +
-                         ": taken to speak in frame world",
-                     "say there where it stands, or that it speaks_in WORLD"});
-  for (const auto& [name, source] : calibration.sources())
-    if (options.perception && !heard.contains(name))
-      out.push_back({"calibration", Verdict::missing,
-                     "source " + name + " of " + file + " says nothing on " + where(options.domain),
-                     "start it, or take it out of the file"});
-  for (const auto& [name, numbers] : seen["bases"].items()) {
-    const auto robot = calibration.robots().find(name);
-    if (robot == calibration.robots().end()) continue;
-    const std::vector<double> is = numbers;
-    const Pose T =
-        robot->second.T_world_base.inverse() * Pose(Eigen::Map<const Eigen::Matrix4d>(is.data()));
-    const double off = T.translation().norm(), turned = Eigen::AngleAxisd(T.linear()).angle();
-    if (off <= kBaseOff && turned <= kBaseTurned) continue;
-    out.push_back({"calibration", Verdict::bad,
-                   format("the base of %s is %.3f m and %.1f degrees from where %s says",
-                          name.c_str(), off, turned * 180 / M_PI, file.c_str()),
-                   "measure it again, or correct what its driver reports as T_world_base"});
-  }
-  if (out.size() == before && (!heard.empty() || !seen["bases"].empty()) &&
-      !(calibration.sources().empty() && calibration.robots().empty()))
-    out.push_back({"calibration", Verdict::good,
-                   "what comes on " + where(options.domain) + " is as the file says", ""});
-}
-
-/// A topic with one writer must have no other, and none that the table does not name.
-void judge_writers(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
-  const std::size_t before = out.size();
-  for (const auto& [topic, writers] : seen["writers"].items()) {
-    std::string names;
-    bool strange = false;
-    for (const Json& writer : writers) {
-      names += (names.empty() ? "" : ", ") + writer["who"].get<std::string>();
-      strange = strange || !writer["may"].get<bool>();
-    }
-    if (writers.size() > 1)
-      out.push_back(
-          {"second_writer", Verdict::bad,
-           "more than one process writes " + topic + " on " + where(options.domain) + ": " + names,
-           "end all but the rightful one; samples of the others are refused"});
-    else if (strange)
-      out.push_back(
-          {"second_writer", Verdict::bad,
-           topic + " on " + where(options.domain) + " is written by " + names +
-               ", which is no writer of this topic; its samples are refused",
-           "end it, or give its participant the name of the component that it stands for"});
-  }
-  if (out.size() == before)
-    out.push_back({"second_writer", Verdict::good,
-                   "no topic with one writer has another on " + where(options.domain), ""});
-}
-
-void judge_company(const DoctorOptions& options, const Json& seen, bool held,
-                   std::vector<Finding>& out) {
-  std::string commanders;
-  for (const Json& commander : seen["commanders"])
-    commanders += (commanders.empty() ? "" : ", ") + commander["who"].get<std::string>();
-  const std::size_t count = seen["commanders"].size();
-  if (count > 1) {
-    out.push_back(
-        {"commander", Verdict::bad,
-         "more than one process sends set-points on " + where(options.domain) + ": " + commanders,
-         "end all but one"});
-  } else if (count == 1 && !held && seen["commanders"][0]["elsewhere"].get<bool>() &&
-             seen["system"].get<bool>()) {
-    out.push_back(
-        {"commander", Verdict::note,
-         "a system on another host moves the robot on " + where(options.domain) + ": " + commanders,
-         "choose another domain with --domain if it is not meant to be this one"});
-  } else if (count == 1 && !held) {
-    out.push_back({"commander", Verdict::bad,
-                   "the robot on " + where(options.domain) +
-                       " has a commander that was not started here: " + commanders,
-                   "end it, or choose another domain with --domain"});
-  } else {
-    out.push_back({"commander", Verdict::good,
-                   count == 0 ? "nobody sends set-points on " + where(options.domain) : commanders,
-                   ""});
-  }
-  if (!seen["strangers"].empty()) {
-    out.push_back({"hosts", Verdict::note,
-                   "other hosts are on " + where(options.domain) + ": " +
-                       seen["strangers"][0].get<std::string>(),
-                   "choose another domain with --domain if they are not meant to be"});
-  }
-  if (!seen["system"].get<bool>()) {
-    out.push_back({"system", Verdict::good, "none runs on " + where(options.domain) + " now", ""});
-  } else if (held && seen["troubles"].empty()) {
-    out.push_back(
-        {"system", Verdict::good, "runs on " + where(options.domain) + ", all processes ok", ""});
-  } else if (held) {
-    for (const Json& trouble : seen["troubles"])
-      out.push_back({"system", Verdict::note, trouble.get<std::string>(),
-                     "look at `handsel status` and at the log of the process"});
-  }
-  for (const Json& one : seen["left_out"])
-    out.push_back({"left out", Verdict::note, one.get<std::string>(),
-                   "less of it, or a higher quota: components/spark/README.md says what is kept"});
 }
 
 }  // namespace
@@ -555,16 +347,13 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
   if (entered == wanted && !seen["met"].get<bool>())
     out.push_back(not_met(options, dds, seen, speakers.size()));
   if (entered == wanted && seen["met"].get<bool>()) {
-    out.push_back({"DDS", Verdict::good,
-                   format("%zu processes on domain %d found each other after %.0f ms",
-                          speakers.size() + 1, options.domain, 1e3 * seen["took"].get<double>()),
-                   ""});
+    out.push_back(
+        {"DDS", Verdict::good,
+         finding_text("%zu processes on domain %d found each other after %.0f ms",
+                      speakers.size() + 1, options.domain, 1e3 * seen["took"].get<double>()),
+         ""});
   }
-  judge_clocks(options, seen, out);
-  judge_inputs(options, seen, out);
-  judge_calibration(options, seen, out);
-  judge_writers(options, seen, out);
-  judge_company(options, seen, held, out);
+  add_domain_findings(options, seen, held, out);
   return out;
 }
 
