@@ -12,6 +12,13 @@ std::string with_reason(std::string text, const std::string& reason) {
   return reason.empty() ? text : text + ": " + reason;
 }
 
+template <class M>
+void keep_newest(Seen<M>& seen, const M& sample, TimePoint at) {
+  seen.ever = true;
+  seen.sample = sample;
+  seen.arrival = at;
+}
+
 }  // namespace
 
 std::string cause_names(std::uint32_t causes) {
@@ -32,12 +39,16 @@ void Observer::watch(Bus& bus, Store store) {
 }
 
 Observer::Observer(Bus& bus) {
-  const auto keep = [](auto& seen, const auto& sample, TimePoint at) {
-    seen.ever = true;
-    seen.sample = sample;
-    seen.arrival = at;
-  };
-  watch<ComponentHealth>(bus, [this, keep](const ComponentHealth& health, TimePoint at) {
+  watch_health(bus);
+  watch_tasks(bus);
+  watch_execution(bus);
+  watch_advice(bus);
+  watch_trajectories(bus);
+  watch_ground_truth(bus);
+}
+
+void Observer::watch_health(Bus& bus) {
+  watch<ComponentHealth>(bus, [this](const ComponentHealth& health, TimePoint at) {
     if (snapshot_.health.size() >= kMaxComponents && !snapshot_.health.contains(health.component))
       return;
     auto& seen = snapshot_.health[health.component];
@@ -50,9 +61,12 @@ Observer::Observer(Bus& bus) {
                    name(health.state),
                health.reason));
     }
-    keep(seen, health, at);
+    keep_newest(seen, health, at);
   });
-  watch<TaskStatus>(bus, [this, keep](const TaskStatus& task, TimePoint at) {
+}
+
+void Observer::watch_tasks(Bus& bus) {
+  watch<TaskStatus>(bus, [this](const TaskStatus& task, TimePoint at) {
     const auto& seen = snapshot_.task;
     if (!seen.ever || seen.sample.id != task.id || seen.sample.state != task.state ||
         seen.sample.step != task.step) {
@@ -61,9 +75,9 @@ Observer::Observer(Bus& bus) {
     }
     snapshot_.tasks[task.id] = task;
     if (snapshot_.tasks.size() > kMaxTasks) snapshot_.tasks.erase(snapshot_.tasks.begin());
-    keep(snapshot_.task, task, at);
+    keep_newest(snapshot_.task, task, at);
   });
-  watch<ActionStatus>(bus, [this, keep](const ActionStatus& action, TimePoint at) {
+  watch<ActionStatus>(bus, [this](const ActionStatus& action, TimePoint at) {
     const auto& seen = snapshot_.action;
     if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase ||
         seen.sample.state != action.state) {
@@ -72,9 +86,12 @@ Observer::Observer(Bus& bus) {
         note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
     }
     if (!action.human.empty()) snapshot_.partner = action.human;
-    keep(snapshot_.action, action, at);
+    keep_newest(snapshot_.action, action, at);
   });
-  watch<ExecutionStatus>(bus, [this, keep](const ExecutionStatus& execution, TimePoint at) {
+}
+
+void Observer::watch_execution(Bus& bus) {
+  watch<ExecutionStatus>(bus, [this](const ExecutionStatus& execution, TimePoint at) {
     const auto& seen = snapshot_.execution;
     if (!seen.ever || seen.sample.mode != execution.mode ||
         seen.sample.causes != execution.causes) {
@@ -82,23 +99,29 @@ Observer::Observer(Bus& bus) {
       note(at, "mode " + std::string(name(execution.mode)) +
                    (causes.empty() ? "" : " (" + causes + ")"));
     }
-    keep(snapshot_.execution, execution, at);
+    keep_newest(snapshot_.execution, execution, at);
   });
-  watch<SafetyState>(bus, [this, keep](const SafetyState& safety, TimePoint at) {
+  watch<SafetyState>(bus, [this](const SafetyState& safety, TimePoint at) {
     const auto& seen = snapshot_.safety;
     if (!seen.ever || seen.sample.reason != safety.reason)
       if (seen.ever || !safety.reason.empty())
         note(at, safety.reason.empty() ? "released by a person" : "held: " + safety.reason);
-    keep(snapshot_.safety, safety, at);
+    keep_newest(snapshot_.safety, safety, at);
   });
-  watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) {
-    keep(snapshot_.advice, advice, at);
+}
+
+void Observer::watch_advice(Bus& bus) {
+  watch<AttentionAdvice>(bus, [this](const AttentionAdvice& advice, TimePoint at) {
+    keep_newest(snapshot_.advice, advice, at);
   });
-  watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) {
-    keep(snapshot_.attention, state, at);
+  watch<AttentionState>(bus, [this](const AttentionState& state, TimePoint at) {
+    keep_newest(snapshot_.attention, state, at);
   });
-  watch<TrajectoryForecast>(bus, [this, keep](const TrajectoryForecast& forecast, TimePoint at) {
-    keep(snapshot_.forecast, forecast, at);
+}
+
+void Observer::watch_trajectories(Bus& bus) {
+  watch<TrajectoryForecast>(bus, [this](const TrajectoryForecast& forecast, TimePoint at) {
+    keep_newest(snapshot_.forecast, forecast, at);
   });
   watch<ActiveTrajectory>(bus, [this](const ActiveTrajectory& active, TimePoint at) {
     snapshot_.active.ever = true;
@@ -107,7 +130,10 @@ Observer::Observer(Bus& bus) {
     snapshot_.active.sample.time = active.time;
     snapshot_.active.sample.speed_factor = active.speed_factor;
   });
-  watch<GroundTruth>(bus, [this, keep](const GroundTruth& ground_truth, TimePoint at) {
+}
+
+void Observer::watch_ground_truth(Bus& bus) {
+  watch<GroundTruth>(bus, [this](const GroundTruth& ground_truth, TimePoint at) {
     const auto& seen = snapshot_.ground_truth;
     if (!seen.ever || seen.sample.carrier != ground_truth.carrier)
       note(at, ground_truth.object + " carried by " +
@@ -120,7 +146,7 @@ Observer::Observer(Bus& bus) {
       note(at, ground_truth.object + " dropped");
     if (ground_truth.limit_violations && !(seen.ever && seen.sample.limit_violations))
       note(at, "a set-point broke a limit");
-    keep(snapshot_.ground_truth, ground_truth, at);
+    keep_newest(snapshot_.ground_truth, ground_truth, at);
   });
 }
 

@@ -74,6 +74,12 @@ class Observer {
  private:
   template <class M, class Store>
   void watch(Bus& bus, Store store);
+  void watch_health(Bus& bus);
+  void watch_tasks(Bus& bus);
+  void watch_execution(Bus& bus);
+  void watch_advice(Bus& bus);
+  void watch_trajectories(Bus& bus);
+  void watch_ground_truth(Bus& bus);
 
   Snapshot snapshot_;
   std::vector<TimelineEvent> timeline_;
