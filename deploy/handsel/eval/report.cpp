@@ -37,6 +37,26 @@ Json task_json(const TaskOutcome& outcome) {
           {"refusals", refusals(outcome.refusals)}};
 }
 
+Json oracle_json(const GroundTruth& ground_truth) {
+  return {{"carrier", ground_truth.carrier},
+          {"held_s", ground_truth.held_time},
+          {"constraint_s", ground_truth.constraint_time},
+          {"contact_share", ground_truth.held_time > 0
+                                ? Json(1 - ground_truth.constraint_time / ground_truth.held_time)
+                                : Json(nullptr)},
+          {"max_lifted_m", ground_truth.max_lifted},
+          {"human_contact_before_release_s", ground_truth.human_contact_before_release},
+          {"human_alone_s", ground_truth.human_alone},
+          {"dropped", ground_truth.dropped},
+          {"handover_done", ground_truth.handover_done},
+          {"limit_violations", ground_truth.limit_violations},
+          {"collisions", ground_truth.self_or_scene_collisions},
+          {"contact_force_n", ground_truth.contact_force},
+          {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
+          {"commanders", ground_truth.commanders},
+          {"hash", ground_truth.hash}};
+}
+
 std::string format(const char* pattern, double a, double b = 0, double c = 0) {
   char text[160];
   std::snprintf(text, sizeof text, pattern, a, b, c);
@@ -95,24 +115,7 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"ready_s", inputs.ready},
           {"duration_s", performer.duration()},
           {"tasks", std::move(tasks)},
-          {"oracle",
-           {{"carrier", ground_truth.carrier},
-            {"held_s", ground_truth.held_time},
-            {"constraint_s", ground_truth.constraint_time},
-            {"contact_share", ground_truth.held_time > 0
-                                  ? Json(1 - ground_truth.constraint_time / ground_truth.held_time)
-                                  : Json(nullptr)},
-            {"max_lifted_m", ground_truth.max_lifted},
-            {"human_contact_before_release_s", ground_truth.human_contact_before_release},
-            {"human_alone_s", ground_truth.human_alone},
-            {"dropped", ground_truth.dropped},
-            {"handover_done", ground_truth.handover_done},
-            {"limit_violations", ground_truth.limit_violations},
-            {"collisions", ground_truth.self_or_scene_collisions},
-            {"contact_force_n", ground_truth.contact_force},
-            {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
-            {"commanders", ground_truth.commanders},
-            {"hash", ground_truth.hash}}},
+          {"oracle", oracle_json(ground_truth)},
           {"min_separation_m",
            seen.ground_truth.ever ? finite(ground_truth.min_separation) : Json(nullptr)},
           {"ssm_violations", ground_truth.ssm_violations},
