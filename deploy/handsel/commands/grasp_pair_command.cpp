@@ -93,6 +93,33 @@ struct TransferOptions : StageOptions {
   std::uint32_t number{3};
 };
 
+void print_transfer(const Grasp& g, const Grasp& h, const TransferPose& t, bool text) {
+  const double tilt = std::acos(std::clamp(t.T_world_object.linear()(2, 2), -1.0, 1.0));
+  if (text) {
+    std::printf("%8llu %8llu %8.3f %8.0f %8.2f %8.0f %8.0f %8.3f\n", whole(g.id), whole(h.id),
+                g.quality, t.partner.opposition / kDegree, t.wrist.strain, t.aim / kDegree,
+                tilt / kDegree, t.score);
+  } else {
+    std::cout << json{{"robot_grasp", g.id},
+                      {"human_grasp", h.id},
+                      {"quality", g.quality},
+                      {"opposition", t.partner.opposition},
+                      {"wrist",
+                       {{"flexion", t.wrist.flexion},
+                        {"radial", t.wrist.radial},
+                        {"pronation", t.wrist.pronation},
+                        {"elevation", t.wrist.elevation},
+                        {"strain", t.wrist.strain}}},
+                      {"aim", t.aim},
+                      {"tilt", tilt},
+                      {"T_world_object", pose_line(t.T_world_object)},
+                      {"arm_joints", numbers(t.arm_joints)},
+                      {"score", t.score}}
+                     .dump()
+              << '\n';
+  }
+}
+
 int transfer(const TransferOptions& o) {
   const Stage stage(o);
   const Listed human = list_with(o.taker, o);
@@ -135,30 +162,7 @@ int transfer(const TransferOptions& o) {
     if (i >= choice.transfers.size() || !choice.transfers[i]) continue;
     const TransferPose& t = *choice.transfers[i];
     const Grasp &g = choice.grasps[i], &h = human.list.grasps[t.partner.human].grasp;
-    const double tilt = std::acos(std::clamp(t.T_world_object.linear()(2, 2), -1.0, 1.0));
-    if (text) {
-      std::printf("%8llu %8llu %8.3f %8.0f %8.2f %8.0f %8.0f %8.3f\n", whole(g.id), whole(h.id),
-                  g.quality, t.partner.opposition / kDegree, t.wrist.strain, t.aim / kDegree,
-                  tilt / kDegree, t.score);
-    } else {
-      std::cout << json{{"robot_grasp", g.id},
-                        {"human_grasp", h.id},
-                        {"quality", g.quality},
-                        {"opposition", t.partner.opposition},
-                        {"wrist",
-                         {{"flexion", t.wrist.flexion},
-                          {"radial", t.wrist.radial},
-                          {"pronation", t.wrist.pronation},
-                          {"elevation", t.wrist.elevation},
-                          {"strain", t.wrist.strain}}},
-                        {"aim", t.aim},
-                        {"tilt", tilt},
-                        {"T_world_object", pose_line(t.T_world_object)},
-                        {"arm_joints", numbers(t.arm_joints)},
-                        {"score", t.score}}
-                       .dump()
-                << '\n';
-    }
+    print_transfer(g, h, t, text);
     if (!any && !o.png.empty()) {
       const Manipulator& m = stage.arms.front().arm;
       const Vector q = RobotModel::with(RobotModel::with(request.start, *m.arm, t.arm_joints),
@@ -251,7 +255,7 @@ int regrasp(const RegraspOptions& o) {
   const auto start = Clock::now();
   const RegraspPlan plan = planner.plan(task);
   std::fprintf(stderr, "%zu steps; %llu double grasps, %llu steps checked in %.2f s\n",
-               plan.steps.size(), whole(plan.double_grasps), whole(plan.judged), since(start));
+               plan.steps.size(), whole(plan.double_grasps), whole(plan.checked), since(start));
   print_refusals(plan.rejected);
   print_plan(plan, stage, !json_wanted(o.as_json));
   if (!o.png.empty() && !plan.steps.empty())
