@@ -75,9 +75,9 @@ struct SimWorld::Impl {
 
   // world_hands.cpp: grasps of the robot's hands
   BodyState tool_state(const Hand& hand) const;  ///< of its palm, world
-  void hold_with(Hand& hand);                    ///< applies the constraint for the coming step
-  static void release(Hand& hand);               ///< ends grasp and constraint
-  /// Returns whether the constraint helps to hold the object.
+  void hold_with(Hand& hand);       ///< applies the grasp constraint for the coming step
+  static void release(Hand& hand);  ///< ends grasp and constraint
+  /// Returns whether the grasp constraint helps to hold the object.
   bool helped(int object) const;
   bool grips(int object) const;   ///< whether any hand holds the object
   bool grips_something() const;   ///< whether any hand holds an object

@@ -78,7 +78,7 @@ void check_body(const BodyPoints& p, const std::string& name, std::size_t line) 
         "the shoulders are less than 5 cm apart: the direction in which the body faces is unknown");
 }
 
-Recording finish(std::vector<BodyPoints> frames, double rate, bool legs_recorded) {
+Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_recorded) {
   const Vector3 left = frames[0][kShoulder[0]] - frames[0][kShoulder[1]];
   const double yaw = std::atan2(-left.x(), left.y());  // facing = left x up
   const Vector3 origin(frames[0][kWaist].x(), frames[0][kWaist].y(), 0);
@@ -96,8 +96,9 @@ Recording finish(std::vector<BodyPoints> frames, double rate, bool legs_recorded
   const auto upright = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() * 9 / 10);
   std::nth_element(heights.begin(), upright, heights.end());
   recording.stature = std::clamp(
-      legs_recorded ? (*upright - lowest) / (kHeadUp - kAnkleUp) : *upright / kHeadUp, 1.0, 2.4);
-  const double raise = legs_recorded ? kAnkleUp * recording.stature - lowest : 0.0;
+      lower_body_recorded ? (*upright - lowest) / (kHeadUp - kAnkleUp) : *upright / kHeadUp, 1.0,
+      2.4);
+  const double raise = lower_body_recorded ? kAnkleUp * recording.stature - lowest : 0.0;
   std::array<double, 2> farthest{-1e9, -1e9}, when{};
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Vector3 gone = travel > kTravel

@@ -41,7 +41,7 @@ double trunk_stature(const BodyPoints& p);
 void check_body(const BodyPoints& p, const std::string& name, std::size_t line);
 
 /// Turns world points into the recording's own frame and finds the reach.
-Recording finish(std::vector<BodyPoints> frames, double rate, bool legs_recorded);
+Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_recorded);
 
 /// Returns the positions of all joints of a body.
 BodyPoints points_of(const std::vector<BodyJoint>& joints);
