@@ -5,22 +5,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <mutex>
 #include <random>
 #include <vector>
 
-#include <dds/ddsi/ddsi_serdata.h>
-
-#include "common/base/errors.hpp"
 #include "common/bus/dds/dds_configuration.hpp"
 #include "common/bus/dds/dds_defaults.hpp"
 #include "common/bus/dds/discovered_domain.hpp"
 #include "common/bus/dds/qos.hpp"
+#include "common/bus/dds/raw_reader.hpp"
 #include "common/bus/dds/realtime.hpp"
+#include "common/bus/dds/topic_entities.hpp"
 #include "common/bus/dds/writer_discovery.hpp"
 #include "common/bus/executor.hpp"
-#include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/bus/left_out.hpp"
 #include "common/bus/resource_usage.hpp"
@@ -32,7 +29,7 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
+constexpr Duration kDdsHealthPeriod = std::chrono::milliseconds(100);
 constexpr Duration kRetryPeriod = std::chrono::milliseconds(5);
 constexpr std::size_t kQueueBound = 64;  // requests and replies that wait for room in the transport
 constexpr int kSamplesPerTurn = 64;      // then other topics have their turn
@@ -41,11 +38,6 @@ Stamp system_now() {
   timespec t{};
   clock_gettime(CLOCK_REALTIME, &t);
   return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
-}
-
-dds_entity_t need(dds_entity_t entity, const std::string& what) {
-  if (entity < 0) throw MissingError("DDS: " + what + ": " + dds_strretcode(-entity));
-  return entity;
 }
 
 }  // namespace
@@ -83,8 +75,7 @@ struct DdsBus::Impl {
   Executor executor;
   TimePoint start;
   dds_entity_t participant{0};
-  dds_entity_t topic_entities[std::size(kTopics)]{};
-  std::map<const MessageType*, dds_entity_t> foreign_topics;
+  TopicEntities topics{participant};
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
@@ -110,22 +101,9 @@ struct DdsBus::Impl {
   }
   /// The system clock, standing still while this component's time does.
   Stamp stamp_now() { return system_now() - (monotonic_now() - executor.now()).count(); }
-  dds_entity_t new_topic(const MessageType& type) const {
-    const Qos qos = topic_qos(type.row());
-    return need(
-        dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()),
-                         type.row().topic, qos.get(), nullptr),
-        std::string("topic ") + type.row().topic);
-  }
-  dds_entity_t topic(const MessageType& type) {
-    dds_entity_t& entity =
-        in_table(type.row()) ? topic_entities[&type.row() - kTopics] : foreign_topics[&type];
-    if (entity == 0) entity = new_topic(type);
-    return entity;
-  }
   /// A topic entity of the reader's own whose filter is the reader's gate.
   dds_entity_t gated_topic(Reader& reader) {
-    const dds_entity_t entity = new_topic(reader.intake.type());
+    const dds_entity_t entity = topics.make(reader.intake.type());
     reader.gate.filter(entity, [this, &reader] { mark(reader); });
     return entity;
   }
@@ -158,8 +136,9 @@ class DdsPublisher final : public AnyPublisher {
   DdsPublisher(DdsBus::Impl& bus, const MessageType& type)
       : bus_(bus), type_(type), sample_(type.new_wire()) {
     const Qos qos = writer_qos(type.row());
-    writer_ = need(dds_create_writer(bus.participant, bus.topic(type), qos.get(), nullptr),
-                   std::string("writer of ") + type.row().topic);
+    writer_ =
+        valid_entity(dds_create_writer(bus.participant, bus.topics.of(type), qos.get(), nullptr),
+                     std::string("writer of ") + type.row().topic);
   }
   ~DdsPublisher() override {
     alive_->store(false);
@@ -215,28 +194,6 @@ class DdsPublisher final : public AnyPublisher {
   std::deque<std::shared_ptr<void>> queue_;
   std::shared_ptr<std::atomic<bool>> alive_ = std::make_shared<std::atomic<bool>>(true);
   dds_entity_t writer_{0};
-};
-
-class DdsRawReader final : public RawReader {
- public:
-  explicit DdsRawReader(dds_entity_t reader) : reader_(reader) {}
-  ~DdsRawReader() override { dds_delete(reader_); }
-
-  bool take(RawSample& out) override {
-    ddsi_serdata* data = nullptr;
-    dds_sample_info_t info{};
-    if (dds_takecdr(reader_, &data, 1, &info, DDS_ANY_STATE) <= 0) return false;
-    out.stamp = info.source_timestamp;
-    out.instance = info.instance_handle;
-    out.gone = !info.valid_data;
-    out.cdr.resize(info.valid_data ? ddsi_serdata_size(data) : 0);
-    if (info.valid_data) ddsi_serdata_to_ser(data, 0, out.cdr.size(), out.cdr.data());
-    ddsi_serdata_unref(data);
-    return true;
-  }
-
- private:
-  dds_entity_t reader_;
 };
 
 }  // namespace
@@ -398,12 +355,12 @@ DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(se
                                          .priority = static_cast<int>(settings.urgency)});
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_entity_name(qos.get(), settings.component.c_str());
-  impl_->participant = need(create_participant(settings.domain, qos.get()),
-                            "domain " + std::to_string(settings.domain));
+  impl_->participant = valid_entity(create_participant(settings.domain, qos.get()),
+                                    "domain " + std::to_string(settings.domain));
   impl_->executor.on_wake([this] { impl_->drain(); });
   if (settings.health) {
     impl_->health = advertise<ComponentHealth>();
-    impl_->executor.every_real(kHealthPeriod, [this](TimePoint wall) {
+    impl_->executor.every_real(kDdsHealthPeriod, [this](TimePoint wall) {
       impl_->publish_health(wall);
       impl_->executor.wake();  // samples may wait for a grant of a simulator that has ended
     });
@@ -479,9 +436,9 @@ const SubscriptionStatus& DdsBus::subscribe_any(
                                            void* arg) { on_matching(*static_cast<Reader*>(arg)); });
   const Qos qos = reader_qos(type.row());
   const dds_entity_t topic =
-      has_one_writer(type.row()) ? impl_->gated_topic(*reader) : impl_->topic(type);
+      has_one_writer(type.row()) ? impl_->gated_topic(*reader) : impl_->topics.of(type);
   reader->entity = dds_create_reader(impl_->participant, topic, qos.get(), nullptr);
-  need(reader->entity, std::string("reader of ") + type.row().topic);
+  valid_entity(reader->entity, std::string("reader of ") + type.row().topic);
   dds_set_listener(reader->entity, listener);
   dds_delete_listener(listener);
   if (polled)
@@ -495,9 +452,9 @@ const SubscriptionStatus& DdsBus::subscribe_any(
 
 std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type, RawDepth depth) {
   const Qos qos = depth == RawDepth::many ? recorder_qos(type.row()) : observer_qos(type.row());
-  return std::make_unique<DdsRawReader>(
-      need(dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr),
-           std::string("reader of ") + type.row().topic));
+  return make_raw_reader(valid_entity(
+      dds_create_reader(impl_->participant, impl_->topics.of(type), qos.get(), nullptr),
+      std::string("reader of ") + type.row().topic));
 }
 
 std::uint32_t DdsBus::domain() const { return impl_->settings.domain; }
