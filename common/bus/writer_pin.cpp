@@ -7,7 +7,7 @@
 namespace handsel {
 namespace {
 
-constexpr std::size_t kMaxWriters =
+constexpr std::size_t kMaxPinnedWriters =
     64;  // of a topic; the samples of further ones are refused, unnamed
 /// Shorter silences of a process on another host do not show that it has ended: leases below 0.3 s
 /// give false alarms.
@@ -39,7 +39,7 @@ bool may_write(const TopicRow& row, const std::string& components) {
 }
 
 void WriterPin::appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now) {
-  if (known_.size() >= kMaxWriters && !known_.contains(writer)) return;
+  if (known_.size() >= kMaxPinnedWriters && !known_.contains(writer)) return;
   Known& known = known_[writer];
   known.eligible = identity.matches && may_write(row_, identity.components);
   known.precedence = precedence_of(row_, identity.components);

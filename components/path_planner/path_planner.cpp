@@ -61,9 +61,9 @@ std::string contradiction(const RobotModel& robot, const Problem& problem) {
   }
   if (problem.budget == 0) return "the time limit is zero";
   if (problem.upright) {
-    if (!(problem.upright->most > 0 && problem.upright->most < M_PI))
+    if (!(problem.upright->max_angle > 0 && problem.upright->max_angle < M_PI))
       return format("what is held may lean %.3f rad, but the bound must be above 0 and below %.3f",
-                    problem.upright->most, M_PI);
+                    problem.upright->max_angle, M_PI);
     if (!(problem.upright->axis_tool.norm() > 1e-9) || !(problem.upright->up_root.norm() > 1e-9))
       return "the axis that stays upright, and up, must not be zero";
   }
@@ -150,7 +150,7 @@ class Planning {
   std::string leans(const Vector& q) const {
     if (space_.upright().holds(q)) return {};
     return format("what is held leans %.3f rad over, at most %.3f are allowed",
-                  space_.upright().tilt(q), problem_.upright->most);
+                  space_.upright().tilt(q), problem_.upright->max_angle);
   }
 
   Result straight_line() {

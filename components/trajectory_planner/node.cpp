@@ -27,7 +27,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
   const auto file =
       settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
-  settings_.blend_step = file.blend_step;
+  settings_.blend_step = file.corner_step;
   settings_.speed = {file.cost_step,      file.min_speed_factor, file.concern_radius,
                      file.approach_speed, file.approach_factor,  file.unseen_angle,
                      file.unseen_factor};

@@ -108,7 +108,7 @@ TEST(UprightPaths, a_start_or_goal_that_leans_and_a_bound_that_means_nothing_are
   EXPECT_NE(plan(robot, world, cost, problem, {})
                 .reason.find("the start: what is held leans 1.571 rad over"),
             std::string::npos);
-  problem.upright->most = 0;
+  problem.upright->max_angle = 0;
   EXPECT_NE(plan(robot, world, cost, problem, {}).reason.find("the bound must be above 0"),
             std::string::npos);
 }

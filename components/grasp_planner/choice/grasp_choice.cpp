@@ -239,7 +239,7 @@ void GraspChooser::search_places(Search& search, const GraspList& list,
       break;
     ++counts.places;
     const Pose T_world_base = standing_at(place, T_world_now);
-    const PlatformFloor::Verdict verdict = floor.judge(search.request.start, T_world_base);
+    const PlatformFloor::Verdict verdict = floor.check(search.request.start, T_world_base);
     if (verdict != PlatformFloor::Verdict::free) {
       ++(verdict == PlatformFloor::Verdict::blocked ? counts.blocked : counts.near_person);
       continue;
@@ -248,7 +248,7 @@ void GraspChooser::search_places(Search& search, const GraspList& list,
     const std::size_t before = found.size();
     for (const auto& [rank, index] : tried) {
       if (found.size() >= enough || search.out.reaches >= budget) break;
-      Found one{rank - settings_.rank_drive * place.way, {}, {}, {}};
+      Found one{rank - settings_.rank_drive * place.distance, {}, {}, {}};
       if (search.consider(list.grasps[index].grasp, one) != ChoiceReason::chosen) continue;
       one.grasp.has_platform = true;
       one.grasp.platform = place.pose;

@@ -190,10 +190,10 @@ bool PinchSearch::fingers_touch(const std::vector<std::vector<Pose>>& T_hand_ste
 
 void PinchSearch::grip(Found& found, std::size_t max_on_a_pad) const {
   Grasp& g = found.grasp;
-  GripForceSettings grip = settings_.grip;
-  if (hand_geometry_.hand.grip_force() > 0) grip.max_normal = hand_geometry_.hand.grip_force();
-  grip.max_normal /= static_cast<double>(max_on_a_pad);
-  const GripForces grip = grip_forces(found.contacts, object_.com(), object_.mass(), grip);
+  GripForceSettings limits = settings_.grip;
+  if (hand_geometry_.hand.grip_force() > 0) limits.max_normal = hand_geometry_.hand.grip_force();
+  limits.max_normal /= static_cast<double>(max_on_a_pad);
+  const GripForces grip = grip_forces(found.contacts, object_.com(), object_.mass(), limits);
   g.margin = grip.margin;
   g.hand_effort = Vector::Zero(g.hand_joints.size());
   const Pose T_hand_object = g.T_object_hand.inverse();

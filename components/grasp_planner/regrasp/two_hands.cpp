@@ -70,7 +70,7 @@ bool TwoHandSearch::find_grasps(std::size_t a) {
     if (found.empty()) continue;
     reached_[a].grasps.push_back(arm.list->grasps[n]);
     index_[a].push_back(n);
-    sides_[a].posture.push_back(std::min(1.0, found.front().room));
+    sides_[a].rest_score.push_back(std::min(1.0, found.front().room));
     paths_[a][n] = std::move(found);
   }
   sides_[a].hand_geometry = arm.hand_geometry;

@@ -147,7 +147,7 @@ class Batch {
     const auto upright = item.find("upright");
     if (upright == item.end()) return;
     problem.upright.emplace();
-    problem.upright->most = number(*upright, "most");
+    problem.upright->max_angle = number(*upright, "most");
     if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
     if (!(problem.upright->axis_tool.norm() > 1e-9))
       throw LineError("\"axis\" of \"upright\" must not be zero");

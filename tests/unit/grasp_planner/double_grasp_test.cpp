@@ -165,8 +165,8 @@ TEST(DoubleGrasps, the_less_natural_arm_counts_and_grasps_out_of_reach_are_left_
                      &left = hand_on_object("sah_left", "bottle");
   HandSide a = side_of(right), b = side_of(left);
   for (std::size_t i = 0; i < right.list.grasps.size(); ++i)
-    a.posture.push_back(i % 3 == 0 ? -1.0 : 0.5 + 0.001 * static_cast<double>(i));
-  b.posture.assign(left.list.grasps.size(), 0.52);
+    a.rest_score.push_back(i % 3 == 0 ? -1.0 : 0.5 + 0.001 * static_cast<double>(i));
+  b.rest_score.assign(left.list.grasps.size(), 0.52);
   DoubleSettings settings;
   settings.max_of_each = 60;
   const DoubleList doubles = list_double_grasps(a, b, settings);
@@ -174,15 +174,15 @@ TEST(DoubleGrasps, the_less_natural_arm_counts_and_grasps_out_of_reach_are_left_
   double low_q = 1, high_q = 0, low_p = 1, high_p = 0;
   for (const DoubleGrasp& d : doubles.grasps) {
     EXPECT_NE(d.first % 3, 0U);
-    EXPECT_DOUBLE_EQ(d.posture, std::min(a.posture[d.first], 0.52));
+    EXPECT_DOUBLE_EQ(d.rest_score, std::min(a.rest_score[d.first], 0.52));
     low_q = std::min(low_q, d.quality);
     high_q = std::max(high_q, d.quality);
-    low_p = std::min(low_p, d.posture);
-    high_p = std::max(high_p, d.posture);
+    low_p = std::min(low_p, d.rest_score);
+    high_p = std::max(high_p, d.rest_score);
   }
   for (const DoubleGrasp& d : doubles.grasps)
     EXPECT_NEAR(d.score,
-                (d.quality - low_q) / (high_q - low_q) + (d.posture - low_p) / (high_p - low_p),
+                (d.quality - low_q) / (high_q - low_q) + (d.rest_score - low_p) / (high_p - low_p),
                 1e-9);
 }
 
