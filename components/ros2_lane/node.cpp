@@ -2,6 +2,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/config/schema/scenario.pb.h"
+#include "common/config/settings_text.hpp"
 #include "common/model/description/description_parts.hpp"
 
 namespace handsel::ros2_lane {

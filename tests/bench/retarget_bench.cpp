@@ -30,8 +30,8 @@ int run(int cases) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
   const Group& arm = robot.require_group("arm");
   const ObjectModel mug = ObjectModel::load(object_description("mug"));
-  settings::ManipulationPlannerSettings settings;
-  load_text_proto(resource("config/manipulation_planner.txtpb"), settings);
+  const auto settings =
+      settings::read_manipulation_planner_settings(resource("config/manipulation_planner.txtpb"));
   CollisionWorld world(robot,
                        [&mug](const std::string& name) { return name == "mug" ? &mug : nullptr; });
   HumanCost cost(robot, {});
@@ -46,8 +46,8 @@ int run(int cases) {
   world.set_scene(scene);
   world.set_attachment(attachment, {});
   const auto put = [&](const HumanState& people) {
-    world.people = people;
-    cost.people = people;
+    world.set_people(people);
+    cost.set_people(people);
   };
   const auto tool_at = [&](const Vector& q) {
     return Pose(robot.link_pose(q, robot.tool_link()) * attachment.T_tool_object);

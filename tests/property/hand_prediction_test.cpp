@@ -63,8 +63,8 @@ struct Errors {
 };
 
 Errors follow(const Motion& motion, unsigned seed) {
-  settings::SparkSettings settings;
-  load_text_proto(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
+  auto settings =
+      settings::read_spark_settings(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb");
   PeopleTracker tracker(settings);
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, kNoise);
@@ -203,8 +203,8 @@ TEST(HandPrediction, on_random_reaches_it_beats_both_baselines_and_grows_with_ti
 }
 
 TEST(HandPrediction, a_hand_out_of_sight_grows_and_a_lost_person_has_none) {
-  settings::SparkSettings settings;
-  load_text_proto(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
+  auto settings =
+      settings::read_spark_settings(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb");
   PeopleTracker tracker(settings);
   double before = 0;
   for (int look = 0; look < 90; ++look) {

@@ -94,9 +94,8 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> noise(0, kNoise);
   const auto happens = [&](double share) { return unit(random) < share; };
-  settings::SparkSettings settings;
-  load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
-                  settings);
+  auto settings = settings::read_spark_settings(std::filesystem::path(HANDSEL_SOURCE_DIR) /
+                                                "deploy/config/spark.txtpb");
   PeopleTracker tracker(settings);
 
   const Coverage room{{-3, -3, -0.5}, {3, 3, 2.6}}, walked{{-2.3, -2.3, 0}, {2.3, 2.3, 0}},

@@ -13,10 +13,8 @@
 namespace handsel::supervisor {
 
 inline settings::SupervisorSettings rig_settings() {
-  settings::SupervisorSettings s;
-  load_text_proto(resource("config/supervisor.txtpb"), s);
-  s.clear_required();
-  s.required.push_back("spark");
+  auto s = settings::read_supervisor_settings(resource("config/supervisor.txtpb"));
+  s.required = {"spark"};
   s.resume_delay = 0.1;
   s.person_timeout = 2.0;
   s.missing_timeout = 5.0;

@@ -182,14 +182,14 @@ TEST(TextProto, names_that_are_no_text_and_keys_given_twice_are_refused) {
 
 TEST(People, profiles_are_read_and_those_that_cannot_be_are_refused) {
   const TemporaryFolder folder;
-  EXPECT_EQ(load_people(folder.path()).people_size(), 0);
+  EXPECT_EQ(load_people(folder.path()).people.size(), 0U);
   const auto refused = [&](const std::string& text) {
     folder.write("people.txtpb", text);
     return message_of<ConfigError>([&] { load_people(folder.path()); });
   };
   folder.write("people.txtpb",
                "people { id: \"anna\" handed: LEFT height: 1.66 preferred_distance: 0.6 }");
-  EXPECT_DOUBLE_EQ(load_people(folder.path()).people(0).height(), 1.66);
+  EXPECT_DOUBLE_EQ(load_people(folder.path()).people[0].height, 1.66);
   EXPECT_THAT(refused("people { height: 1.7 }"), HasSubstr("a profile needs the person's id"));
   EXPECT_THAT(refused("people { id: \"a\" } people { id: \"a\" }"),
               HasSubstr("a has two profiles"));

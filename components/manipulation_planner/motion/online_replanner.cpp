@@ -54,7 +54,7 @@ PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
   Snapshot& now = parts_.now;
   const Vector q =
       RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
-  const double gain = period_.heard(now.time()) ? cost_gain_ : 1.0;
+  const double gain = period_.is_advised(now.time()) ? cost_gain_ : 1.0;
   return {now.scene(), now.people(), now.layers(), parts_.held.attachment(), motion.allowed,
           q,           gain};
 }

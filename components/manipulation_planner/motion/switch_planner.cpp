@@ -85,7 +85,7 @@ std::optional<Trajectory> SwitchPlanner::free_motion(CollisionWorld& world,
   const Switched motion = join(from, to, candidate);
   if (!motion.ok()) return std::nullopt;
   world.set_scene(now.scene);
-  world.people = now.people;
+  world.set_people(now.people);
   world.set_attachment(now.attachment, now.allowed);
   world.set_moving_axes(arm_.axes);
   const Vector q_start = RobotModel::with(now.q, arm_, from.position);
@@ -127,7 +127,7 @@ void SwitchPlanner::evaluate(SwitchCandidate& candidate, CollisionWorld& world, 
     }
   }
   if (!candidate.onto || !candidate.along) return;
-  cost.people = now.people;
+  cost.set_people(now.people);
   cost.set_layers(now.layers);
   cost.set_base(now.scene.T_world_base);
   // The cost of the cheapest end is left out: every motion between these ends has it.

@@ -213,7 +213,7 @@ void ArmMotion::write_path(MotionState3& next) noexcept {
 }
 
 const MotionState3& ArmMotion::path_at(double time) noexcept {
-  runner_.look(time, sample_);
+  runner_.observe(time, sample_);
   return sample_;
 }
 

@@ -83,7 +83,7 @@ class Evaluation {
   double needed(double v_h, double closing, int g, double T_r, double extra) const noexcept {
     const auto k = static_cast<std::size_t>(g);
     const double v_r = closing * g / kStopGrid;
-    return v_h * (T_r + query_.stop.time[k]) + v_r * (T_r + query_.stop.way[k]) + extra;
+    return v_h * (T_r + query_.stop.time[k]) + v_r * (T_r + query_.stop.distance[k]) + extra;
   }
 
   /// Largest factor whose need fits into the distance; exact on the grid, linear between.

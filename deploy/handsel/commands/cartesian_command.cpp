@@ -65,7 +65,7 @@ CartesianRequest request_of(const json& line, const RobotModel& robot) {
   if (const auto level = line.find("level"); level != line.end()) {
     request.level.emplace();
     request.level->axis_tool = vector3(*level, "axis");
-    request.level->most = positive(*level, "most");
+    request.level->bound = positive(*level, "most");
   }
   return request;
 }

@@ -14,8 +14,8 @@ const Coverage kReach{{-1, -1, 0.1}, {1, 1, 1.9}};
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
 settings::SparkSettings settings() {
-  settings::SparkSettings s;
-  load_text_proto(std::string(HANDSEL_SOURCE_DIR) + "/deploy/config/spark.txtpb", s);
+  auto s =
+      settings::read_spark_settings(std::string(HANDSEL_SOURCE_DIR) + "/deploy/config/spark.txtpb");
   return s;
 }
 

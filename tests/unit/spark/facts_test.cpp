@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 settings::SparkSettings shipped() {
-  settings::SparkSettings settings;
-  load_text_proto(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings);
+  auto settings =
+      settings::read_spark_settings(fs::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb");
   return settings;
 }
 

@@ -25,9 +25,8 @@ const Coverage kReach{{-1, -1, 0.1}, {1, 1, 1.9}};
 const Coverage kRoom{{-30, -30, -0.5}, {30, 30, 2.6}};
 
 settings::SparkSettings shipped() {
-  settings::SparkSettings settings;
-  load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
-                  settings);
+  auto settings = settings::read_spark_settings(std::filesystem::path(HANDSEL_SOURCE_DIR) /
+                                                "deploy/config/spark.txtpb");
   return settings;
 }
 
@@ -293,8 +292,7 @@ TEST(Quotas, a_quota_out_of_range_is_refused_with_file_line_and_key) {
   const std::filesystem::path file = folder.path() / "spark.txtpb";
   const auto refusal = [&](const std::string& text) -> std::string {
     std::ofstream(file) << text;
-    settings::SparkSettings settings;
-    load_text_proto(file, settings);
+    auto settings = settings::read_spark_settings(file);
     try {
       check_quotas(settings, file);
     } catch (const ConfigError& error) {

@@ -35,8 +35,8 @@ Person person_at(const Vector3& feet) {
 class SceneObjects : public ::testing::Test {
  protected:
   SceneObjects() {
-    load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb",
-                    settings_);
+    settings_ = settings::read_spark_settings(std::filesystem::path(HANDSEL_SOURCE_DIR) /
+                                              "deploy/config/spark.txtpb");
     mug_.mass = 0.3;
     for (int i = 0; i < 8; ++i)
       mug_.mesh.vertices.push_back(0.04 * Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));

@@ -19,8 +19,8 @@ TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 Stamp stamp_at(double t) { return kStart + from_seconds(t).count(); }
 
 settings::SparkSettings shipped() {
-  settings::SparkSettings s;
-  load_text_proto(std::string(HANDSEL_SOURCE_DIR) + "/deploy/config/spark.txtpb", s);
+  auto s =
+      settings::read_spark_settings(std::string(HANDSEL_SOURCE_DIR) + "/deploy/config/spark.txtpb");
   return s;
 }
 
