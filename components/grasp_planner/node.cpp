@@ -79,8 +79,8 @@ void Node::choose(const GraspRequest& request, bool reply) {
             return Duration{};
           }
           const auto table = transfers ? transfers->known(model->name) : nullptr;
-          const Choice choice = chooser->choose(request, page->list, *page->object, scene, people,
-                                                cancelled, table.get());
+          const Choice choice = chooser->choose(
+              {request, page->list, *page->object, scene, people, cancelled, table.get()});
           write(choice, page->list, *result);
           return choice_time(choice);
         } catch (const ConfigError& e) {

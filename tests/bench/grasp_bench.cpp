@@ -238,7 +238,7 @@ void BM_choose_from_list(benchmark::State& state) {
   request.max_grasps = static_cast<std::uint32_t>(state.range(0));
   std::size_t chosen = 0;
   for (auto _ : state)
-    chosen = chooser.choose(request, page->list, *page->object, scene, {}).grasps.size();
+    chosen = chooser.choose({request, page->list, *page->object, scene, {}}).grasps.size();
   state.counters["list"] = static_cast<double>(page->list.grasps.size());
   state.counters["chosen"] = static_cast<double>(chosen);
 }

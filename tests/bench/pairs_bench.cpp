@@ -68,7 +68,7 @@ int run(int rounds) {
          make_pose({0.68, -0.42, 0.72 + object_model(object)->height_above_support}),
          Holder::surface, "table", 0});
     row("grasp for a person, lists cached", object, rounds, 20, [&] {
-      return chooser.choose(request, right.list, *right.object, scene, people, {}, &table)
+      return chooser.choose({request, right.list, *right.object, scene, people, {}, &table})
           .grasps.size();
     });
   }

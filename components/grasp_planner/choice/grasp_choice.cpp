@@ -139,11 +139,11 @@ GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot,
   retreats_ = retreat_directions(hand_geometry_->hand);
 }
 
-Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list,
-                            const Graspable& object, const Scene& scene, const HumanState& people,
-                            const std::function<bool()>& cancelled,
-                            const TransferTable* pairs) const {
-  Search search(*this, request, object, scene, people, pairs);
+Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
+  const GraspRequest& request = inputs.request;
+  const GraspList& list = inputs.list;
+  const TransferTable* pairs = inputs.pairs;
+  Search search(*this, inputs);
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < list.grasps.size(); ++i)
     order.emplace_back(search.rank(list.grasps[i], i), i);
@@ -155,8 +155,8 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list,
   const std::uint64_t budget =
       (request.has_goal ? 2 : 1) * static_cast<std::uint64_t>(settings_.reach_budget);
   const auto consider = [&](double rank, std::size_t index, std::optional<TransferPose> transfer) {
-    const bool stop =
-        found.size() >= enough || search.out.reaches >= budget || (cancelled && cancelled());
+    const bool stop = found.size() >= enough || search.out.reaches >= budget ||
+                      (inputs.cancelled && inputs.cancelled());
     Found one{rank, {}, std::move(transfer), {}};
     const ChoiceReason reason =
         stop ? ChoiceReason::not_considered : search.consider(list.grasps[index].grasp, one);
@@ -189,7 +189,7 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list,
     others = std::move(left);
   }
   for (const auto& [rank, index] : others) consider(rank, index, {});
-  if (found.empty() && request.move_platform) search_places(search, list, order, cancelled, found);
+  if (found.empty() && request.move_platform) search_places(search, order, found);
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.rank > b.rank; });
   // One of each kind first: when the best fails, the next should be different.
@@ -210,10 +210,12 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list,
   return search.out;
 }
 
-void GraspChooser::search_places(Search& search, const GraspList& list,
+void GraspChooser::search_places(Search& search,
                                  const std::vector<std::pair<double, std::size_t>>& order,
-                                 const std::function<bool()>& cancelled,
                                  std::vector<Found>& found) const {
+  const GraspRequest& request = search.inputs.request;
+  const GraspList& list = search.inputs.list;
+  const std::function<bool()>& cancelled = search.inputs.cancelled;
   PlatformSearch& counts = search.out.platform;
   counts.asked = true;
   counts.none = mobile_ == nullptr;
@@ -228,18 +230,19 @@ void GraspChooser::search_places(Search& search, const GraspList& list,
     if (!again && !search.below_support(g)) tried.emplace_back(rank, index);
   }
   const Pose T_world_now = search.scene.T_world_base;
-  PlatformFloor floor(*mobile_, library_, search.scene, search.people, settings_.platform_room);
+  PlatformFloor floor(*mobile_, library_, search.scene, search.inputs.people,
+                      settings_.platform_room);
   const std::uint64_t budget = search.out.reaches + settings_.platform_reaches;
-  const std::size_t enough = std::max(1U, search.request.max_grasps);
+  const std::size_t enough = std::max(1U, request.max_grasps);
   std::size_t served = 0;
-  for (const PlatformPlace& place : places_around(*robot_, *arm_, search.request.start, T_world_now,
+  for (const PlatformPlace& place : places_around(*robot_, *arm_, request.start, T_world_now,
                                                   search.start.T_world_object.translation())) {
     if (served >= kPlacesServed || found.size() >= enough || search.out.reaches >= budget ||
         (cancelled && cancelled()))
       break;
     ++counts.places;
     const Pose T_world_base = standing_at(place, T_world_now);
-    const PlatformFloor::Verdict verdict = floor.check(search.request.start, T_world_base);
+    const PlatformFloor::Verdict verdict = floor.check(request.start, T_world_base);
     if (verdict != PlatformFloor::Verdict::free) {
       ++(verdict == PlatformFloor::Verdict::blocked ? counts.blocked : counts.near_person);
       continue;

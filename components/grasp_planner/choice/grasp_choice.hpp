@@ -99,6 +99,19 @@ struct Choice {
   std::string why_none(const GraspList& list) const;
 };
 
+/// What a choice is made from.
+struct ChoiceInputs {
+  const GraspRequest& request;        ///< what is asked for
+  const GraspList& list;              ///< grasps of the hand of the robot on the object
+  const Graspable& object;            ///< the object of the request
+  const Scene& scene;                 ///< with the object of the request
+  const HumanState& people;           ///< everybody near
+  std::function<bool()> cancelled{};  ///< may be empty
+  /// Of this list and the hand of the person the object is for; without them only the room left
+  /// counts.
+  const TransferTable* pairs{};
+};
+
 /// What does not change from request to request.
 class GraspChooser {
  public:
@@ -108,15 +121,10 @@ class GraspChooser {
                std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
                const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile = nullptr);
 
-  /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may
-  /// be empty. `pairs`: of this list and the hand of the person the object is for; without them
-  /// only the room left counts. Where no grasp serves from where the robot stands and the request
-  /// allows it, places of the platform are searched, the shortest drive first; the reasons stay
-  /// those of where it stands.
-  Choice choose(const GraspRequest& request, const GraspList& list, const Graspable& object,
-                const Scene& scene, const HumanState& people,
-                const std::function<bool()>& cancelled = {},
-                const TransferTable* pairs = nullptr) const;
+  /// Chooses the grasps that serve now; deterministic for equal inputs. Where no grasp serves from
+  /// where the robot stands and the request allows it, places of the platform are searched, the
+  /// shortest drive first; the reasons stay those of where it stands.
+  Choice choose(const ChoiceInputs& inputs) const;
 
   /// Returns the robot model without a moving platform.
   const RobotModel& robot() const { return *robot_; }
@@ -124,9 +132,8 @@ class GraspChooser {
  private:
   struct Search;
   struct Found;
-  void search_places(Search& search, const GraspList& list,
-                     const std::vector<std::pair<double, std::size_t>>& order,
-                     const std::function<bool()>& cancelled, std::vector<Found>& found) const;
+  void search_places(Search& search, const std::vector<std::pair<double, std::size_t>>& order,
+                     std::vector<Found>& found) const;
 
   std::shared_ptr<const RobotModel> robot_, mobile_;
   std::shared_ptr<const HandGeometry> hand_geometry_;

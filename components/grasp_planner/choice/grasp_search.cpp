@@ -33,29 +33,24 @@ std::size_t touching(const Grasp& g) {
 
 }  // namespace
 
-GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r, const Graspable& g,
-                             const Scene& s, const HumanState& everybody,
-                             const TransferTable* table)
+GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& given)
     : self(chooser),
-      request(r),
-      object(g),
-      people(everybody),
-      pairs(table),
-      scene(s),
+      inputs(given),
+      scene(given.scene),
       start{Pose::Identity(), CollisionWorld(*chooser.robot_, chooser.library_)} {
   for (const SceneObject& o : scene.objects) {
-    if (o.id != request.object) continue;
+    if (o.id != inputs.request.object) continue;
     start.T_world_object = o.T_world_object;
     if (o.holder == Holder::human) holder = o.holder_id;
   }
   const auto prepare = [&](CollisionWorld& world, const Scene& with) {
     world.set_scene(with);
-    world.set_people(people);
-    world.set_attachment({}, {request.object});
+    world.set_people(inputs.people);
+    world.set_attachment({}, {inputs.request.object});
   };
   prepare(start.world, scene);
   if (!holder.empty()) {
-    HumanState around = people;
+    HumanState around = inputs.people;
     for (Person& p : around.people) {
       if (p.id != holder) continue;
       p = with_fingers_bent(p, start.T_world_object.translation());
@@ -67,22 +62,24 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
     }
     giver.emplace(robot(), self.library_);
     giver->set_people(around, PeopleParts::without_forearms_and_hands);
-    giver->set_attachment({}, {request.object});
+    giver->set_attachment({}, {inputs.request.object});
   }
-  if (request.has_goal) {
+  if (inputs.request.has_goal) {
     Scene then = scene;
     for (SceneObject& o : then.objects) {
-      if (o.id == request.object) o.T_world_object = request.T_world_goal;
+      if (o.id == inputs.request.object) o.T_world_object = inputs.request.T_world_goal;
     }
-    goal.emplace(Site{request.T_world_goal, CollisionWorld(robot(), self.library_)});
+    goal.emplace(Site{inputs.request.T_world_goal, CollisionWorld(robot(), self.library_)});
     prepare(goal->world, then);
     carrying.emplace(robot(), self.library_);
     prepare(*carrying, scene);
     goal_is_taken = something_at_goal();
   }
-  const auto found = std::find_if(people.people.begin(), people.people.end(),
-                                  [&](const Person& p) { return p.id == request.for_human; });
-  if (found != people.people.end()) person = &*found;
+  const std::vector<Person>& people = inputs.people.people;
+  const auto found = std::find_if(people.begin(), people.end(), [&](const Person& p) {
+    return p.id == inputs.request.for_human;
+  });
+  if (found != people.end()) person = &*found;
   stand(scene.T_world_base);
 }
 
@@ -98,15 +95,16 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
   eye.reset();
   if (person == nullptr) {
     if (robot().gaze_link() >= 0)
-      eye = T_world_base * robot().link_pose(request.start, robot().gaze_link()).translation();
+      eye =
+          T_world_base * robot().link_pose(inputs.request.start, robot().gaze_link()).translation();
     return;
   }
   if (const auto sight = sight_of(*person)) eye = sight->eyes;
   plan_handover();
   const auto arm = human_arm(*person, Side::right);
-  if (pairs != nullptr && arm)
+  if (inputs.pairs != nullptr && arm)
     places.emplace(*person, *arm, T_world_base.translation(), start.T_world_object.linear(),
-                   object.box().center());
+                   inputs.object.box().center());
 }
 
 // A middle place for the exchange: before the person's chest, on the side of the robot. Whoever
@@ -136,9 +134,9 @@ double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) 
   if (!holder.empty())
     sum += settings().rank_away * on_our_side(listed.grasp) +
            (stands_in(listed.grasp) ? settings().rank_stands : 0.0);
-  if (request.for_human.empty()) return sum;
+  if (inputs.request.for_human.empty()) return sum;
   sum += settings().rank_room * listed.room;
-  return places ? sum + settings().rank_partner * pairs->promise(index) : sum;
+  return places ? sum + settings().rank_partner * inputs.pairs->promise(index) : sum;
 }
 
 std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, const Grasp& g,
@@ -148,16 +146,16 @@ std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, co
     held.emplace(robot(), self.library_);
     held->set_scene(scene);
     held->set_base(scene.T_world_base);
-    held->set_people(people, PeopleParts::without_forearms_and_hands);
+    held->set_people(inputs.people, PeopleParts::without_forearms_and_hands);
   }
-  held->set_attachment({request.object, g.T_object_hand.inverse()}, {});
+  held->set_attachment({inputs.request.object, g.T_object_hand.inverse()}, {});
   const auto try_reach = [&](const Pose&, const Pose& T_world_hand) -> std::optional<Vector> {
     ++out.transfer_reaches;
-    auto q = inverse(T_world_hand, request.start, 0);
+    auto q = inverse(T_world_hand, inputs.request.start, 0);
     if (q && !free(*held, *q, g.hand_joints)) q.reset();
     return q;
   };
-  return places->best(*pairs, index, g.T_object_hand, tilt, try_reach, kTransferReaches);
+  return places->best(*inputs.pairs, index, g.T_object_hand, tilt, try_reach, kTransferReaches);
 }
 
 GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& g,
@@ -174,7 +172,7 @@ GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& 
     const Pose T_world_hand = T_world_held * g.T_object_hand;
     const double behind = (handover_place - T_world_hand.translation()).normalized().dot(to_person);
     if (behind < 0 || behind <= best.behind) continue;
-    if (reach(T_world_hand, RobotModel::with(request.start, *self.arm_, arm_q), 1))
+    if (reach(T_world_hand, RobotModel::with(inputs.request.start, *self.arm_, arm_q), 1))
       best = {behind, T_world_held};
   }
   return best;
@@ -183,7 +181,8 @@ GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& 
 double GraspChooser::Search::visible(const Grasp& g, const Pose& T_world_object) {
   if (!eye) return 1;
   self.hand_geometry_->forward(g.hand_joints, T_closed);
-  return visible_fraction(object, self.hand_geometry_->shape.placed(T_closed, g.T_object_hand),
+  return visible_fraction(inputs.object,
+                          self.hand_geometry_->shape.placed(T_closed, g.T_object_hand),
                           T_world_object.inverse() * *eye);
 }
 
@@ -213,7 +212,8 @@ bool GraspChooser::Search::below_support(const Pose& T_world_object, const Grasp
 }
 
 Vector GraspChooser::Search::whole(const Vector& arm_q, const Vector& hand_q) const {
-  return RobotModel::with(RobotModel::with(request.start, *self.arm_, arm_q), *self.hand_, hand_q);
+  return RobotModel::with(RobotModel::with(inputs.request.start, *self.arm_, arm_q), *self.hand_,
+                          hand_q);
 }
 
 std::optional<Vector> GraspChooser::Search::reach(const Pose& T_world_hand, const Vector& seed,
@@ -227,7 +227,7 @@ std::optional<Vector> GraspChooser::Search::inverse(const Pose& T_world_hand, co
   IkOptions options;
   options.max_iterations = 80;
   options.restarts = restarts;
-  options.random_seed = request.seed + 1;
+  options.random_seed = inputs.request.seed + 1;
   return robot().inverse(*self.arm_, T_root_world * T_world_hand, seed, options);
 }
 
@@ -250,7 +250,8 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
     ++out.touch_tests;
     const double clearance =
         i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
-    if (self.hand_geometry_->shape.touches(T_open, object, T_object_hand, clearance)) return false;
+    if (self.hand_geometry_->shape.touches(T_open, inputs.object, T_object_hand, clearance))
+      return false;
   }
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));
   return site.world.check_motion(from, to, kMotionStep).free;
@@ -258,8 +259,8 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
 
 bool GraspChooser::Search::something_at_goal() const {
   const auto touched = [&](const Shape& shape, const Pose& T_world_shape) {
-    return touch(*CollisionShape::make(shape), T_world_shape, *object.shape(),
-                 request.T_world_goal);
+    return touch(*CollisionShape::make(shape), T_world_shape, *inputs.object.shape(),
+                 inputs.request.T_world_goal);
   };
   const bool furniture =
       std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
@@ -269,7 +270,8 @@ bool GraspChooser::Search::something_at_goal() const {
       });
   return furniture ||
          std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
-           if (o.id == request.object || o.holder == Holder::robot || o.holder == Holder::human)
+           if (o.id == inputs.request.object || o.holder == Holder::robot ||
+               o.holder == Holder::human)
              return false;
            const ObjectModel* model = self.library_ ? self.library_(o.model) : nullptr;
            if (model != nullptr)
@@ -292,7 +294,7 @@ std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& g
   directions.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
   for (const Vector3& direction : directions) {
     const RetreatPath path{direction, stand_off(), settings().approach_clearance};
-    if (!retreat_free(*self.hand_geometry_, T_open, object, g.T_object_hand, path,
+    if (!retreat_free(*self.hand_geometry_, T_open, inputs.object, g.T_object_hand, path,
                       &out.touch_tests))
       continue;
     Pose T = T_world_hand;
@@ -308,7 +310,8 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
                                     const Grasp& g) {
   Pose T_lifted = T_world_hand;
   T_lifted.translation().z() += settings().lift;
-  const auto lifted = reach(T_lifted, RobotModel::with(request.start, *self.arm_, grasp_q), 0);
+  const auto lifted =
+      reach(T_lifted, RobotModel::with(inputs.request.start, *self.arm_, grasp_q), 0);
   return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift &&
          free(start.world, *lifted, g.hand_joints);
 }
@@ -319,7 +322,7 @@ bool GraspChooser::Search::stands_in(const Grasp& g) const {
   const std::vector<HandShape::Low> lows =
       self.hand_geometry_->shape.lows(T_fingers, g.T_object_hand);
   return std::none_of(lows.begin(), lows.end(), [&](const HandShape::Low& low) {
-    return low.height < object.box().min().z() + settings().support_gap;
+    return low.height < inputs.object.box().min().z() + settings().support_gap;
   });
 }
 
@@ -327,8 +330,8 @@ double GraspChooser::Search::on_our_side(const Grasp& g) const {
   const Vector3 to_robot = (scene.T_world_base.translation() - start.T_world_object.translation())
                                .cwiseProduct(Vector3(1, 1, 0))
                                .stableNormalized();
-  const Vector3 to_hand =
-      start.T_world_object.linear() * (g.T_object_hand.translation() - object.box().center());
+  const Vector3 to_hand = start.T_world_object.linear() *
+                          (g.T_object_hand.translation() - inputs.object.box().center());
   return 0.5 * (1 + to_hand.stableNormalized().dot(to_robot));
 }
 
@@ -339,7 +342,7 @@ bool GraspChooser::Search::off_giver(const Vector& arm_q, const Grasp& g) {
 
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;
-  const auto grasp_q = reach(T_world_hand, request.start, 2);
+  const auto grasp_q = reach(T_world_hand, inputs.request.start, 2);
   if (!grasp_q) return ChoiceReason::out_of_reach;
   if (!free(start.world, *grasp_q, g.hand_joints) ||
       !free(start.world, *grasp_q, g.pregrasp_joints))
@@ -356,14 +359,15 @@ ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
 
 ChoiceReason GraspChooser::Search::put_down(const Grasp& g, PuttingDown& down) {
   const Pose T_world_hand = goal->T_world_object * g.T_object_hand;
-  const auto at = reach(T_world_hand, RobotModel::with(request.start, *self.arm_, g.arm_joints), 2);
+  const auto at =
+      reach(T_world_hand, RobotModel::with(inputs.request.start, *self.arm_, g.arm_joints), 2);
   if (!at) return ChoiceReason::goal_out_of_reach;
-  carrying->set_attachment({request.object, g.T_object_hand.inverse()}, {});
+  carrying->set_attachment({inputs.request.object, g.T_object_hand.inverse()}, {});
   if (!free(*carrying, *at, g.hand_joints) || !free(goal->world, *at, g.pregrasp_joints))
     return ChoiceReason::goal_collision;
   Pose T_above = T_world_hand;
   T_above.translation().z() += settings().lift;
-  const auto above = reach(T_above, RobotModel::with(request.start, *self.arm_, *at), 0);
+  const auto above = reach(T_above, RobotModel::with(inputs.request.start, *self.arm_, *at), 0);
   if (!above || (*above - *at).cwiseAbs().maxCoeff() > kLargestLift)
     return ChoiceReason::goal_lowering;
   const Vector from = whole(*above, g.hand_joints), to = whole(*at, g.hand_joints);
@@ -383,11 +387,11 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   g = listed;
   const auto hidden = [&](const Pose& T_world_object) {
     g.visible = visible(g, T_world_object);
-    return g.visible < request.min_visible;
+    return g.visible < inputs.request.min_visible;
   };
   // From where the person will stand to the exchange is known only once the arm gets there.
   const bool seen_later = person != nullptr && !found.transfer;
-  if (!seen_later && request.min_visible > 0 &&
+  if (!seen_later && inputs.request.min_visible > 0 &&
       hidden(found.transfer ? found.transfer->T_world_object : start.T_world_object))
     return ChoiceReason::hidden;
   const ChoiceReason taken = pick_up(g);

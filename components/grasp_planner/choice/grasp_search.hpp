@@ -17,8 +17,7 @@ struct GraspChooser::Found {
 };
 
 struct GraspChooser::Search {
-  Search(const GraspChooser& chooser, const GraspRequest& request, const Graspable& object,
-         const Scene& scene, const HumanState& people, const TransferTable* pairs);
+  Search(const GraspChooser& chooser, const ChoiceInputs& given);
 
   /// The robot stands elsewhere from now on.
   void stand(const Pose& T_world_base);
@@ -72,10 +71,7 @@ struct GraspChooser::Search {
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 
   const GraspChooser& self;
-  const GraspRequest& request;
-  const Graspable& object;
-  const HumanState& people;
-  const TransferTable* pairs;
+  const ChoiceInputs& inputs;
   const Person* person{};
   std::string holder;  // person in whose hand it is; empty: nobody
   Scene scene;

@@ -101,7 +101,7 @@ int choose(const ChooseOptions& o) {
       stage.robot, robot.hand_geometry, stage.library(), {},
       mobile ? std::make_shared<const RobotModel>(std::move(*mobile)) : nullptr);
   const auto begin = std::chrono::steady_clock::now();
-  const Choice choice = chooser.choose(request, robot.list, *robot.object, scene, people);
+  const Choice choice = chooser.choose({request, robot.list, *robot.object, scene, people});
   const double ms =
       1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::fprintf(stderr, "%zu grasps chosen in %.1f ms, %llu inverse kinematics\n",

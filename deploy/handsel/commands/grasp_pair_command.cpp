@@ -149,7 +149,7 @@ int transfer(const TransferOptions& o) {
   const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), weights);
   start = Clock::now();
   const Choice choice =
-      chooser.choose(request, robot.list, *robot.object, scene, people, {}, &table);
+      chooser.choose({request, robot.list, *robot.object, scene, people, {}, &table});
   std::fprintf(stderr, "chosen in %.1f ms\n", 1e3 * since(start));
   print_refusals(choice.refusals());
 

@@ -36,7 +36,8 @@ class Grasping : public testing::Test {
       request.object = "it";
       request.start = robot_->rest_configuration();
       request.max_grasps = 6;
-      for (const Grasp& g : chooser.choose(request, page->list, *page->object, scene, {}).grasps) {
+      for (const Grasp& g :
+           chooser.choose({request, page->list, *page->object, scene, {}}).grasps) {
         if (static_cast<int>(used.size()) < count && used.insert(g.id).second) each(g, place, yaw);
       }
     }

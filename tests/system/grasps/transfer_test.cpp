@@ -138,8 +138,8 @@ void expect_transfer(const std::string& object, int place) {
   request.start = robot.rest_configuration();
   request.for_human = "anna";
   request.max_grasps = 8;
-  const Choice choice = stage().chooser.choose(request, robot_hand.list, *robot_hand.object, scene,
-                                               people, {}, table.get());
+  const Choice choice = stage().chooser.choose(
+      {request, robot_hand.list, *robot_hand.object, scene, people, {}, table.get()});
   ASSERT_FALSE(choice.grasps.empty()) << choice.why_none(robot_hand.list);
   ASSERT_EQ(choice.transfers.size(), choice.grasps.size());
   const auto best = std::find_if(choice.transfers.begin(), choice.transfers.end(),

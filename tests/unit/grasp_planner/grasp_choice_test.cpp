@@ -81,7 +81,7 @@ std::shared_ptr<const CachedGrasps> GraspChoice::page;
 TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
   const GraspChooser chooser(robot, hand_geometry, library, {});
   const Scene scene = scene_with_mug(0.68, -0.42);
-  const Choice choice = chooser.choose(request(), page->list, *page->object, scene, {});
+  const Choice choice = chooser.choose({request(), page->list, *page->object, scene, {}});
   ASSERT_GE(choice.grasps.size(), 5U);
   std::uint64_t counted = 0;
   for (const std::uint64_t r : choice.reasons) counted += r;
@@ -121,8 +121,8 @@ TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
 TEST_F(GraspChoice, is_the_same_every_time) {
   const GraspChooser chooser(robot, hand_geometry, library, {});
   const Scene scene = scene_with_mug(0.7, -0.4);
-  const Choice a = chooser.choose(request(), page->list, *page->object, scene, {}),
-               b = chooser.choose(request(), page->list, *page->object, scene, {});
+  const Choice a = chooser.choose({request(), page->list, *page->object, scene, {}}),
+               b = chooser.choose({request(), page->list, *page->object, scene, {}});
   ASSERT_EQ(a.grasps.size(), b.grasps.size());
   for (std::size_t i = 0; i < a.grasps.size(); ++i) {
     EXPECT_EQ(a.grasps[i].id, b.grasps[i].id);
@@ -134,7 +134,7 @@ TEST_F(GraspChoice, is_the_same_every_time) {
 TEST_F(GraspChoice, an_object_out_of_reach_gives_a_reason) {
   const GraspChooser chooser(robot, hand_geometry, library, {});
   const Choice choice =
-      chooser.choose(request(), page->list, *page->object, scene_with_mug(2.5, -0.5), {});
+      chooser.choose({request(), page->list, *page->object, scene_with_mug(2.5, -0.5), {}});
   EXPECT_TRUE(choice.grasps.empty());
   EXPECT_NE(choice.why_none(page->list).find("reaches"), std::string::npos)
       << choice.why_none(page->list);
@@ -162,8 +162,8 @@ TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
     }
     return sum / static_cast<double>(c.grasps.size());
   };
-  EXPECT_GT(room(chooser.choose(given, page->list, *page->object, scene, people)),
-            room(chooser.choose(plain, page->list, *page->object, scene, people)));
+  EXPECT_GT(room(chooser.choose({given, page->list, *page->object, scene, people})),
+            room(chooser.choose({plain, page->list, *page->object, scene, people})));
 }
 
 TEST_F(GraspChoice, a_robot_with_another_hand_is_refused) {

@@ -68,7 +68,7 @@ HumanState anna(double x, double y) {
 Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& people = {},
               const ChoiceSettings& settings = {}) {
   const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, robot().mobile);
-  return chooser.choose(r, mug().list, *mug().object, scene, people);
+  return chooser.choose({r, mug().list, *mug().object, scene, people});
 }
 
 std::uint64_t count(const Choice& c, ChoiceReason r) {
@@ -411,7 +411,7 @@ TEST(Platform, says_why_it_does_not_drive) {
   EXPECT_NE(none.why_none(mug().list).find("places of the platform"), std::string::npos)
       << none.why_none(mug().list);
   const GraspChooser fixed(robot().model, mug().hand_geometry, library, {});
-  const Choice still = fixed.choose(r, mug().list, *mug().object, table_with_mug(2.4, 0.3), {});
+  const Choice still = fixed.choose({r, mug().list, *mug().object, table_with_mug(2.4, 0.3), {}});
   EXPECT_TRUE(still.grasps.empty());
   EXPECT_NE(still.why_none(mug().list).find("no platform"), std::string::npos)
       << still.why_none(mug().list);
