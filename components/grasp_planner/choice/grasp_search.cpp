@@ -8,7 +8,6 @@
 #include "common/cost/person_frame.hpp"
 #include "common/model/human/holding_hand.hpp"
 #include "common/model/object_extent.hpp"
-#include "components/grasp_planner/choice/visibility.hpp"
 #include "components/grasp_planner/pair/double_grasp.hpp"
 #include "components/grasp_planner/pair/retreat.hpp"
 
@@ -31,11 +30,37 @@ std::size_t touching(const Grasp& g) {
   return fingers.size();
 }
 
+bool something_at_goal(const ChoiceInputs& inputs, const ObjectLibrary& library) {
+  const Scene& scene = inputs.scene;
+  const auto touched = [&](const Shape& shape, const Pose& T_world_shape) {
+    return touch(*CollisionShape::make(shape), T_world_shape, *inputs.object.shape(),
+                 inputs.request.T_world_goal);
+  };
+  const bool furniture =
+      std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
+        const double slack = box.supports ? std::min(kSupportSlack, 0.5 * box.size.z()) : 0.0;
+        return touched(Box{box.size - Vector3(0, 0, slack)},
+                       box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * slack));
+      });
+  return furniture ||
+         std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
+           if (o.id == inputs.request.object || o.holder == Holder::robot ||
+               o.holder == Holder::human)
+             return false;
+           const ObjectModel* model = library ? library(o.model) : nullptr;
+           if (model != nullptr)
+             return touched(std::make_shared<const TriangleMesh>(model->mesh), o.T_world_object);
+           const auto shape = primitive_shape(o.primitive, 0);
+           return shape && touched(*shape, o.T_world_object);
+         });
+}
+
 }  // namespace
 
 GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& given)
     : self(chooser),
       inputs(given),
+      hand(*chooser.hand_geometry_, given.object, chooser.settings_.support_gap),
       scene(given.scene),
       start{Pose::Identity(), CollisionWorld(*chooser.robot_, chooser.library_)} {
   for (const SceneObject& o : scene.objects) {
@@ -73,7 +98,7 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
     prepare(goal->world, then);
     carrying.emplace(robot(), self.library_);
     prepare(*carrying, scene);
-    goal_is_taken = something_at_goal();
+    goal_is_taken = something_at_goal(inputs, self.library_);
   }
   const std::vector<Person>& people = inputs.people.people;
   const auto found = std::find_if(people.begin(), people.end(), [&](const Person& p) {
@@ -110,19 +135,18 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
 // A middle place for the exchange: before the person's chest, on the side of the robot. Whoever
 // carries the task out chooses the real one.
 void GraspChooser::Search::plan_handover() {
-  handover_known = false;
+  handover_point.reset();
   const BodyJoint *torso = find_joint(*person, "torso"),
                   *shoulder = find_joint(*person, "r_shoulder");
   if (torso == nullptr || shoulder == nullptr) return;
-  handover_place = torso->position;
-  Vector3 to_robot = scene.T_world_base.translation() - handover_place;
+  Vector3 place = torso->position;
+  Vector3 to_robot = scene.T_world_base.translation() - place;
   to_robot.z() = 0;
   if (to_robot.norm() < 0.3) return;
   to_robot.normalize();
-  handover_place += kExchangeAhead * to_robot;
-  handover_place.z() = shoulder->position.z() - kExchangeBelow;
-  to_person = -to_robot;
-  handover_known = true;
+  place += kExchangeAhead * to_robot;
+  place.z() = shoulder->position.z() - kExchangeBelow;
+  handover_point = HandoverPoint{place, -to_robot};
 }
 
 double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) const {
@@ -133,7 +157,7 @@ double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) 
          std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
   if (!holder.empty())
     sum += settings().rank_away * on_our_side(listed.grasp) +
-           (stands_in(listed.grasp) ? settings().rank_stands : 0.0);
+           (hand.stands_in(listed.grasp) ? settings().rank_stands : 0.0);
   if (inputs.request.for_human.empty()) return sum;
   sum += settings().rank_room * listed.room;
   return places ? sum + settings().rank_partner * inputs.pairs->promise(index) : sum;
@@ -160,6 +184,7 @@ std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, co
 
 GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& g,
                                                                    const Vector& arm_q) {
+  const auto& [handover_place, to_person] = *handover_point;
   HandoverPlace best;
   best.T_world_object = start.T_world_object;
   best.T_world_object.translation() = handover_place;
@@ -179,36 +204,11 @@ GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& 
 }
 
 double GraspChooser::Search::visible(const Grasp& g, const Pose& T_world_object) {
-  if (!eye) return 1;
-  self.hand_geometry_->forward(g.hand_joints, T_closed);
-  return visible_fraction(inputs.object,
-                          self.hand_geometry_->shape.placed(T_closed, g.T_object_hand),
-                          T_world_object.inverse() * *eye);
+  return eye ? hand.visible(g, T_world_object.inverse() * *eye) : 1;
 }
 
 bool GraspChooser::Search::below_support(const Grasp& g) {
-  return below_support(start.T_world_object, g);
-}
-
-bool GraspChooser::Search::below_support(const Pose& T_world_object, const Grasp& g) {
-  const Pose T_world_hand = T_world_object * g.T_object_hand;
-  self.hand_geometry_->forward(g.hand_joints, T_closed);
-  self.hand_geometry_->forward(g.pregrasp_joints, T_open);
-  for (const auto* T : {&T_closed, &T_open}) {
-    for (const HandShape::Low& low : self.hand_geometry_->shape.lows(*T, T_world_hand)) {
-      for (const SceneBox& box : scene.boxes) {
-        if (!box.supports) continue;
-        const Vector3 local = box.T_world_box.inverse() * low.middle;
-        const double top = (box.T_world_box * Vector3(0, 0, 0.5 * box.size.z())).z();
-        const bool over =
-            std::abs(local.x()) < 0.5 * box.size.x() && std::abs(local.y()) < 0.5 * box.size.y();
-        if (over && T_world_object.translation().z() > top - 0.02 &&
-            low.height < top + settings().support_gap)
-          return true;
-      }
-    }
-  }
-  return false;
+  return hand.below_support(scene.boxes, start.T_world_object, g);
 }
 
 Vector GraspChooser::Search::whole(const Vector& arm_q, const Vector& hand_q) const {
@@ -257,30 +257,6 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
   return site.world.check_motion(from, to, kMotionStep).free;
 }
 
-bool GraspChooser::Search::something_at_goal() const {
-  const auto touched = [&](const Shape& shape, const Pose& T_world_shape) {
-    return touch(*CollisionShape::make(shape), T_world_shape, *inputs.object.shape(),
-                 inputs.request.T_world_goal);
-  };
-  const bool furniture =
-      std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
-        const double slack = box.supports ? std::min(kSupportSlack, 0.5 * box.size.z()) : 0.0;
-        return touched(Box{box.size - Vector3(0, 0, slack)},
-                       box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * slack));
-      });
-  return furniture ||
-         std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
-           if (o.id == inputs.request.object || o.holder == Holder::robot ||
-               o.holder == Holder::human)
-             return false;
-           const ObjectModel* model = self.library_ ? self.library_(o.model) : nullptr;
-           if (model != nullptr)
-             return touched(std::make_shared<const TriangleMesh>(model->mesh), o.T_world_object);
-           const auto shape = primitive_shape(o.primitive, 0);
-           return shape && touched(*shape, o.T_world_object);
-         });
-}
-
 double GraspChooser::Search::stand_off() const {
   return settings().stand_off - (holder.empty() ? 0.0 : kNearerToHeld);
 }
@@ -314,16 +290,6 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
       reach(T_lifted, RobotModel::with(inputs.request.start, *self.arm_, grasp_q), 0);
   return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift &&
          free(start.world, *lifted, g.hand_joints);
-}
-
-bool GraspChooser::Search::stands_in(const Grasp& g) const {
-  std::vector<std::vector<Pose>> T_fingers;
-  self.hand_geometry_->forward(g.pregrasp_joints, T_fingers);
-  const std::vector<HandShape::Low> lows =
-      self.hand_geometry_->shape.lows(T_fingers, g.T_object_hand);
-  return std::none_of(lows.begin(), lows.end(), [&](const HandShape::Low& low) {
-    return low.height < inputs.object.box().min().z() + settings().support_gap;
-  });
 }
 
 double GraspChooser::Search::on_our_side(const Grasp& g) const {
@@ -380,9 +346,10 @@ ChoiceReason GraspChooser::Search::put_down(const Grasp& g, PuttingDown& down) {
 }
 
 ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
-  if (below_support(start.T_world_object, listed)) return ChoiceReason::below_support;
+  if (below_support(listed)) return ChoiceReason::below_support;
   if (goal_is_taken) return ChoiceReason::goal_taken;
-  if (goal && below_support(goal->T_world_object, listed)) return ChoiceReason::goal_support;
+  if (goal && hand.below_support(scene.boxes, goal->T_world_object, listed))
+    return ChoiceReason::goal_support;
   Grasp& g = found.grasp;
   g = listed;
   const auto hidden = [&](const Pose& T_world_object) {
@@ -406,7 +373,7 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
     found.rank += settings().rank_handover * found.transfer->score + settings().rank_transfer -
                   settings().rank_tilt * found.transfer->tilt;
     T_world_seen = found.transfer->T_world_object;
-  } else if (handover_known) {
+  } else if (handover_point) {
     const HandoverPlace at = handover(g, g.arm_joints);
     found.rank += settings().rank_handover * at.behind;
     T_world_seen = at.T_world_object;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "components/grasp_planner/choice/grasp_choice.hpp"
+#include "components/grasp_planner/choice/hand_at_object.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -44,12 +45,16 @@ struct GraspChooser::Search {
     Pose T_world_object{Pose::Identity()};
   };
 
+  /// Where the person and the robot can hold the object, in the middle between them.
+  struct HandoverPoint {
+    Vector3 place, to_person;  ///< to_person: unit
+  };
+
   const RobotModel& robot() const { return *self.robot_; }
   const ChoiceSettings& settings() const { return self.settings_; }
   void plan_handover();
   HandoverPlace handover(const Grasp& g, const Vector& arm_q);
   double visible(const Grasp& g, const Pose& T_world_object);
-  bool below_support(const Pose& T_world_object, const Grasp& g);
   Vector whole(const Vector& arm_q, const Vector& hand_q) const;
   std::optional<Vector> reach(const Pose& T_world_hand, const Vector& seed, int restarts);
   std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const;
@@ -57,21 +62,18 @@ struct GraspChooser::Search {
   bool approach_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
   double stand_off() const;  ///< before the object, where the straight approach begins [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
-  bool something_at_goal() const;
   ChoiceReason pick_up(Grasp& g);
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
   /// How far on the robot's side of the object the hand is, [0, 1]: the person with the object in
   /// the hand is on the other.
   double on_our_side(const Grasp& g) const;
-  /// Whether the object can be stood on a surface in this grasp: the open hand is nowhere below its
-  /// foot.
-  bool stands_in(const Grasp& g) const;
   /// Far enough from head, torso, upper arms and legs of the person that holds it, the hand open.
   bool off_giver(const Vector& arm_q, const Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 
   const GraspChooser& self;
   const ChoiceInputs& inputs;
+  HandAtObject hand;
   const Person* person{};
   std::string holder;  // person in whose hand it is; empty: nobody
   Scene scene;
@@ -83,12 +85,11 @@ struct GraspChooser::Search {
   std::optional<CollisionWorld> held;
   bool goal_is_taken{};
   Pose T_root_world{Pose::Identity()};
-  std::optional<Vector3> eye;  // world: of the person, else of the robot
-  Vector3 to_person{Vector3::Zero()}, handover_place{Vector3::Zero()};
-  bool handover_known{};
+  std::optional<Vector3> eye;                   // world: of the person, else of the robot
+  std::optional<HandoverPoint> handover_point;  // of the person; empty: not known
   std::optional<TransferPlaces> places;
   std::uint64_t transfer_budget{};  // of transfer_reaches
-  std::vector<std::vector<Pose>> T_closed, T_open;
+  std::vector<std::vector<Pose>> T_open;
   Choice out;
 };
 

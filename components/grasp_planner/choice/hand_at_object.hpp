@@ -1,0 +1,34 @@
+// The hand in a grasp: supports below it, what it hides of the object.
+#pragma once
+
+#include <vector>
+
+#include "components/grasp_planner/hand/hand_geometry.hpp"
+#include "components/grasp_planner/object/graspable.hpp"
+
+namespace handsel::grasp_planner {
+
+class HandAtObject {
+ public:
+  /// Keeps references to hand and object. `support_gap`: kept between hand and support [m].
+  HandAtObject(const HandGeometry& hand, const Graspable& object, double support_gap);
+
+  /// Returns whether some part of the hand, opened or closed, is in or under a box that supports
+  /// the object.
+  bool below_support(const std::vector<SceneBox>& boxes, const Pose& T_world_object,
+                     const Grasp& g);
+  /// Returns whether the object can be stood on a surface in this grasp: the open hand is nowhere
+  /// below its foot.
+  bool stands_in(const Grasp& g) const;
+  /// Returns the fraction of the object that is seen past the closed hand from an eye, frame of the
+  /// object.
+  double visible(const Grasp& g, const Vector3& p_object_eye);
+
+ private:
+  const HandGeometry& hand_;
+  const Graspable& object_;
+  double support_gap_;
+  std::vector<std::vector<Pose>> T_closed_, T_open_;
+};
+
+}  // namespace handsel::grasp_planner
