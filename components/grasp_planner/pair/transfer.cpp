@@ -106,6 +106,28 @@ std::vector<double> tilt_levels(const TransferSettings& s) {
   return out;
 }
 
+/// The best of every turn first: where the robot's arm does not get to in one, it seldom does a
+/// little beside. Poses of one turn are neighbours in `found`.
+static std::vector<TransferPose> best_of_turns_first(std::vector<TransferPose> found) {
+  const auto better = [](const TransferPose& x, const TransferPose& y) {
+    return x.score > y.score;
+  };
+  std::vector<TransferPose> ordered, again;
+  for (auto begin = found.begin(); begin != found.end();) {
+    const auto end = std::find_if(begin, found.end(), [&](const TransferPose& p) {
+      return !p.T_world_object.linear().isApprox(begin->T_world_object.linear(), 1e-9);
+    });
+    std::stable_sort(begin, end, better);
+    ordered.push_back(std::move(*begin));
+    std::move(begin + 1, end, std::back_inserter(again));
+    begin = end;
+  }
+  std::stable_sort(ordered.begin(), ordered.end(), better);
+  std::stable_sort(again.begin(), again.end(), better);
+  std::move(again.begin(), again.end(), std::back_inserter(ordered));
+  return ordered;
+}
+
 std::optional<TransferPose> TransferPlaces::best(
     const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
     const std::function<std::optional<Vector>(const Pose& T_world_object,
@@ -162,24 +184,7 @@ std::optional<TransferPose> TransferPlaces::best(
       if (at_place) found.push_back(std::move(*at_place));
     }
   }
-  // The best of every turn first: where the robot's arm does not get to in one, it seldom does a
-  // little beside.
-  const auto better = [](const TransferPose& x, const TransferPose& y) {
-    return x.score > y.score;
-  };
-  std::vector<TransferPose> ordered, again;
-  for (auto begin = found.begin(); begin != found.end();) {
-    const auto end = std::find_if(begin, found.end(), [&](const TransferPose& p) {
-      return !p.T_world_object.linear().isApprox(begin->T_world_object.linear(), 1e-9);
-    });
-    std::stable_sort(begin, end, better);
-    ordered.push_back(std::move(*begin));
-    std::move(begin + 1, end, std::back_inserter(again));
-    begin = end;
-  }
-  std::stable_sort(ordered.begin(), ordered.end(), better);
-  std::stable_sort(again.begin(), again.end(), better);
-  std::move(again.begin(), again.end(), std::back_inserter(ordered));
+  std::vector<TransferPose> ordered = best_of_turns_first(std::move(found));
   for (std::size_t i = 0; i < ordered.size() && max_reaches > 0; ++i, --max_reaches) {
     auto q = reach(ordered[i].T_world_object, ordered[i].T_world_object * T_object_hand);
     if (!q) continue;
