@@ -5,6 +5,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
+#include "common/topics/topics.hpp"
 #include "components/spark/calibration.hpp"
 
 namespace handsel {
