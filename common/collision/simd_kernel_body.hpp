@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kIdentityPose[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/// Collision check of kWidth states of the robot, one in each lane of a register.
+/// Collision check of kWidth states of the robot, one in each element of a register.
 struct Pass {
   const SimdTables& tables;  ///< robot and scene: joints, sphere trees, solids, pairs
   SimdMemory& memory;        ///< scratch memory of the check

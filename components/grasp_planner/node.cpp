@@ -82,6 +82,7 @@ void Node::choose(const GraspRequest& request, bool reply) {
           const Choice choice = chooser->choose(
               {request, page->list, *page->object, scene, people, cancelled, table.get()});
           write(choice, page->list, *result);
+          if (table && !request.for_human.empty()) add_partners(page->list, *table, *result);
           return choice_time(choice);
         } catch (const ConfigError& e) {
           result->reason = e.what();

@@ -54,8 +54,8 @@ int run(int cases) {
   };
   const auto choose = [&](const HumanState& people, const Vector& q) {
     const Pose T_world_object = tool_at(q);
-    const manipulation_planner::OtpQuery query{scene,          people.people[0],         {},
-                                               T_world_object, attachment.T_tool_object, {}};
+    const manipulation_planner::OtpQuery query{
+        scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}, {}};
     return manipulation_planner::find_otp(robot, query, q, settings);
   };
   const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes,

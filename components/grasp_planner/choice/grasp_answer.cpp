@@ -36,6 +36,18 @@ void write(const Choice& choice, const GraspList& list, GraspReply& reply) {
   if (choice.grasps.empty()) reply.reason = choice.why_none(list);
 }
 
+void add_partners(const GraspList& list, const TransferTable& pairs, GraspReply& reply) {
+  for (Grasp& grasp : reply.grasps) {
+    const auto listed = std::find_if(list.grasps.begin(), list.grasps.end(),
+                                     [&](const auto& one) { return one.grasp.id == grasp.id; });
+    if (listed == list.grasps.end()) continue;
+    const auto index = static_cast<std::size_t>(listed - list.grasps.begin());
+    for (const TransferPartner& partner : pairs.partners(index))
+      grasp.partners.push_back(
+          {partner.id, partner.T_object_wrist, partner.opposition, partner.quality});
+  }
+}
+
 Duration choice_time(const Choice& choice) {
   return from_seconds(0.002 + 4e-4 * static_cast<double>(choice.reaches) +
                       5e-5 * static_cast<double>(choice.transfer_reaches) +

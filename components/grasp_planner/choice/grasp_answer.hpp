@@ -22,6 +22,10 @@ std::string objection(const GraspRequest& request, const Scene& scene, const Rob
 /// Writes grasps, refusals and reason of a choice to the reply. `list`: the choice was made from.
 void write(const Choice& choice, const GraspList& list, GraspReply& reply);
 
+/// Adds to each grasp of the reply the grasps of the person that find room beside it. `list`: of
+/// the robot's hand; `pairs`: of this list and the hand of the person.
+void add_partners(const GraspList& list, const TransferTable& pairs, GraspReply& reply);
+
 /// Returns the modelled time of the work, from its counts: about what one core needs.
 Duration choice_time(const Choice& choice);
 

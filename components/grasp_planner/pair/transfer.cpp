@@ -47,8 +47,9 @@ TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const
   doubles_ = list_double_grasps(robot, human, pairs);
   std::vector<std::vector<TransferPartner>> all(partners_.size());
   for (const DoubleGrasp& d : doubles_.grasps)
-    all[d.first].push_back(
-        {d.second, human.list->grasps[d.second].grasp.T_object_hand, d.opposition, d.quality});
+    all[d.first].push_back({d.second, human.list->grasps[d.second].grasp.id,
+                            human.list->grasps[d.second].grasp.T_object_hand, d.opposition,
+                            d.quality});
   doubles_.grasps = {};
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::stable_sort(all[i].begin(), all[i].end(),

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "components/grasp_planner/pair/double_grasp.hpp"
 #include "common/model/human/human_wrist.hpp"
+#include "components/grasp_planner/pair/double_grasp.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -29,6 +29,7 @@ struct TransferSettings {
 /// What a person's hand could do with the object in one grasp of the robot.
 struct TransferPartner {
   std::size_t human{};                    ///< index into the person's list
+  std::uint64_t id{};                     ///< of the person's grasp
   Pose T_object_wrist{Pose::Identity()};  ///< of the person's hand
   double opposition{};                    ///< [rad]
   double quality{};                       ///< the smaller of the two

@@ -48,7 +48,7 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
     person = parts.now.person(receiver);
     if (person == nullptr) co_return Outcome::out_of_sight("person " + receiver);
     MotionSpec carry = carry_motion(parts, object, choice.search, *person);
-    parts.action.exchange_point = choice.search.poses.front().T_world_object.translation();
+    show(choice.search.poses.front(), parts.action);
     last = co_await move(parts, carry);
     if (last.end == MotionEnd::taken) co_return Outcome{};
     if (!last.good) continue;

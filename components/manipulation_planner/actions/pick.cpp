@@ -36,7 +36,8 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
     for (std::size_t i = 0; i < grasps.size(); ++i) {
       const Pose T_tool_object = grasps[i].T_object_hand.inverse();
       const std::vector<Vector3> barred = barred_directions(grasps[i]);
-      const OtpQuery query{scene, person, layers, T_world_object, T_tool_object, barred};
+      const OtpQuery query{
+          scene, person, layers, T_world_object, T_tool_object, barred, grasps[i].partners};
       const OtpSearch search = find_otp(*robot, query, q, settings);
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});

@@ -34,13 +34,21 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
        layers = parts.now.layers(), who = *person, q = parts.now.set_point(),
        T_tool_object = parts.held.attachment().T_tool_object, T_now = parts.held.T_world_object(),
        barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{},
+       partners = grasp ? grasp->partners : std::vector<PartnerGrasp>{},
        settings = parts.settings] {
-        const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred};
+        const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred, partners};
         choice->search = find_otp(*robot, query, q, settings);
         if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
       };
   choice->outcome = co_await parts.worker.run(job);
   co_return *choice;
+}
+
+void show(const OtpPose& pose, ActionStatus& action) {
+  action.exchange_point = pose.T_world_object.translation();
+  action.has_partner = pose.partner.has_value();
+  action.T_world_partner_wrist = pose.partner ? pose.partner->T_world_wrist : Pose::Identity();
+  action.partner_strain = pose.partner ? pose.partner->strain : 0.0;
 }
 
 void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion) {
@@ -69,7 +77,7 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   }
   aim_at(choice.search, *person, motion);
   motion.receiver->p_world_torso = p_torso;
-  parts.action.exchange_point = choice.search.poses.front().T_world_object.translation();
+  show(choice.search.poses.front(), parts.action);
   co_return true;
 }
 

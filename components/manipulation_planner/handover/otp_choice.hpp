@@ -24,6 +24,8 @@ struct OtpChoice {
 /// cost is asked, null: none.
 Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
                               const Pose* T_world_object);
+/// Reports the pose that a handover is planned for, and the grasp of the person there.
+void show(const OtpPose& pose, ActionStatus& action);
 /// Sets the goals of a motion to what was found for the receiver as they are now.
 void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion);
 /// Chooses other goals when the receiver has moved so far that `goal`, axes of the arm, is no good

@@ -7,6 +7,7 @@
 
 #include "common/cost/reach_check.hpp"
 #include "common/model/human/human_body.hpp"
+#include "common/model/human/human_wrist.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -18,12 +19,16 @@ constexpr int kHeadings = 24;           // of the object at each place
 constexpr double kMinDistance = 0.05;   // between alternatives [m]
 constexpr double kMaxExtraCost = 0.25;  // of an alternative, over the best
 constexpr double kMaxBarred = 0.5;      // cosine of a finger and the person's pull
+constexpr double kNoPartner = 2;        // strain that counts where no grasp of the person fits
 constexpr double kMinFacing = -0.3;     // cosine: the hand must not come from the person's side
 
 struct Candidate {
   Pose T_world_object;
   double cost;
+  std::optional<PartnerPose> partner{};
 };
+
+bool cheaper(const Candidate& a, const Candidate& b) { return a.cost < b.cost; }
 
 bool inside_box(const Scene& scene, const Vector3& p, double margin) {
   return std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
@@ -48,6 +53,8 @@ class OtpCosts {
         layers_(query.layers),
         settings_(settings),
         barred_(query.barred),
+        partners_(query.partners),
+        right_arm_(human_arm(query.person, Side::right)),
         p_now_(query.T_world_object.translation()),
         object_in_hand_(query.T_tool_object.linear().transpose() *
                         query.T_tool_object.translation()),
@@ -114,6 +121,25 @@ class OtpCosts {
     if (in_the_way > kMaxBarred) return std::nullopt;
     return settings_.w_legibility * ((1 - facing) / 2 + in_the_way);
   }
+  /// Returns whether grasps of the person count: some are known, of a body whose arm is known.
+  bool has_partners() const { return !partners_.empty() && right_arm_ && settings_.w_wrist > 0; }
+  /// Returns the grasp in which the person takes the object with the smallest strain; nullopt: in
+  /// none, wrist or arm do not get there.
+  std::optional<PartnerPose> partner_at(const Pose& T_world_object) const {
+    std::optional<PartnerPose> best;
+    for (const PartnerGrasp& partner : partners_) {
+      const Pose T_world_wrist = T_world_object * partner.T_object_wrist;
+      const auto wrist = wrist_posture(*right_arm_, T_world_wrist);
+      if (!wrist || wrist->strain > 1 || (best && best->strain <= wrist->strain)) continue;
+      best = PartnerPose{partner.id, T_world_wrist, wrist->strain};
+    }
+    return best;
+  }
+  /// Cost of how the person has to hold wrist and arm.
+  double of_partner(const std::optional<PartnerPose>& partner) const {
+    if (!has_partners()) return 0;
+    return settings_.w_wrist * (partner ? partner->strain : kNoPartner);
+  }
 
  private:
   const Scene& scene_;
@@ -121,6 +147,8 @@ class OtpCosts {
   const LayersNow& layers_;
   const settings::ManipulationPlannerSettings& settings_;
   const std::vector<Vector3>& barred_;
+  const std::vector<PartnerGrasp>& partners_;
+  std::optional<HumanArm> right_arm_;
   Vector3 p_now_, object_in_hand_, toward_robot_;
   SimplifiedBody body_;
   ReachCheck furniture_;
@@ -165,9 +193,20 @@ Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
       }
     }
   }
-  std::stable_sort(found.all.begin(), found.all.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  std::stable_sort(found.all.begin(), found.all.end(), cheaper);
   return found;
+}
+
+/// Adds the cost of the person's grasp to the first `count` poses and sorts those again; the others
+/// are left out where some are known.
+void add_partners(const OtpCosts& costs, std::size_t count, std::vector<Candidate>& poses) {
+  if (!costs.has_partners()) return;
+  poses.resize(std::min(count, poses.size()));
+  for (Candidate& pose : poses) {
+    pose.partner = costs.partner_at(pose.T_world_object);
+    pose.cost += costs.of_partner(pose.partner);
+  }
+  std::stable_sort(poses.begin(), poses.end(), cheaper);
 }
 
 }  // namespace
@@ -191,7 +230,8 @@ OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector&
     out.reason = "person " + query.person.id + " stands inside the robot's base";
     return out;
   }
-  const Candidates candidates = find_candidates(query, costs);
+  Candidates candidates = find_candidates(query, costs);
+  add_partners(costs, settings.partner_poses, candidates.all);
   IkOptions options;
   options.restarts = 0;
   int unreachable = 0;
@@ -207,7 +247,8 @@ OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector&
     const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object *
                             query.T_tool_object.inverse();
     if (auto joints = robot.inverse(arm, T_root_tip, q, options))
-      out.poses.push_back({candidate.T_world_object, std::move(*joints), candidate.cost});
+      out.poses.push_back(
+          {candidate.T_world_object, std::move(*joints), candidate.cost, candidate.partner});
     else
       ++unreachable;
   }
@@ -231,7 +272,9 @@ std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object
     return std::nullopt;
   const std::optional<double> attitude = costs.of_attitude(T_world_object.linear());
   if (!attitude) return std::nullopt;
-  return cost + *attitude;
+  const double wrist =
+      costs.has_partners() ? costs.of_partner(costs.partner_at(T_world_object)) : 0.0;
+  return cost + *attitude + wrist;
 }
 
 }  // namespace handsel::manipulation_planner

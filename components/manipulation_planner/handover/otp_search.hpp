@@ -15,11 +15,20 @@
 
 namespace handsel::manipulation_planner {
 
+/// A grasp of the person, where the object is offered.
+struct PartnerPose {
+  std::uint64_t id{};                    ///< id of the grasp, see PartnerGrasp
+  Pose T_world_wrist{Pose::Identity()};  ///< wrist of the person's hand
+  double strain{};                       ///< see WristPosture
+};
+
 /// A pose in which an object is handed over.
 struct OtpPose {
   Pose T_world_object{Pose::Identity()};  ///< where and how the object is offered
   Vector arm_joints;                      ///< arm axes that put the held object there [rad]
   double cost{};                          ///< as otp_cost() counts it, the lower the better
+  /// How the person can take the object there; nullopt: no grasp of theirs is known, or none fits.
+  std::optional<PartnerPose> partner{};
 };
 
 /// Result of a search.
@@ -37,6 +46,8 @@ struct OtpQuery {
   const Pose& T_world_object;          ///< where the object is now
   const Pose& T_tool_object;           ///< how the hand holds the object
   const std::vector<Vector3>& barred;  ///< as barred_directions() returns them
+  /// Right hands of the person that find room beside the robot's; empty: not known.
+  const std::vector<PartnerGrasp>& partners;
 };
 
 /// Returns the directions, seen from the object, in which a hand that pinches stands (outward
@@ -47,7 +58,8 @@ std::vector<Vector3> barred_directions(const Grasp& grasp);
 /// Searches object transfer points. `q`: all axes, near which configurations are searched [rad, m].
 /// The object keeps its tilt; only its place and heading change. Places in, under or behind
 /// furniture as the person sees it, and those an outside layer forbids, are left out. The person
-/// must be able to draw the object toward them.
+/// must be able to draw the object toward them, and to grasp it with a wrist that is comfortable:
+/// the grasp of theirs with the smallest strain counts at each pose.
 OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
                    const settings::ManipulationPlannerSettings& settings);
 

@@ -50,7 +50,11 @@ class OutputCheck {
   void step(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept;
 
   /// Returns whether a set-point broke a limit since the last call.
-  bool take_limit_violation() noexcept { return std::exchange(limit_violation_, false); }
+  bool take_limit_violation() noexcept {
+    const bool out = limit_violation_;
+    limit_violation_ = false;
+    return out;
+  }
   /// Number of set-points that had no checked stop behind them.
   std::uint64_t unproven() const noexcept { return unproven_; }
   /// Returns whether there was one lately.

@@ -1,6 +1,11 @@
 // Object transfer points: where and how an object is handed over.
 #include "components/manipulation_planner/handover/otp_search.hpp"
 
+#include <limits>
+#include <numbers>
+
+#include "common/model/human/human_wrist.hpp"
+
 #include "tests/support/cost_layer.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
@@ -12,14 +17,15 @@ using rig::Rig;
 class OtpSearchTest : public ::testing::Test {
  protected:
   OtpSearch find(const LayersNow& layers = {},
-                 const std::vector<settings::PersonProfile>& people = {}) {
+                 const std::vector<settings::PersonProfile>& people = {},
+                 const std::vector<PartnerGrasp>& partners = {}) {
     auto many = rig::settings();
     many.w_preference = 0.4;
     many.people = people;
     many.exchange_goals = 20;
     const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
                T_tool_mug = make_pose({0.08, 0.02, 0.23});
-    const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}};
+    const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, partners};
     return find_otp(*rig_.robot, query, rig_.q, many);
   }
   Rig rig_;
@@ -64,6 +70,59 @@ TEST_F(OtpSearchTest, is_where_the_profile_of_the_person_says) {
   EXPECT_EQ(find({}, {profile}).poses.front().cost, usual);
 }
 
+/// A grasp of a person's hand from one side of the object, its fingers level toward the object.
+PartnerGrasp from_side(double yaw) {
+  PartnerGrasp partner;
+  partner.id = 7;
+  const Vector3 fingers(std::cos(yaw), std::sin(yaw), 0), palm(-std::sin(yaw), std::cos(yaw), 0);
+  partner.T_object_wrist.linear().col(0) = palm;
+  partner.T_object_wrist.linear().col(1) = fingers.cross(palm);
+  partner.T_object_wrist.linear().col(2) = fingers;
+  partner.T_object_wrist.translation() = -0.12 * fingers;
+  return partner;
+}
+
+TEST_F(OtpSearchTest, turns_the_object_so_that_the_wrist_of_the_person_is_comfortable) {
+  const OtpSearch without = find();
+  ASSERT_FALSE(without.poses.empty()) << without.reason;
+  EXPECT_FALSE(without.poses.front().partner);
+  const auto arm = human_arm(anna_, Side::right);
+  ASSERT_TRUE(arm);
+  int better = 0;
+  for (int k = 0; k < 8; ++k) {
+    const PartnerGrasp partner = from_side(2 * std::numbers::pi * k / 8);
+    const OtpSearch with = find({}, {}, {partner});
+    ASSERT_FALSE(with.poses.empty()) << with.reason;
+    const OtpPose& pose = with.poses.front();
+    ASSERT_TRUE(pose.partner) << "the wrist reaches no pose, side " << k;
+    EXPECT_EQ(pose.partner->id, 7U);
+    EXPECT_TRUE(pose.partner->T_world_wrist.isApprox(pose.T_world_object * partner.T_object_wrist));
+    const auto before =
+        wrist_posture(*arm, without.poses.front().T_world_object * partner.T_object_wrist);
+    const double strain_before = before ? before->strain : std::numeric_limits<double>::infinity();
+    EXPECT_LE(pose.partner->strain, strain_before + 1e-9) << "side " << k;
+    better += pose.partner->strain < strain_before - 0.05;
+  }
+  EXPECT_GE(better, 4) << "the grasp of the person has no influence";
+}
+
+TEST_F(OtpSearchTest, takes_the_grasp_of_the_person_that_strains_the_wrist_least) {
+  std::vector<PartnerGrasp> partners;
+  for (int k = 0; k < 8; ++k) {
+    partners.push_back(from_side(2 * std::numbers::pi * k / 8));
+    partners.back().id = static_cast<std::uint64_t>(k);
+  }
+  const OtpSearch search = find({}, {}, partners);
+  ASSERT_FALSE(search.poses.empty()) << search.reason;
+  const OtpPose& pose = search.poses.front();
+  ASSERT_TRUE(pose.partner);
+  const auto arm = human_arm(anna_, Side::right);
+  for (const PartnerGrasp& partner : partners)
+    if (const auto wrist = wrist_posture(*arm, pose.T_world_object * partner.T_object_wrist)) {
+      EXPECT_GE(wrist->strain, pose.partner->strain - 1e-9) << partner.id;
+    }
+}
+
 TEST_F(OtpSearchTest, behind_a_wall_there_is_none_and_the_reason_says_so) {
   ASSERT_FALSE(find().poses.empty());
   rig_.scene.boxes.push_back({"glass", make_pose({1.2, 0, 1}), {0.02, 4, 3}, false});
@@ -103,7 +162,7 @@ TEST_F(OtpSearchTest, poses_are_sorted_apart_and_cost_what_they_are_said_to_cost
   const LayersNow layers;
   auto many = rig::settings();
   many.w_preference = 0.4;
-  const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}};
+  const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, {}};
   for (std::size_t i = 0; i < search.poses.size(); ++i) {
     const OtpPose& pose = search.poses[i];
     const std::optional<double> cost = otp_cost(query, pose.T_world_object, many);
@@ -132,7 +191,7 @@ TEST_F(OtpSearchTest, a_finger_in_the_direction_of_the_pull_makes_a_pose_impossi
   Vector3 to_person = torso - rig_.scene.T_world_base.translation();
   to_person.z() = 0;
   const std::vector<Vector3> barred{T_best.linear().transpose() * to_person.normalized()};
-  const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, barred};
+  const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, barred, {}};
   EXPECT_FALSE(otp_cost(query, T_best, rig::settings()));
 }
 

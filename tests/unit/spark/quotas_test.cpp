@@ -8,6 +8,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
+#include "common/config/settings_text.hpp"
 #include "common/model/human/human_body.hpp"
 #include "components/spark/facts/fact_finder.hpp"
 #include "components/spark/people/people_tracker.hpp"
@@ -292,22 +293,23 @@ TEST(Quotas, a_quota_out_of_range_is_refused_with_file_line_and_key) {
   const std::filesystem::path file = folder.path() / "spark.txtpb";
   const auto refusal = [&](const std::string& text) -> std::string {
     std::ofstream(file) << text;
-    auto settings = settings::read_spark_settings(file);
     try {
-      check_quotas(settings, file);
+      SettingsText read;
+      const auto settings = settings::read_spark_settings(file, &read);
+      check_quotas(settings, read);
     } catch (const ConfigError& error) {
       return error.what();
     }
     return "";
   };
   EXPECT_EQ(refusal("memory: 1\nmax_people: 17\n"),
-            file.string() + ":2: max_people is 17; it must be from 1 to 16");
+            file.string() + ":2:max_people: is 17, must be a number in [1, 16]");
   EXPECT_EQ(refusal("max_objects: 0\n"),
-            file.string() + ":1: max_objects is 0; it must be from 1 to 64");
+            file.string() + ":1:max_objects: is 0, must be a number in [1, 64]");
   EXPECT_THAT(refusal("max_bodies: 16\n"),
-              HasSubstr("max_bodies is 16; it must be above max_people and at most max_tracks"));
+              HasSubstr(":1:max_bodies: is 16, must be above max_people and at most max_tracks"));
   EXPECT_THAT(refusal("max_objects: 64\nmax_known_objects: 32\n"),
-              HasSubstr("it must be at most max_known_objects"));
+              HasSubstr(":1:max_objects: is 64, must be at most max_known_objects"));
   EXPECT_EQ(refusal("max_people: 16\n"), "");
 }
 
