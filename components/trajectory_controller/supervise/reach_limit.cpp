@@ -26,6 +26,63 @@ double gained(const FrameMotion& change, const ChainCapsule& link) noexcept {
          change.angular.norm() * link.radius;
 }
 
+std::array<double, kBodyRegions> allowed_speeds(const StopProof& proof, double payload) noexcept {
+  std::array<double, kBodyRegions> out{};
+  for (std::size_t r = 0; r < kBodyRegions; ++r)
+    out[r] = proof.settings().limit_ratio *
+             proof.contact_speeds().max_speed_at(static_cast<BodyRegion>(r), payload);
+  return out;
+}
+
+/// The same for all links and parts.
+struct LimitTerms {
+  const StopTable& stop;
+  double reaction, margin;  ///< [s], [m]
+  bool backward;
+};
+
+/// A link at full speed, in the world.
+struct LinkAtSpeed {
+  double radius;
+  const Vector3 &a, &b, &va, &vb;  ///< ends of its axis and their velocities
+  double extra, inner, speed;      ///< [m/s]
+};
+
+/// A part of a person as a link meets it.
+struct PartApproach {
+  const PersonCapsule& part;
+  const RegionMotion& bounds;
+  double contact_now, from, late;  ///< [m/s], [m/s], [s]
+};
+
+/// The limit so far, lowered to the largest factor at which the link is slow enough in time.
+double lowered_limit(const LinkAtSpeed& link, const PartApproach& person, const LimitTerms& terms,
+                     double limit) noexcept {
+  const auto needed = [&](double factor, double closing) {
+    const double slowing = time_at(terms.stop, factor - person.contact_now / link.speed);
+    return reach_after(person.late + slowing, person.from, person.bounds) +
+           (factor * closing + link.inner) * (terms.reaction + 0.5 * slowing) + terms.margin;
+  };
+  Vector3 on_robot, on_person;
+  const double axes_apart =
+      std::sqrt(nearest_points(link.a, link.b, person.part.a, person.part.b, on_robot, on_person));
+  const double distance = axes_apart - link.radius - person.part.radius;
+  const Vector3 toward =
+      axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart) : Vector3(Vector3::UnitZ());
+  const double ahead = std::max(link.va.dot(toward), link.vb.dot(toward)),
+               behind = std::max(-link.va.dot(toward), -link.vb.dot(toward));
+  const double closing = std::max(0.0, terms.backward ? behind : ahead) + link.extra;
+  if (needed(limit, closing) <= distance) return limit;
+  // The need grows with the factor: bisection between contact speed, which is always allowed, and
+  // the limit so far.
+  double low = std::min(limit, person.contact_now / link.speed), high = limit;
+  for (int k = 0; k < 8; ++k) {
+    const double middle = 0.5 * (low + high);
+    (needed(middle, closing) <= distance ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
 ReachLimit::ReachLimit(const StopProof& proof)
@@ -41,13 +98,11 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
   const StopProofSettings& s = proof_.settings();
   if (!s.enabled || people.capsules.empty()) return 1.0;
   const StopTable& stop = query.stop;
-  std::array<double, kBodyRegions> contact{};
-  for (std::size_t r = 0; r < kBodyRegions; ++r)
-    contact[r] = s.limit_ratio *
-                 proof_.contact_speeds().max_speed_at(static_cast<BodyRegion>(r), query.payload);
+  const std::array<double, kBodyRegions> contact = allowed_speeds(proof_, query.payload);
   const double min_contact = *std::min_element(contact.begin(), contact.end());
   const double reaction = s.latency + s.robot_side_delay + query.ease,
                margin = s.tracker_error + s.robot_error + s.limit_margin;
+  const LimitTerms terms{stop, reaction, margin, backward};
   PartReaches reach;  // by the time the whole motion has stopped
   reach_of_parts(people, reaction + query.age + stop.time[kStopGrid], s.speed_error, s.people,
                  reach);
@@ -73,6 +128,7 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
     const double gain = faster ? gained(changes_[static_cast<std::size_t>(link.frame)], link) : 0.0;
     if (inner == 0.0 && speed * limit + gain <= min_contact) continue;
     const Vector3 a = query.T_world_base * (frame.p + ra), b = query.T_world_base * (frame.p + rb);
+    const LinkAtSpeed at_speed{link.radius, a, b, va, vb, extra, inner, speed};
     const Vector3 centre = 0.5 * (a + b);
     const double size = 0.5 * (b - a).norm() + link.radius;
     const double travel =
@@ -93,31 +149,10 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
       // What the arm's present acceleration adds before a stop begins counts, but never forbids all
       // motion.
       const double contact_now = std::max(of_arm - gain, kMinContactRatio * contact[region]);
-      const double from = start_speed(part, s.speed_error, bounds),
-                   late = reaction + query.age + part.age;
-      const auto needed = [&](double factor, double closing) {
-        const double slowing = time_at(stop, factor - contact_now / speed);
-        return reach_after(late + slowing, from, bounds) +
-               (factor * closing + inner) * (reaction + 0.5 * slowing) + margin;
-      };
-      Vector3 on_robot, on_person;
-      const double axes_apart =
-          std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));
-      const double distance = axes_apart - link.radius - part.radius;
-      const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart)
-                                               : Vector3(Vector3::UnitZ());
-      const double ahead = std::max(va.dot(toward), vb.dot(toward)),
-                   behind = std::max(-va.dot(toward), -vb.dot(toward));
-      const double closing = std::max(0.0, backward ? behind : ahead) + extra;
-      if (needed(limit, closing) <= distance) continue;
-      // The need grows with the factor: bisection between contact speed, which is always allowed,
-      // and the limit so far.
-      double low = std::min(limit, contact_now / speed), high = limit;
-      for (int k = 0; k < 8; ++k) {
-        const double middle = 0.5 * (low + high);
-        (needed(middle, closing) <= distance ? low : high) = middle;
-      }
-      limit = low;
+      const PartApproach approach{part, bounds, contact_now,
+                                  start_speed(part, s.speed_error, bounds),
+                                  reaction + query.age + part.age};
+      limit = lowered_limit(at_speed, approach, terms, limit);
     }
   }
   return limit;
