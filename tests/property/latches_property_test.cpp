@@ -88,14 +88,14 @@ class ControllerPart {
         trajectory_controller::TimeoutSettings{});
     go_.reset();
   }
-  void hear(const Go& go, TimePoint now) {
-    const auto refusal = gate_.hear(go);
+  void receive(const Go& go, TimePoint now) {
+    const auto refusal = gate_.receive(go);
     if (refusal == trajectory_controller::GoRefusal::older_epoch) return;
     heard_ = now;
     if (refusal == trajectory_controller::GoRefusal::none) go_ = go;
   }
   ExecutionStatus step(DriveMode drive, bool fault, TimePoint now) {
-    gate_.hear(drive);
+    gate_.receive(drive);
     trajectory_controller::ModeInputs in;
     in.robot_age = in.human_age = in.forecast_age = in.attention_age = 0.001;
     in.go_age = go_ ? to_seconds(now - heard_) : -1;
@@ -138,7 +138,7 @@ class Latches {
       robot.mode = drive_;
       supervisor_.latches().on(robot);
       latched_go_ = supervisor_.step(status_, now_, !chance(3));
-      controller_.hear(*latched_go_, now_);
+      controller_.receive(*latched_go_, now_);
     } else if (--down_ <= 0) {
       supervisor_.start();
     }
@@ -193,7 +193,7 @@ class Latches {
   }
   void settle() {
     for (int k = 0; k < 50 && !supervisor_.settled(); ++k)
-      controller_.hear(supervisor_.step(status_, now_, true), now_);
+      controller_.receive(supervisor_.step(status_, now_, true), now_);
   }
   void act() {
     if (calm_) return;
@@ -226,7 +226,7 @@ class Latches {
                       supervisor_.latches().safety().awaits_person == truth_.stopped;
     if (drive_ == DriveMode::enabled && !fault_ && told && chance(70)) {
       controller_.start();
-      if (latched_go_) controller_.hear(*latched_go_, now_);  // the last Go is transient local
+      if (latched_go_) controller_.receive(*latched_go_, now_);  // the last Go is transient local
     }
     if (fault_) truth_.fault = true;
   }

@@ -40,7 +40,7 @@ class GoGate {
   /// Returns the epoch that a Go must exceed because it was received first; the largest number
   /// before any was received.
   std::uint64_t first_epoch() const noexcept { return first_epoch_; }
-  /// Result of the last hear() of a Go; none before the first.
+  /// Result of the last receive() of a Go; none before the first.
   GoRefusal last_refusal() const noexcept { return last_refusal_; }
 
  private:

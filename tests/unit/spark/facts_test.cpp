@@ -106,7 +106,7 @@ TEST_F(FactsTest, every_fact_says_what_it_rests_on) {
 }
 
 TEST_F(FactsTest, a_limit_crossed_to_and_fro_by_noise_changes_nothing) {
-  const double limit = shipped().approach_speed();
+  const double limit = shipped().approach_speed;
   int changes = 0;
   bool before = false;
   std::mt19937 random(5);

@@ -467,9 +467,7 @@ TEST(PeopleTracker, any_subset_of_joints_makes_a_body_of_its_own_size) {
 
 TEST(PeopleTracker, whose_height_is_known_is_that_tall_whatever_is_seen_of_them) {
   settings::SparkSettings known = settings();
-  auto* profile = known.add_people();
-  profile->set_id("anna");
-  profile->set_height(1.62);
+  known.people.push_back({.id = "anna", .height = 1.62});
   for (const char* who : {"anna", "ben"}) {
     PeopleTracker tracker(known);
     ObservedPerson body;
