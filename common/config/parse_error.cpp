@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxKey = 60;         // [bytes] shown of a key
 constexpr std::size_t kMaxSentence = 300;   // [bytes] the parser quotes a wrong word whole
+constexpr int kMaxLinesBack = 100;          // searched for the key of a wrong value
 constexpr std::size_t kMaxLookBack = 1000;  // [bytes] searched for the key before a wrong value
 
 /// Returns how many letters must be changed, added or left out between two words.
@@ -63,6 +64,15 @@ std::string key_before(const std::string& line, std::size_t column) {
   return match[1];
 }
 
+/// Returns the line of the last occurrence of a key up to a line: the parser reports some wrong
+/// values at the word that follows them.
+int line_of_key(const std::string& text, const std::string& key, int line) {
+  const std::regex word("\\b" + key + "\\b");
+  for (int i = line; i >= 0 && i > line - kMaxLinesBack; --i)
+    if (std::regex_search(line_of(text, i).substr(0, kMaxLookBack), word)) return i;
+  return line;
+}
+
 /// Returns the word in quotation marks after `before`; empty: there is none.
 std::string quoted(const std::string& message, const std::string& before) {
   const std::size_t at = message.find(before + "\"");
@@ -95,6 +105,9 @@ std::string FirstError::explain(const std::string& text,
            nearest_key(shown, *type) + "\"";
   }
   std::string key = quoted(message_, "field ");
+  if (std::regex_match(key, std::regex("\\w+")))
+    return std::to_string(line_of_key(text, key, line_) + 1) + ":" + printable(key, kMaxKey) +
+           ": " + sentence;
   if (key.empty()) key = key_before(line_of(text, line_), static_cast<std::size_t>(column_));
   if (key.empty()) return line + std::to_string(column_ + 1) + ": " + sentence;
   return line + printable(key, kMaxKey) + ": " + sentence;

@@ -44,7 +44,7 @@ void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
   io.flag("has_platform", m.has_platform, w.has_platform);
   io.point("platform", m.platform, w.platform);
   io.number("visible", m.visible, w.visible, {0, 1});
-  io.list("partners", m.partners, w.partners, 16, true);
+  io.list("partners", m.partners, w.partners, 4, true);
   io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0,
            "pregrasp_joints", "has not as many values as hand_joints");
   io.check(m.hand_effort.size() == m.hand_joints.size() || m.hand_effort.size() == 0, "hand_effort",

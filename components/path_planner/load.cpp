@@ -35,9 +35,10 @@ SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
   return out;
 }
 
-std::optional<RobotModel> mobile_of(const NodeContext& context) {
-  if (context.description.empty()) return std::nullopt;
-  return on_platform(*context.robot, context.description);
+std::optional<RobotModel> mobile_of(const RobotModel& robot,
+                                    const std::filesystem::path& description) {
+  if (description.empty()) return std::nullopt;
+  return on_platform(robot, description);
 }
 
 }  // namespace handsel::path_planner

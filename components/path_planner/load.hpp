@@ -1,9 +1,9 @@
 // What the path planner reads when it starts.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
-#include "common/bus/node_context.hpp"
 #include "common/config/settings/path_planner.hpp"
 #include "components/path_planner/solver.hpp"
 
@@ -11,7 +11,9 @@ namespace handsel::path_planner {
 
 /// Returns the settings of the planners from those of the file.
 SolverSettings solver_settings(const settings::PathPlannerSettings& file);
-/// Returns the robot on its platform; nullopt: its description names none.
-std::optional<RobotModel> mobile_of(const NodeContext& context);
+/// Returns the robot on the platform of its description; nullopt: the description names none, or is
+/// empty.
+std::optional<RobotModel> mobile_of(const RobotModel& robot,
+                                    const std::filesystem::path& description);
 
 }  // namespace handsel::path_planner

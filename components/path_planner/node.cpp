@@ -23,7 +23,7 @@ Node::Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSett
     : bus_(bus),
       timing_{file.check_time, file.max_time, from_seconds(file.max_scene_age)},
       reply_out_(bus.advertise<PathReply>()),
-      solver_(context.robot, mobile_of(context), context.objects,
+      solver_(context.robot, mobile_of(*context.robot, context.description), context.objects,
               load_cost_settings(context.settings), solver_settings(file)) {
   bus.subscribe<Scene>(
       [this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace handsel::grasp_planner {
+namespace {
+
+constexpr std::size_t kMaxPartners = 4;  // of a grasp on the wire
+
+}  // namespace
 
 const SceneObject* object_in(const Scene& scene, const std::string& id) {
   const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
@@ -42,9 +47,11 @@ void add_partners(const GraspList& list, const TransferTable& pairs, GraspReply&
                                      [&](const auto& one) { return one.grasp.id == grasp.id; });
     if (listed == list.grasps.end()) continue;
     const auto index = static_cast<std::size_t>(listed - list.grasps.begin());
-    for (const TransferPartner& partner : pairs.partners(index))
+    for (const TransferPartner& partner : pairs.partners(index)) {
+      if (grasp.partners.size() == kMaxPartners) break;
       grasp.partners.push_back(
           {partner.id, partner.T_object_wrist, partner.opposition, partner.quality});
+    }
   }
 }
 

@@ -67,7 +67,7 @@ void add_components(BadFiles& table) {
       .key("speed_override", "1.5", "is 1.5, must be")
       .key("plan_nodes", "-1", "Expected integer")
       .key("plan_depth", "4294967295", "is 4.29497e+09, must be")
-      .key("domain", "\"\"", "domain must name")
+      .key("domain", "\"\"", "must name the file of the task domain")
       .missing();
   Settings(table, "trajectory_controller", "trajectory_controller.txtpb")
       .key("period", "nan", "is nan, must be")

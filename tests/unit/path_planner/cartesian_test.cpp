@@ -169,9 +169,9 @@ TEST_F(Cartesian, says_why_not) {
   EXPECT_THAT(reason(), HasSubstr("start"));
   problem.start = robot_.rest_configuration();
   problem.T_root_goal = make_pose({5, 0, 1});
-  EXPECT_THAT(reason(), HasSubstr("no posture"));
+  EXPECT_THAT(reason(), HasSubstr("no configuration"));
   problem.T_root_goal = make_pose({0.85, -0.62, 0.5});
-  EXPECT_THAT(reason(), ::testing::AnyOf(HasSubstr("box table"), HasSubstr("no posture")));
+  EXPECT_THAT(reason(), ::testing::AnyOf(HasSubstr("box table"), HasSubstr("no configuration")));
   problem.T_root_goal = tool(random_posture_like(problem.start));
   problem.budget = 0;
   EXPECT_THAT(reason(), HasSubstr("time limit is zero"));

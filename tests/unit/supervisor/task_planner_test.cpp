@@ -265,7 +265,7 @@ TEST(TaskDomain, a_mistake_is_named_with_file_line_and_field) {
   says("name: \"up\"", "name: \"rest\"", "d.txtpb:3:name", "there already");
   says("adds: \"held_by_robot ?o\"", "adds: \"not held_by_robot ?o\"", "d.txtpb:3:adds",
        "listed under removes");
-  says("name: \"t\"", "nam: \"t\"", "d.txtpb:5:", "no field named \"nam\"");
+  says("name: \"t\"", "nam: \"t\"", "d.txtpb:5:nam", "is no key of Task; the nearest is \"name\"");
 }
 
 TEST(TaskDomain, one_that_leads_ever_deeper_ends_with_a_reason) {

@@ -166,7 +166,7 @@ TEST_F(CartesianWay, a_thing_in_the_way_ends_it_before_and_is_named) {
   const CartesianMotion motion = run();
   EXPECT_FALSE(motion.solved);
   EXPECT_EQ(motion.reached, 1u);
-  EXPECT_THAT(motion.reason, HasSubstr("on the way to node 2"));
+  EXPECT_THAT(motion.reason, HasSubstr("on the path to node 2"));
   EXPECT_THAT(motion.reason, HasSubstr("shelf"));
 }
 
