@@ -11,8 +11,7 @@ foreach(kind system fault)
     if(kind STREQUAL system AND NOT name STREQUAL give_mug)
       set(label full)
     endif()
-    # Simulated time gives the pace: another test beside it costs time but no result.
-    set_tests_properties(${kind}_${name} PROPERTIES LABELS ${label} TIMEOUT 300)
+    set_tests_properties(${kind}_${name} PROPERTIES LABELS ${label} RUN_SERIAL TRUE TIMEOUT 180)
   endforeach()
 endforeach()
 
