@@ -28,12 +28,15 @@ constexpr double kPace = 0.8;  // of the person [m/s]
 
 struct Carried {
   bool offered{};
-  std::string ended;  ///< how and why, if it was not offered
-  double moved{};     ///< from the point the first path to the person led to [m]
-  int switches{};     ///< commands that take over from one that runs
-  double standing{};  ///< longest the arm stood still on its way after the first step [s]
-  double aside{};     ///< offered point beside the person's middle, as they stand at the end [m]
-  bool reached{};     ///< the point lies within their reach
+  std::string ended;   ///< how and why, if it was not offered
+  double moved{};      ///< from the point the first path to the person led to [m]
+  int switches{};      ///< commands that take over from one that runs
+  double standing{};   ///< longest the arm stood still on its way after the first step [s]
+  double aside{};      ///< offered point beside the person's middle, as they stand at the end [m]
+  bool reached{};      ///< the point lies within their reach
+  bool has_partner{};  ///< the offer is planned for a grasp of the person
+  double partner_strain{};    ///< of the person's wrist and arm there
+  double partner_distance{};  ///< of their wrist from the offered point [m]
 };
 
 /// The person goes `step` [m] aside (+y) `after` [s] on the first path to them.
@@ -110,6 +113,10 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
   out.reached = people.people.size() == 1 && within_reach(people.people[0], action.exchange_point);
   out.aside = std::abs(action.exchange_point.y() -
                        body()[static_cast<std::size_t>(body_joint_index("torso"))].position.y());
+  out.has_partner = action.has_partner;
+  out.partner_strain = action.partner_strain;
+  out.partner_distance =
+      (action.T_world_partner_wrist.translation() - action.exchange_point).norm();
   return out;
 }
 
@@ -127,6 +134,11 @@ TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_s
         k + 1, run.offered, run.ended.c_str(), run.moved, run.switches, run.standing, run.aside,
         run.reached);
     EXPECT_TRUE(run.offered) << run.ended;
+    std::printf("  wrist of the person: planned %d, strain %.2f, %.2f m from the point\n",
+                run.has_partner, run.partner_strain, run.partner_distance);
+    EXPECT_TRUE(run.has_partner) << "no grasp of the person was chosen with that of the robot";
+    EXPECT_LE(run.partner_strain, 1.0);
+    EXPECT_LT(run.partner_distance, 0.3) << "the wrist did not follow the exchange point";
     reached += run.reached;
     led_over += run.moved > 0.15 && run.switches > 0 && run.standing < 0.05;
   }

@@ -59,8 +59,8 @@ bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std
 /// Adds a sample to the estimate. `doubt_time`: how long a jump adds to the uncertainty [s].
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
                 double doubt_time);
-/// Computes the uncertainty of an object that is not observed from the distance it may have moved;
-/// in the hand of a person at most as far as that person may have walked.
+/// Computes the uncertainty of an object that is not observed from the distance it may have moved,
+/// up to a limit of the settings. In the hand of a person the inflation of that person is added.
 void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint now,
                         const settings::SparkSettings& settings);
 
