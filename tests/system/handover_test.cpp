@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <future>
 #include <nlohmann/json.hpp>
 
 #include "deploy/handsel/eval/lockstep_system.hpp"
@@ -32,20 +31,11 @@ std::vector<Json> in_lockstep(const std::string& scenario, int seeds) {
   return lines;
 }
 
-struct DdsRun {
-  std::string scenario;
-  int seed{1};
-  std::string timeout{};  ///< [s]; empty: the scenario's
-};
-
-test::Outcome command_outcome(const DdsRun& run, int domain) {
-  return test::shell(std::string(HANDSEL_COMMAND) + " run --headless --port 0 --domain " +
-                     std::to_string(domain) + " --scenario " + run.scenario + " --seed " +
-                     std::to_string(run.seed) +
-                     (run.timeout.empty() ? "" : " --timeout " + run.timeout));
-}
-
-Json report_of(const test::Outcome& outcome) {
+/// `timeout` [s]; empty: the scenario's.
+Json over_dds(const std::string& scenario, int seed, const std::string& timeout = {}) {
+  const test::Outcome outcome = test::shell(
+      std::string(HANDSEL_COMMAND) + " run --headless --port 0 --domain 38 --scenario " + scenario +
+      " --seed " + std::to_string(seed) + (timeout.empty() ? "" : " --timeout " + timeout));
   const Json report = Json::parse(outcome.out, nullptr, false);
   if (report.is_discarded()) {
     ADD_FAILURE() << "no report; exit code " << outcome.exit_code << ": " << outcome.err;
@@ -53,20 +43,6 @@ Json report_of(const test::Outcome& outcome) {
   }
   EXPECT_EQ(outcome.exit_code, report["success"].get<bool>() ? 0 : 1);
   return report;
-}
-
-/// Makes the runs, two systems at a time; returns the reports in the order of the runs.
-std::vector<Json> over_dds(const std::vector<DdsRun>& runs) {
-  constexpr int kFirstDomain = 38;
-  std::vector<Json> reports;
-  for (std::size_t i = 0; i < runs.size(); i += 2) {
-    std::future<test::Outcome> second;
-    if (i + 1 < runs.size())
-      second = std::async(std::launch::async, command_outcome, runs[i + 1], kFirstDomain + 1);
-    reports.push_back(report_of(command_outcome(runs[i], kFirstDomain)));
-    if (second.valid()) reports.push_back(report_of(second.get()));
-  }
-  return reports;
 }
 
 void expect_bounded(const Json& line, const std::string& what) {
@@ -94,12 +70,9 @@ TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
   const std::vector<Json> lockstep = in_lockstep("give_mug", kSeeds);
   ASSERT_EQ(lockstep.size(), static_cast<std::size_t>(kSeeds));
   EXPECT_GE(successes(lockstep), kAtLeast) << "in lock-step";
-  std::vector<DdsRun> runs;
-  for (int seed = 1; seed <= kSeeds; ++seed) runs.push_back({"give_mug", seed});
-  const std::vector<Json> reports = over_dds(runs);
   int done = 0, agreed = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const Json& report = reports[static_cast<std::size_t>(seed - 1)];
+    const Json report = over_dds("give_mug", seed);
     const std::string what = "seed " + std::to_string(seed);
     const bool success = report["success"];
     std::printf("%s: %s, lock-step %s %s\n", what.c_str(), success ? "done" : "failed",
@@ -140,12 +113,9 @@ TEST(Mutants, fail_with_a_reason) {
 /// Long enough for a person who takes it: the mug is lifted and held out, and nobody else's failure
 /// passes for the mutant's.
 TEST(Handover, mutants_fail_over_dds_too) {
-  std::vector<DdsRun> runs;
-  for (const char* scenario : kMutants) runs.push_back({scenario, 1, "25"});
-  const std::vector<Json> reports = over_dds(runs);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Json& report = reports[i];
-    const std::string what = runs[i].scenario + " over DDS";
+  for (const char* scenario : kMutants) {
+    const Json report = over_dds(scenario, 1, "25");
+    const std::string what = std::string(scenario) + " over DDS";
     expect_failure(report, what);
     if (report.contains("oracle")) {
       EXPECT_GE(report["oracle"]["max_lifted_m"].get<double>(), 0.10)
