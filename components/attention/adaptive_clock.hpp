@@ -19,12 +19,12 @@ enum class ClockLaw {
 /// Range and rule of the period of one behaviour.
 struct ClockSettings {
   ClockLaw rule{ClockLaw::linear};  ///< rule that gives the next period
-  double p_min{0.033};             ///< shortest period [s], > 0, at least that of the source
-  double p_max{0.3};               ///< longest period [s], >= p_min
-  double near{0.1};                ///< stimulus at which the period is a tenth of p_max
-  double far{1.2};                 ///< stimulus from which the period is p_max, > near
-  double weber_gain{1.0};          ///< relative change of the period per that of the stimulus, > 0
-  double period{};                 ///< of the fixed law, [p_min, p_max] [s]
+  double p_min{0.033};              ///< shortest period [s], > 0, at least that of the source
+  double p_max{0.3};                ///< longest period [s], >= p_min
+  double near{0.1};                 ///< stimulus at which the period is a tenth of p_max
+  double far{1.2};                  ///< stimulus from which the period is p_max, > near
+  double weber_gain{1.0};           ///< relative change of the period per that of the stimulus, > 0
+  double period{};                  ///< of the fixed law, [p_min, p_max] [s]
 };
 
 /// p_t = rho * clamp(f(s_t, p_t-1)) + (1 - rho) * p_t-1 with rho = 1 when the clock fires.

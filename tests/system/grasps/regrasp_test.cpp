@@ -113,7 +113,8 @@ void print(const RegraspPlan& plan, const std::string& object, const char* what)
                 s.kind == RegraspStepKind::pass ? (s.to == 1 ? " right to left" : " left to right")
                 : s.to == 0 || s.from == 0      ? " right"
                                                 : " left");
-  std::printf(" (%llu checked, %llu double grasps)\n", static_cast<unsigned long long>(plan.checked),
+  std::printf(" (%llu checked, %llu double grasps)\n",
+              static_cast<unsigned long long>(plan.checked),
               static_cast<unsigned long long>(plan.double_grasps));
 }
 
