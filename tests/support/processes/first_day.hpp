@@ -22,6 +22,7 @@
 #include "deploy/drivers/maker_udp.hpp"
 #include "tests/support/processes/background.hpp"
 #include "tests/support/processes/live_view.hpp"
+#include "tests/support/processes/stall_watch.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::test {
@@ -96,9 +97,13 @@ class FirstDay {
     return fake_->printed().find(event) != std::string::npos;
   }
 
+  /// Waits until `done`; ends early, without success, once the processes hold because the machine
+  /// was away: what the story waits for cannot come then.
   template <class Done>
   bool wait(const Done& done, double seconds = 10.0) {
-    return bus_.run_until([&] { return done(); }, from_seconds(seconds));
+    bool success = false;
+    bus_.run_until([&] { return (success = done()) || held_by_machine(); }, from_seconds(seconds));
+    return success;
   }
   /// `holds` for so many samples of the robot's state.
   template <class Holds>
@@ -176,6 +181,9 @@ class FirstDay {
   }
   bool hand_done(HandState state) const {
     return status_.hand_command == hand_id_ && status_.hand == state;
+  }
+  bool held_by_machine() const {
+    return (has(Cause::cycle_late) || has(Cause::robot_state_silent)) && StallWatch::was_away();
   }
   bool has(Cause cause) const {
     return (status_.causes & (1U << static_cast<unsigned>(cause))) != 0;

@@ -24,13 +24,24 @@ namespace handsel::test {
 /// test, is to wake every half millisecond.
 class StallWatch {
  public:
+  static constexpr double kTolerated = 0.004;  ///< [s]
+
   StallWatch() {
+    running_ = this;
     for (unsigned cpu = 0; cpu < std::thread::hardware_concurrency(); ++cpu)
       threads_.emplace_back([this, cpu] { watch(cpu); });
   }
   ~StallWatch() {
+    running_ = nullptr;
     end_ = true;
     for (std::thread& thread : threads_) thread.join();
+  }
+
+  /// Whether the machine took so much away during the running story that a failure of the story
+  /// would say nothing.
+  static bool was_away() {
+    const StallWatch* const watch = running_;
+    return watch != nullptr && watch->worst() > kTolerated;
   }
 
   /// The most that one processor lost within 20 ms so far [s].
@@ -79,6 +90,7 @@ class StallWatch {
     }
   }
 
+  static inline const StallWatch* running_ = nullptr;  // read by the thread of the story only
   mutable std::mutex mutex_;
   std::vector<Stall> stalls_;
   std::atomic<bool> end_{false};
@@ -89,8 +101,7 @@ class StallWatch {
 /// of so many tellings in any case; `afresh` comes before each but the first.
 template <class Story, class Afresh>
 void in_real_time(const Story& story, const Afresh& afresh) {
-  constexpr double kTolerated = 0.004;  // [s]
-  constexpr int kTellings = 4;
+  constexpr int kTellings = 12;
   for (int telling = 1;; ++telling) {
     testing::TestPartResultArray results;
     double lost = 0.0;
@@ -104,7 +115,7 @@ void in_real_time(const Story& story, const Afresh& afresh) {
     bool failed = false;
     for (int i = 0; i < results.size(); ++i)
       failed = failed || results.GetTestPartResult(i).failed();
-    if (failed && lost > kTolerated && telling < kTellings) {
+    if (failed && lost > StallWatch::kTolerated && telling < kTellings) {
       std::printf("void: the machine took %.1f of 20 ms away; %s\n", 1e3 * lost,
                   results.GetTestPartResult(0).message());
       std::fflush(stdout);
