@@ -8,6 +8,7 @@
 #include "common/messages/perception.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
+#include "common/messages/task.hpp"
 #include "sim/physics/contacts.hpp"
 #include "sim/scene/scene_setup.hpp"
 #include "sim/scene/settings.hpp"
@@ -34,6 +35,11 @@ class SimWorld {
   void observe(const HumanObservation&);
   /// Whether any person follows a source outside.
   bool follows() const;
+  /// Tells the people what the robot does: a give action offers the object, a receive action asks
+  /// for it.
+  void hear(const ActionStatus&);
+  /// Whether any person listens to the robot.
+  bool listens() const;
   /// Carries out every action but pause, resume and reset, which are the caller's. Returns an empty
   /// text, or one sentence when the subject does not exist.
   std::string control(const SimControl&);

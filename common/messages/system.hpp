@@ -142,6 +142,8 @@ struct GroundTruth {
   double human_alone{};  ///< how long the person alone has carried it [s]
   bool dropped{};        ///< touched floor or fell
   bool handover_done{};  ///< lifted >= 0.10, contact >= 0.2, alone >= 1
+  /// Times the watched object changed hands: a give and a receive count one each.
+  std::uint64_t handovers{};
   /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
   double min_separation{};         ///< smallest `separation` so far [m]; infinity: nobody was there

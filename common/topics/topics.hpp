@@ -59,7 +59,7 @@ struct TopicRow {
   X(TaskStatus, "task_status", state, 0, 0, 167936, "supervisor", "handsel") \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner") \
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", \
-    "supervisor attention trajectory_controller ros2_lane") \
+    "supervisor attention trajectory_controller sim ros2_lane") \
   X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller driver") \
   X(SafetyState, "safety_state", latch, 1, 3, 163840, "supervisor", "spark trajectory_controller") \
   X(TrajectoryCommand, "trajectory", command, 0, 0, 5242880, "manipulation_planner ros2_lane", "trajectory_controller") \

@@ -99,6 +99,7 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.number("human_alone", m.human_alone, w.human_alone, kTime);
   io.flag("dropped", m.dropped, w.dropped);
   io.flag("handover_done", m.handover_done, w.handover_done);
+  io.integer("handovers", m.handovers, w.handovers);
   io.horizon("separation", m.separation, w.separation, -1e4);
   io.horizon("min_separation", m.min_separation, w.min_separation, -1e4);
   io.integer("ssm_violations", m.ssm_violations, w.ssm_violations);

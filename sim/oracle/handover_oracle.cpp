@@ -5,15 +5,16 @@
 namespace handsel::sim {
 
 namespace {
-constexpr double kLifted = 0.10;  // by the robot that gives [m]
-constexpr double kShared = 0.2;   // both have hold of it [s]
-constexpr double kAlone = 1.0;    // then who takes it has it alone [s]
+constexpr double kLifted = 0.10;        // by the robot that gives [m]
+constexpr double kShared = 0.2 - 1e-9;  // both have hold of it [s]
+constexpr double kAlone = 1.0 - 1e-9;   // then the receiver has the object alone [s]
 }  // namespace
 
 void HandoverOracle::observe(const ObjectSituation& now, double dt) {
   height_ = now.height;
   if (now.robot_grips) {
-    max_lifted_ = std::max(max_lifted_, height_ - start_height_);
+    lifted_ = std::max(lifted_, height_ - start_height_);
+    max_lifted_ = std::max(max_lifted_, lifted_);
     contact_ = now.human_touches ? contact_ + dt : 0;
     contact_before_release_ = contact_;
   }
@@ -24,15 +25,27 @@ void HandoverOracle::observe(const ObjectSituation& now, double dt) {
       now.robot_grips && !now.human_grips && !now.human_touches && !now.on_surface && !now.on_floor;
   robot_alone_ = robot_alone ? robot_alone_ + dt : 0;
   const bool both =
-      from_person_ ? now.human_grips && now.robot_touches : now.robot_grips && now.human_touches;
+      with_person_ ? now.human_grips && now.robot_touches : now.robot_grips && now.human_touches;
   shared_ += both ? dt : 0;
   held_by_both_ += now.robot_grips && now.human_grips ? dt : 0;
   dropped_ = dropped_ || now.on_floor;
-  const bool given =
-      max_lifted_ >= kLifted && contact_before_release_ >= kShared && alone_ >= kAlone - 1e-9;
-  const bool taken = held_by_both_ >= kShared - 1e-9 && robot_alone_ >= kAlone - 1e-9;
-  done_ = done_ || (!dropped_ && (from_person_ ? taken : given));
   last_ = now;
+  if (with_person_ && robot_alone_ >= kAlone) {
+    if (held_by_both_ >= kShared) count_handover();
+    with_person_ = false;
+  } else if (!with_person_ && alone_ >= kAlone) {
+    if (lifted_ >= kLifted && contact_before_release_ >= kShared) count_handover();
+    with_person_ = true;
+  } else if (with_person_ && now.on_surface && !now.human_touches) {
+    with_person_ = false;
+  }
+  if (handovers_ > 0 && now.on_surface) start_height_ = height_;
+}
+
+void HandoverOracle::count_handover() {
+  if (dropped_) return;
+  ++handovers_;
+  lifted_ = shared_ = held_by_both_ = 0;
 }
 
 void HandoverOracle::write(GroundTruth& ground_truth) const {
@@ -46,7 +59,8 @@ void HandoverOracle::write(GroundTruth& ground_truth) const {
   ground_truth.human_contact_before_release = contact_before_release_;
   ground_truth.human_alone = alone_;
   ground_truth.dropped = dropped_;
-  ground_truth.handover_done = done_;
+  ground_truth.handover_done = done();
+  ground_truth.handovers = handovers_;
 }
 
 }  // namespace handsel::sim

@@ -109,6 +109,20 @@ bool People::follow_somebody() const {
                      [](const Body& person) { return !person.model.source().empty(); });
 }
 
+void People::hear(Announcement announcement, const std::string& human, const std::string& object) {
+  for (Body& person : people_) {
+    const bool is_about_it =
+        person.object >= 0 && (object.empty() || objects_[person.object].start().id == object);
+    const bool is_meant = is_about_it && (human.empty() || human == person.model.id());
+    person.model.hear(is_meant ? announcement : Announcement::none);
+  }
+}
+
+bool People::listen() const {
+  return std::any_of(people_.begin(), people_.end(),
+                     [](const Body& person) { return person.model.listens(); });
+}
+
 void People::move(double dt, const BodyState& robot_hand, int gripped) {
   for (Body& person : people_) {
     observe(person, dt, robot_hand, gripped);

@@ -54,7 +54,7 @@ PersonModel::PersonModel(const PersonSettings& settings)
     feet_ = home_ - settings_.approach_from * forward();
     phase_ = PersonPhase::arriving;
   }
-  if (settings_.kind == PersonKind::giver) {
+  if (settings_.kind == PersonKind::giver || settings_.holds) {
     phase_ = PersonPhase::keeping;
     hand_active_ = wants_grip_ = true;
     place_base();
@@ -95,6 +95,12 @@ void PersonModel::dart(double speed) {
   hand_active_ = true;
   hand_target_ = hand_point();
   enter(PersonPhase::darting);
+}
+
+void PersonModel::hear(Announcement announcement) {
+  if (announcement == heard_) return;
+  heard_ = announcement;
+  heard_since_ = clock_;
 }
 
 void PersonModel::leave() {
@@ -179,7 +185,7 @@ void PersonModel::act(double dt, const PersonView& view) {
       withdraw(dt, view);
       break;
     case PersonPhase::keeping:
-      if (settings_.kind == PersonKind::giver) {
+      if (settings_.kind == PersonKind::giver || settings_.kind == PersonKind::partner) {
         hold_back(view);
       } else {
         hand_target_ = keep_point();
@@ -214,6 +220,7 @@ bool PersonModel::offered(const PersonView& view, int side) const {
       view.object_velocity.norm() > fastest)
     return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
+  if (settings_.kind == PersonKind::partner && heard_ != Announcement::offers) return false;
   return (object_centre(view) - shoulder(side)).norm() <
          reach_ + (settings_.recording ? kStep : kLeanReach);
 }
@@ -232,7 +239,7 @@ void PersonModel::choose_hand(const PersonView& view) {
 
 void PersonModel::watch(double dt, const PersonView& view) {
   cooldown_ = std::max(0.0, cooldown_ - dt);
-  const bool takes = settings_.kind == PersonKind::taker ||
+  const bool takes = settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner ||
                      settings_.kind == PersonKind::recording ||
                      settings_.kind == PersonKind::fetcher;
   if (offer_time_ <= 0) choose_hand(view);
@@ -338,7 +345,9 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   lean_ = (1 - s) * lean_from_;
   if (!settings_.behaviour.seated) feet_ = home_ - s * kStepBack * forward();
   hand_target_ = from_ + s * (keep_point() - from_);
-  if (progress_ >= 1) enter(PersonPhase::keeping);
+  if (progress_ < 1) return;
+  from_ = hand_target_;
+  enter(PersonPhase::keeping);
 }
 
 void PersonModel::give_up() {

@@ -19,7 +19,7 @@
 
 namespace handsel::sim {
 
-enum class PersonKind { taker, still, walker, recording, giver, external, fetcher };
+enum class PersonKind { taker, still, walker, recording, giver, external, fetcher, partner };
 
 /// What makes a person different from the next.
 struct BehaviourProfile {
@@ -50,6 +50,7 @@ struct PersonSettings {
   double approach_from{};              ///< walks in from this far behind its place [m]
   double pull{8.0};                    ///< when taking [N]
   bool left_handed{};                  ///< prefers the left hand; a recording has a hand of its own
+  bool holds{};                        ///< a partner begins with its object in the hand
   std::shared_ptr<const Recording> recording;  ///< motion to play; null: none
   std::string external;                        ///< source of the body an external person follows
   /// An external person's hand closer than this to an offered object is led to it [m].
@@ -73,6 +74,9 @@ struct PersonView {
   bool grip_broke{};                    ///< it slipped out of this person's hand
   Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
 };
+
+/// What a partner hears the robot say about an object.
+enum class Announcement { none, offers, asks };
 
 enum class PersonPhase {
   arriving,
@@ -102,10 +106,14 @@ class PersonModel {
   void dart(double speed);                ///< the hand moves fast toward the robot's hand [m/s]
   void leave();                           ///< walks 3 m backward, with what is in the hand
   void refuse() { refusing_ = true; }     ///< neither reaches for nor offers an object any more
+  /// Tells a partner what the robot does: a partner takes only what is offered, and offers what the
+  /// robot asks for.
+  void hear(Announcement announcement);
 
   const std::string& source() const { return settings_.external; }  ///< followed; empty: none
   const std::string& id() const { return settings_.id; }            ///< unique in the scenario
-  PersonPhase phase() const { return phase_; }                      ///< what the person does now
+  bool listens() const { return settings_.kind == PersonKind::partner; }  ///< to hear()
+  PersonPhase phase() const { return phase_; }     ///< what the person does now
   const Person& body() const { return body_; }     ///< ground truth, velocities included
   Side side() const { return side_; }              ///< of the handover hand
   bool wants_grip() const { return wants_grip_; }  ///< whether that hand is to hold its object
@@ -135,6 +143,9 @@ class PersonModel {
   void dart_on(double dt, const PersonView&);
   void give_up();
   void hold_back(const PersonView&);
+  bool is_to_offer() const;
+  void come_back();
+  Vector3 step_to_place() const;
   Vector3 offer_from_shoulder(const PersonView&) const;
   void offer(double dt, const PersonView&);
   void step_aside(double dt);
@@ -173,6 +184,8 @@ class PersonModel {
   bool came_once_{false};  // the first reach or offer is over
   double step_clock_{0};   // of the sidestep
   double ignored_{0};      // the offer, so long [s]
+  Announcement heard_{Announcement::none};
+  double heard_since_{0};  // by the clock of the person [s]
   int steps_nearer_{0};
   Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};

@@ -42,19 +42,34 @@ double PersonModel::reach_time() const {
   return wavers ? 2 * kPart * duration_ + settings_.behaviour.hesitation : duration_;
 }
 
+/// A giver offers unasked, a partner when the robot has asked for a reaction time.
+bool PersonModel::is_to_offer() const {
+  if (refusing_) return false;
+  return settings_.kind == PersonKind::giver ||
+         (heard_ == Announcement::asks && clock_ - heard_since_ >= settings_.reaction);
+}
+
 void PersonModel::hold_back(const PersonView& view) {
   const double back = kOfferTime / settings_.behaviour.speed_scale;
   hand_target_ = from_ + min_jerk(since() / back) * (keep_point() - from_);
-  if (refusing_ || since() < duration_) return;
+  if (!is_to_offer() || since() < duration_) return;
   from_ = hand_target_;
+  home_ = feet_;
   duration_ = back;
   p_shoulder_offer_ = offer_from_shoulder(view);
   enter(PersonPhase::offering);
 }
 
+/// Returns the step that takes a partner back to its place, from where it went with what it took.
+Vector3 PersonModel::step_to_place() const {
+  return settings_.kind == PersonKind::partner ? Vector3(settings_.feet - home_)
+                                               : Vector3(Vector3::Zero());
+}
+
 /// Comfortably toward the robot's hand, but not into it.
 Vector3 PersonModel::offer_from_shoulder(const PersonView& view) const {
-  const Vector3 root = shoulder(index()), to_hand = view.robot_hand - root;
+  const Vector3 root = shoulder(index()),
+                to_hand = view.robot_hand - root - (home_ + step_to_place() - feet_);
   Vector3 arm = comfortable_reach(body_, side_) - root;
   const double turn =
       std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);
@@ -64,10 +79,16 @@ Vector3 PersonModel::offer_from_shoulder(const PersonView& view) const {
   return arm;
 }
 
+void PersonModel::come_back() {
+  const Vector3 step = step_to_place();
+  if (step.norm() > 0) feet_ = home_ + min_jerk(since() / step_time(step.norm())) * step;
+}
+
 void PersonModel::offer(double dt, const PersonView& view) {
   lost_time_ = view.held_by_robot ? lost_time_ + dt : 0;
   if (lost_time_ > kLetGo) return give_up();
   if (view.held_by_robot) return;
+  come_back();
   hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
   const bool near =
       view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kComeNear;
@@ -75,6 +96,7 @@ void PersonModel::offer(double dt, const PersonView& view) {
   if ((ignored_ += dt) > kImpatience) {  // holds it out anew, nearer to where the robot's hand is
     ignored_ = 0;
     from_ = hand_target_;
+    home_ = feet_;
     p_shoulder_offer_ = offer_from_shoulder(view);
     if (!settings_.behaviour.seated && steps_nearer_ < kMostSteps) {
       ++steps_nearer_;
@@ -87,7 +109,7 @@ void PersonModel::offer(double dt, const PersonView& view) {
     }
     enter(PersonPhase::offering);
   }
-  if (!refusing_ && !(near && settings_.behaviour.withdraws && !came_once_)) return;
+  if (is_to_offer() && !(near && settings_.behaviour.withdraws && !came_once_)) return;
   came_once_ = true;
   from_ = hand_target_;
   duration_ = kReconsider;

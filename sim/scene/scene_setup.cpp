@@ -24,6 +24,8 @@ PersonKind kind_of(config::PersonBehaviour behaviour) {
       return PersonKind::giver;
     case config::FETCHER:
       return PersonKind::fetcher;
+    case config::PARTNER:
+      return PersonKind::partner;
     case config::EXTERNAL:
       return PersonKind::external;
     default:
@@ -172,8 +174,9 @@ class Reader {
              ", must be between 0 and 1");
       if (person.correction() > 0) s.correction = person.correction();
     }
-    if (s.kind == PersonKind::giver || s.kind == PersonKind::fetcher) {
-      const bool gives = s.kind == PersonKind::giver;
+    s.holds = s.kind == PersonKind::partner && !person.object().empty();
+    if (s.kind == PersonKind::giver || s.kind == PersonKind::fetcher || s.holds) {
+      const bool gives = s.kind != PersonKind::fetcher;
       (gives ? p.holds : p.fetches) = person.object();
       if (std::none_of(out_.objects.begin(), out_.objects.end(),
                        [&](const StartObject& o) { return o.id == person.object(); })) {

@@ -63,6 +63,7 @@ Performer::Performer(Bus& bus, Observer& observer, const config::Scenario& scena
       publisher_(bus.advertise<TaskGoal>()),
       ready_(std::move(ready)) {
   goals_ = scenario_goals(scenario);
+  continue_after_failure_ = scenario.continue_after_failure();
   timeout_ = from_seconds(timeout > 0              ? timeout
                           : scenario.timeout() > 0 ? scenario.timeout()
                                                    : kDefaultTimeout);
@@ -107,6 +108,7 @@ void Performer::begin_task(TimePoint now) {
       {.task = describe(goals_[current_]), .state = "sent", .started = to_seconds(now - begin_)});
   task_begin_ = now;
   last_sent_ = now;
+  handovers_before_ = observer_.snapshot().ground_truth.sample.handovers;
   publisher_->publish(goals_[current_]);
   phase_ = Phase::running;
 }
@@ -159,10 +161,12 @@ void Performer::verify(TimePoint now) {
     return conclude(now);
   }
   const Seen<GroundTruth>& ground_truth = observer_.snapshot().ground_truth;
-  const bool oracle_says = ground_truth.ever &&
-                           (goal.object.empty() || ground_truth.sample.object == goal.object) &&
-                           ground_truth.sample.handover_done;
-  if (oracle_says) {
+  const bool changed_hands = ground_truth.ever &&
+                             (goal.object.empty() || ground_truth.sample.object == goal.object) &&
+                             ground_truth.sample.handovers > handovers_before_;
+  const bool is_put_down = goal.kind != TaskKind::receive ||
+                           (supervisor_says && ground_truth.sample.carrier == "surface");
+  if (changed_hands && is_put_down) {
     outcome.success = true;
     return conclude(now);
   }
@@ -174,6 +178,8 @@ void Performer::verify(TimePoint now) {
         : ground_truth.sample.object != goal.object
             ? "the simulator's oracle watches " + ground_truth.sample.object + ", not " +
                   goal.object
+        : changed_hands
+            ? "the simulator's oracle saw the handover, but " + goal.object + " is on no surface"
             : "the simulator's oracle saw no handover: " + goal.object + " is with " +
                   (ground_truth.sample.carrier.empty() ? "nobody" : ground_truth.sample.carrier);
   }
@@ -181,7 +187,8 @@ void Performer::verify(TimePoint now) {
 }
 
 void Performer::conclude(TimePoint now) {
-  if (outcomes_.back().success && ++current_ < goals_.size()) return begin_task(now);
+  const bool continues = outcomes_.back().success || continue_after_failure_;
+  if (continues && ++current_ < goals_.size()) return begin_task(now);
   end_ = now;
   phase_ = Phase::finished;
 }

@@ -34,7 +34,9 @@ struct StepOutcome {
 
 struct TaskOutcome {
   std::string task;  ///< "give mug to anna"
-  bool success{};    ///< give: the oracle's word; other kinds: the supervisor's
+  /// Give: the oracle saw the handover. Receive: the oracle saw the handover, and the object stands
+  /// on a surface. Other kinds: as the supervisor reports.
+  bool success{};
   bool timed_out{};  ///< it was not done within the time of all tasks
   /// As the supervisor said last; reason also when the oracle disagrees.
   std::string state, reason;
@@ -50,7 +52,8 @@ class Performer {
   Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout,
             std::function<bool()> ready);
 
-  /// Returns true after the last task, a failed one, the timeout or abort().
+  /// Returns true after the last task, a failed one unless the scenario continues, the timeout or
+  /// abort().
   bool finished() const { return phase_ == Phase::finished; }
   /// Returns true when finished and every task of the scenario has succeeded.
   bool succeeded() const;
@@ -82,6 +85,8 @@ class Performer {
   Duration timeout_;
   Phase phase_{Phase::waiting};
   std::size_t current_{0};
+  std::uint64_t handovers_before_{0};  // as the task began
+  bool continue_after_failure_;
   TimePoint begin_{}, end_{}, task_begin_{}, last_sent_{}, verify_begin_{};
   std::vector<TaskOutcome> outcomes_;
 };

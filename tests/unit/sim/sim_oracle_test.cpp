@@ -319,5 +319,35 @@ TEST(HandoverOracleTest, what_a_person_gives_must_be_in_both_hands_then_in_the_r
   EXPECT_FALSE(run(0.3, 1.0, true)) << "dropped";
 }
 
+TEST(HandoverOracleTest, counts_what_goes_back_and_forth) {
+  HandoverOracle oracle(0.8, false);
+  const auto pass = [&](const ObjectSituation& s, double seconds) {
+    for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i)
+      oracle.observe(s, 0.001);
+    GroundTruth ground_truth;
+    oracle.write(ground_truth);
+    return ground_truth.handovers;
+  };
+  ObjectSituation table, robot, both, person;
+  table.height = 0.8, table.on_surface = true;
+  robot.height = both.height = person.height = 1.0;
+  robot.robot_grips = robot.robot_touches = both.robot_grips = both.robot_touches = true;
+  person.human_grips = person.human_touches = both.human_grips = both.human_touches = true;
+  pass(table, 1.0);
+  for (std::uint64_t round = 0; round < 3; ++round) {
+    EXPECT_EQ(pass(robot, 2.0), 2 * round);
+    EXPECT_EQ(pass(both, 0.3), 2 * round);
+    EXPECT_EQ(pass(person, 1.5), 2 * round + 1) << "given";
+    EXPECT_FALSE(oracle.shared());
+    EXPECT_EQ(pass(both, 0.3), 2 * round + 1);
+    EXPECT_EQ(pass(robot, 1.5), 2 * round + 2) << "taken";
+    EXPECT_EQ(pass(table, 1.0), 2 * round + 2);
+  }
+  pass(robot, 2.0);
+  EXPECT_EQ(pass(person, 1.5), 6U) << "never in both hands";
+  pass(both, 0.3);
+  EXPECT_EQ(pass(robot, 1.5), 7U) << "taken from the person, however the person got it";
+}
+
 }  // namespace
 }  // namespace handsel::sim

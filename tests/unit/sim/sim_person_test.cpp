@@ -141,6 +141,50 @@ TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_rob
   EXPECT_EQ(person.phase(), PersonPhase::watching);
 }
 
+TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
+  PersonSettings settings = giver();
+  settings.feet = Vector3(1.35, 0, 0);
+  settings.kind = PersonKind::partner;
+  PersonModel person(settings);
+  const Vector3 aside(0.4, 0.5, 1.0);
+  for (int round = 0; round < 3; ++round) {
+    const PersonView view = offer({0.95, 0.05, 1.05});
+    for (int i = 0; i < 3000; ++i) person.step(0.001, view);
+    ASSERT_EQ(person.phase(), PersonPhase::watching) << "the robot does not offer the mug";
+    person.hear(Announcement::offers);
+    for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i)
+      person.step(0.001, view);
+    ASSERT_EQ(person.phase(), PersonPhase::pulling) << round;
+    live(person, 4, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::keeping) << round;
+    live(person, 4, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::keeping) << "unasked";
+    const Vector3 kept = person.hand().T_world_body.translation();
+
+    person.hear(Announcement::asks);
+    live(person, 1.5 * settings.reaction, aside);
+    person.hear(Announcement::none);
+    live(person, 2, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::keeping) << "the robot no longer asks";
+    const Vector3 moved = person.hand().T_world_body.translation() - kept;
+    EXPECT_LT(moved.cwiseProduct(Vector3(0, 1, 1)).norm(), 1e-3);
+    EXPECT_LE(std::abs(moved.x()), 0.2) << "no more than the step forward again";
+
+    person.hear(Announcement::asks);
+    live(person, 4, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::offering) << round;
+    EXPECT_GT((person.hand().T_world_body.translation() - kept).norm(), 0.15);
+    live(person, 0.8, aside, true);
+    person.hear(Announcement::none);
+    for (int i = 0; i < 4000; ++i) person.step(0.001, PersonView{});
+    EXPECT_EQ(person.phase(), PersonPhase::watching);
+    EXPECT_FALSE(person.wants_grip());
+    EXPECT_NEAR(person.body().joints[static_cast<std::size_t>(joint("torso"))].position.x(), 1.35,
+                0.1)
+        << "where it stood at first";
+  }
+}
+
 TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
   PersonModel person(giver());
   live(person, 3, {1.0, -0.2, 1.2});
