@@ -16,6 +16,16 @@ bool only_rests(const Plan& plan) {
                      [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
 }
 
+/// Returns to whom the plan of a recovery gave what the robot held, for people; empty: to nobody.
+std::string fate_of_held(const Plan& plan) {
+  std::string text;
+  for (const PlannedAction& action : plan.actions) {
+    if (action.kind == ActionKind::give)
+      text += "; " + action.object + " was handed to " + action.human;
+  }
+  return text;
+}
+
 TaskGoal normal(TaskGoal goal) {
   const bool ends_somewhere = goal.kind == TaskKind::receive || goal.kind == TaskKind::tidy;
   if (ends_somewhere && goal.onto.empty()) goal.onto = goal.surface;
@@ -323,7 +333,8 @@ void TaskRun::give_up(const std::string& reason, TimePoint now) {
 }
 
 void TaskRun::all_done(TimePoint now) {
-  if (failures_.recovering()) return finish(TaskState::failed, failures_.reason());
+  if (failures_.recovering())
+    return finish(TaskState::failed, failures_.reason() + fate_of_held(progress_.plan()));
   if (const std::string out = left_out(progress_.plan()); !out.empty())
     return finish(TaskState::failed, "not all of it was done: " + out);
   const std::string lacking = problem_.unachieved(believed(now));
