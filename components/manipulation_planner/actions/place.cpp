@@ -58,19 +58,31 @@ Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
   co_return serving;
 }
 
-Routine<Outcome> lower(Parts& parts, const PlacingConfiguration& place) {
-  MotionSpec above;
-  above.phase = ActionPhase::carry;
-  above.goals = {place.arm_above};
-  above.speed = parts.settings.carry_speed;
-  Outcome last = co_await move(parts, above);
-  if (!last.good) co_return last;
-  MotionSpec down = above;
-  down.phase = ActionPhase::put_down;
-  down.goals = {place.arm_at};
-  down.is_straight = true;
-  down.speed = parts.settings.approach_speed;
-  last = co_await move(parts, down);
+Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places) {
+  Outcome last = Outcome::failure("no configuration puts the object down");
+  while (!places.empty()) {
+    MotionSpec above;
+    above.phase = ActionPhase::carry;
+    for (const PlacingConfiguration& place : places) above.goals.push_back(place.arm_above);
+    above.speed = parts.settings.carry_speed;
+    last = co_await move(parts, above);
+    if (!last.good) co_return last;
+    const auto distance = [joints = parts.arm.joints()](const PlacingConfiguration& place) {
+      return (place.arm_above - joints).cwiseAbs().maxCoeff();
+    };
+    const auto reached =
+        std::min_element(places.begin(), places.end(),
+                         [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    MotionSpec down = above;
+    down.phase = ActionPhase::put_down;
+    down.goals = {reached->arm_at};
+    down.is_straight = true;
+    down.speed = parts.settings.approach_speed;
+    last = co_await move(parts, down);
+    if (last.good) co_return last;
+    parts.refuse("put down", last.reason);
+    places.erase(reached);
+  }
   co_return last;
 }
 
@@ -89,22 +101,18 @@ Routine<Outcome> place(Parts& parts, const std::string& object, const std::strin
     co_return Outcome::failure("no free place on " + onto +
                                " within the arm's reach: " + found.objections);
   if (found.is_lying) parts.refuse("place upright", found.objections);
-  Outcome last;
-  for (const PlacingConfiguration& configuration : found.configurations) {
-    last = co_await lower(parts, configuration);
-    if (!last.good) continue;
-    parts.destinations.clear();
-    co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); }, kPersonTimeout);
-    HandResult released =
-        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
-    if (!released.outcome.good) co_return released.outcome;
-    parts.held.release();
-    const std::string nobody;
-    Outcome back = co_await retreat(parts, nobody, object);
-    if (!back.good) parts.refuse("retreat", back.reason);
-    co_return Outcome{};
-  }
-  co_return last;
+  Outcome lowered = co_await lower(parts, found.configurations);
+  if (!lowered.good) co_return lowered;
+  parts.destinations.clear();
+  co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); }, kPersonTimeout);
+  HandResult released =
+      co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
+  if (!released.outcome.good) co_return released.outcome;
+  parts.held.release();
+  const std::string nobody;
+  Outcome back = co_await retreat(parts, nobody, object);
+  if (!back.good) parts.refuse("retreat", back.reason);
+  co_return Outcome{};
 }
 
 }  // namespace handsel::manipulation_planner

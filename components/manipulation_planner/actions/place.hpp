@@ -14,6 +14,6 @@ namespace handsel::manipulation_planner {
 Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
                                    const std::string& surface);
 /// Moves what is held to above its place and down to it.
-Routine<Outcome> lower(Parts& parts, const PlacingConfiguration& place);
+Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places);
 
 }  // namespace handsel::manipulation_planner

@@ -20,10 +20,9 @@ constexpr double kMaxShift = 0.03;      // of an object, after which its grasps 
 constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
 constexpr double kSameDistance =
     0.5;  // distances of the arm's farthest axis that count as equal [rad]
-constexpr double kMinEpsilon = 0.03;     // of a grasp that does not slip as the object is carried
-constexpr double kWeakPenalty = 1.5;     // distance that avoids a grasp below kMinEpsilon [rad]
-constexpr double kPlacingPenalty = 2.0;  // distance that avoids a grasp without destination [rad]
-constexpr std::size_t kMaxPlaces = 8;    // of a surface that are tried: the giver waits
+constexpr double kMinEpsilon = 0.03;   // of a grasp that does not slip as the object is carried
+constexpr double kWeakPenalty = 1.5;   // distance that avoids a grasp below kMinEpsilon [rad]
+constexpr std::size_t kMaxPlaces = 8;  // of a surface that are tried: the giver waits
 
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
 Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wanted,
@@ -66,9 +65,10 @@ Routine<GraspList> ask_clear_grasps(Parts& parts, const Offer& offer) {
 }
 
 /// Sorts grasps: the arm's shortest motion first, since a giver does not wait long, unless the
-/// grasp is weak or the object cannot be put down by it. Leaves the best.
-Routine<Outcome> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
-                             std::vector<Grasp>& grasps) {
+/// grasp is weak or the object cannot be put down by it. Leaves the best. Returns false where the
+/// object can be put down by none.
+Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
+                          std::vector<Grasp>& grasps) {
   const DestinationLimits limits{grasps.size(), kMaxPlaces};
   const ServingGrasps later = co_await find_destinations(parts, offer.object, onto, grasps, limits);
   for (const auto& [grasp, destination] : later.at) parts.destinations.add(destination);
@@ -77,15 +77,15 @@ Routine<Outcome> rank_grasps(Parts& parts, const Offer& offer, const std::string
                               " as it is held serves for putting it down: " + later.objections);
   const auto rank = [&parts](const Grasp& g) {
     const bool serves = parts.destinations.has(g.id);
-    const double penalty =
-        (g.epsilon < kMinEpsilon ? kWeakPenalty : 0.0) + (serves ? 0.0 : kPlacingPenalty);
+    const double penalty = (g.epsilon < kMinEpsilon ? kWeakPenalty : 0.0) +
+                           (serves ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
     return std::floor((distance + penalty) / kSameDistance);
   };
   std::stable_sort(grasps.begin(), grasps.end(),
                    [&rank](const Grasp& a, const Grasp& b) { return rank(a) < rank(b); });
   grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps));
-  co_return Outcome{};
+  co_return !later.outcome.good || !later.at.empty();
 }
 
 /// Tries grasps until one takes the object or the offer ends. `failed`: ids of grasps that did not.
@@ -126,6 +126,11 @@ Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vecto
   co_return why;
 }
 
+Outcome cannot_put_down(const Offer& offer) {
+  return Outcome::failure("no grasp of " + offer.object + " as " + offer.giver +
+                          " holds it serves for putting it down");
+}
+
 Outcome nothing_offered(const std::string& wanted, const std::string& giver, double timeout) {
   return Outcome::failure((giver.empty() ? "nobody offers " : giver + " does not offer ") +
                           (wanted.empty() ? "anything" : wanted) + " within " +
@@ -141,6 +146,7 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   Outcome last = nothing_offered(wanted, giver, timeout);
   std::set<std::uint64_t> failed;
   TimePoint deadline = parts.now.time() + from_seconds(timeout);
+  const TimePoint patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
     std::optional<Offer> offer = co_await await_offer(parts, wanted, giver, deadline);
     if (!offer) break;
@@ -155,8 +161,12 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
       last = co_await await_other_offer(parts, *offer, p_asked, list.outcome, last);
       continue;
     }
+    const bool serves = co_await rank_grasps(parts, *offer, onto, list.grasps);
+    if (!serves && parts.now.time() < patient_until) {
+      last = co_await await_other_offer(parts, *offer, p_asked, cannot_put_down(*offer), last);
+      continue;
+    }
     ++attempt;
-    co_await rank_grasps(parts, *offer, onto, list.grasps);
     const TakeAttempt first{*offer, {}, attempt};
     last = co_await try_grasps(parts, first, list.grasps, failed, last);
     if (last.good) co_return last;

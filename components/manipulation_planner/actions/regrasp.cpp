@@ -192,11 +192,12 @@ Routine<Outcome> put_down(Parts& parts, const std::string& object, const Regrasp
   if (!above)
     co_return Outcome::failure("the arm does not reach above the place where " + object +
                                " is to stand");
-  PlacingConfiguration configuration;
+  std::vector<PlacingConfiguration> places(1);
+  PlacingConfiguration& configuration = places.front();
   configuration.T_world_object = T_world_object;
   configuration.arm_above = *above;
   configuration.arm_at = *at;
-  Outcome down = co_await lower(parts, configuration);
+  Outcome down = co_await lower(parts, places);
   if (!down.good) co_return down;
   down = co_await release_and_retreat(parts, object, step.q, step.after);
   co_return down;

@@ -53,6 +53,13 @@ bool is_put_into_hand(const Parts& parts, const TakeAttempt& take) {
          kMaxInHandError;
 }
 
+/// Returns whether the hand is so near to the object that it must not open or turn beside it.
+bool is_near_object(const Parts& parts, const std::string& object) {
+  const SceneObject* seen = parts.now.object(object);
+  const Vector3 p_hand = parts.arm.T_world_tool().translation();
+  return seen != nullptr && (seen->T_world_object.translation() - p_hand).norm() < kNear;
+}
+
 Outcome moved_away(const std::string& why) {
   Outcome outcome = Outcome::failure(why);
   outcome.end = MotionEnd::target_moved;
@@ -259,6 +266,13 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   std::optional<Grasp> grasp = grasp_now(parts, object, take.chosen);
   if (!grasp) co_return out_of_reach();
   Outcome begun = co_await begin_approach(parts, take, *grasp);
+  if (!begun.good && is_near_object(parts, object)) {
+    // The opening fingers may touch what is offered so near: from farther back they do not.
+    co_await retreat_from_offer(parts, take.offer);
+    grasp = grasp_now(parts, object, take.chosen);
+    if (!grasp) co_return out_of_reach();
+    begun = co_await begin_approach(parts, take, *grasp);
+  }
   if (!begun.good) co_return begun;
   Step step;
   for (int aims = 0; aims < kMaxAims; ++aims) {

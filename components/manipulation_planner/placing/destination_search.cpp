@@ -46,6 +46,33 @@ std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
   return free_places(in, object, surface, T_now, max_places, placing);
 }
 
+/// Places of one surface for one object.
+struct SurfaceOffer {
+  std::string object, surface;
+  RestingPlaces places;
+};
+
+/// Adds the grasps that serve at these places; returns why others do not.
+std::string search(const PlacingJob& in, const SurfaceOffer& offer,
+                   const std::vector<Grasp>& grasps, const DestinationLimits& limits,
+                   ServingGrasps& found) {
+  Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, offer.places,
+                  in.lift_height);
+  for (std::size_t i = 0; i < grasps.size() && found.at.size() < limits.max_grasps; ++i) {
+    if (found.at.count(i) > 0) continue;
+    const Grasp& grasp = grasps[i];
+    const Vector reached = RobotModel::with(in.q, in.arm, grasp.arm_joints);
+    const Vector closed = RobotModel::with(reached, in.fingers, grasp.hand_joints);
+    const Vector opened = RobotModel::with(closed, in.fingers, grasp.pregrasp_joints);
+    const auto all =
+        putting.anywhere(closed, opened, {offer.object, grasp.T_object_hand.inverse()}, 1);
+    if (!all.empty())
+      found.at[i] = {grasp.id, offer.object, offer.surface, all.front().T_world_object,
+                     all.front().arm_at};
+  }
+  return putting.objections();
+}
+
 }  // namespace
 
 Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object,
@@ -58,23 +85,20 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
     if (box.supports && (onto.empty() || box.id == onto)) surfaces.push_back(box);
   if (thing == nullptr || surfaces.empty()) co_return *found;
   const std::function<void()> job = [found, surfaces, object, grasps, limits,
-                                     in = placing_job(parts), T_now = thing->T_world_object] {
+                                     model = parts.now.model_of(object), in = placing_job(parts),
+                                     T_now = thing->T_world_object] {
     set_world(in);
+    std::vector<std::vector<Pose>> upright;
     for (const SceneBox& box : surfaces) {
-      Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base,
-                      {places_on(in, box, object, T_now, limits.max_places)}, in.lift_height);
-      for (std::size_t i = 0; i < grasps.size() && found->at.size() < limits.max_grasps; ++i) {
-        if (found->at.count(i) > 0) continue;
-        const Grasp& grasp = grasps[i];
-        const Vector reached = RobotModel::with(in.q, in.arm, grasp.arm_joints);
-        const Vector closed = RobotModel::with(reached, in.fingers, grasp.hand_joints);
-        const Vector opened = RobotModel::with(closed, in.fingers, grasp.pregrasp_joints);
-        const auto all =
-            putting.anywhere(closed, opened, {object, grasp.T_object_hand.inverse()}, 1);
-        if (!all.empty()) found->at[i] = {grasp.id, object, box.id, all.front().T_world_object};
-      }
-      found->objections = putting.objections();
+      upright.push_back(places_on(in, box, object, T_now, limits.max_places));
+      found->objections = search(in, {object, box.id, {upright.back()}}, grasps, limits, *found);
     }
+    // Held upside down or from below, the object can only be laid on another side.
+    for (std::size_t s = 0; s < surfaces.size() && found->at.empty() && model != nullptr; ++s)
+      search(
+          in,
+          {object, surfaces[s].id, lying_places(upright[s], *model, PlacingSettings{}.min_tipping)},
+          grasps, limits, *found);
   };
   found->outcome = co_await parts.worker.run(job);
   co_return *found;
@@ -83,17 +107,19 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
 Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening) {
   const Attachment held = parts.held.attachment();
   const auto& grasp = parts.held.grasp();
-  const std::optional<Pose> T_chosen =
-      grasp ? parts.destinations.find(grasp->id, held.object, surface.id) : std::optional<Pose>();
+  const std::optional<Destination> chosen =
+      grasp ? parts.destinations.find(grasp->id, held.object, surface.id)
+            : std::optional<Destination>();
   auto found = std::make_shared<FoundPlaces>();
-  const std::function<void()> job = [found, T_chosen, opening, held, box = surface,
+  const std::function<void()> job = [found, chosen, opening, held, box = surface,
                                      model = parts.now.model_of(held.object),
                                      in = placing_job(parts), T_now = parts.held.T_world_object()] {
     set_world(in);
     std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
-    if (T_chosen) places.insert(places.begin(), *T_chosen);
+    if (chosen) places.insert(places.begin(), chosen->T_world_object);
     const Vector opened = RobotModel::with(in.q, in.fingers, opening);
     Putting upright(*in.world, *in.robot, in.arm, in.scene.T_world_base, {places}, in.lift_height);
+    if (chosen) upright.search_near(chosen->arm_at);
     found->configurations = upright.anywhere(in.q, opened, held, kMaxConfigurations);
     found->objections = upright.objections();
     if (!found->configurations.empty()) return;

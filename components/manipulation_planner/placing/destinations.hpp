@@ -18,6 +18,7 @@ struct Destination {
   std::string object;     ///< scene object id
   std::string surface;    ///< id of the box that it stands on
   Pose T_world_object;    ///< of the object at its place
+  Vector arm_at;          ///< arm axes that put the object there [rad]
 };
 
 class Destinations {
@@ -32,12 +33,12 @@ class Destinations {
                        [&](const Destination& d) { return d.grasp == grasp; });
   }
   /// Returns the first one of a grasp, an object and a surface; nullopt: none.
-  std::optional<Pose> find(std::uint64_t grasp, const std::string& object,
-                           const std::string& surface) const {
+  std::optional<Destination> find(std::uint64_t grasp, const std::string& object,
+                                  const std::string& surface) const {
     const auto found = std::find_if(all_.begin(), all_.end(), [&](const Destination& d) {
       return d.grasp == grasp && d.object == object && d.surface == surface;
     });
-    return found == all_.end() ? std::nullopt : std::optional<Pose>(found->T_world_object);
+    return found == all_.end() ? std::nullopt : std::optional<Destination>(*found);
   }
 
  private:

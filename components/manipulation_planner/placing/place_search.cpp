@@ -15,9 +15,9 @@ namespace {
 constexpr double kRoomy = 0.20;      // farther from other things is no better [m]
 constexpr double kPersonNear = 0.8;  // from a person is no worse [m]
 constexpr double kUpright = 0.9998;  // cosine of the tilt up to which an object stands upright
-constexpr double kTurns[] = {
-    0,   0.25, -0.25,
-    0.5, -0.5, 1};  // of the object from how the arm would turn it by itself [half turns]
+// Of the object from how the arm would turn it by itself [half turns].
+constexpr double kTurns[] = {0,     0.25,   -0.25, 0.5,    -0.5, 1,     0.125, -0.125,
+                             0.375, -0.375, 0.625, -0.625, 0.75, -0.75, 0.875, -0.875};
 
 /// Of the circle about its frame's vertical axis that it stands inside [m].
 double footprint(const ObjectModel* model, const Primitive& primitive) {
@@ -125,38 +125,51 @@ Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& ar
       arm_(arm),
       T_base_world_(T_world_base.inverse()),
       places_(std::move(places)),
-      from_above_(from_above) {}
+      from_above_(from_above),
+      seeds_{RobotModel::part(robot.rest_configuration(), arm)} {}
+
+/// Returns configurations near `q_seed` that reach the place, whether they are free or not.
+std::optional<PlacingConfiguration> Putting::reach(const Pose& T_world_object, const Vector& q_seed,
+                                                   const Attachment& held) {
+  IkOptions options;
+  options.restarts = 0;
+  const Pose T_object_tool = held.T_tool_object.inverse();
+  const auto at =
+      robot_.inverse(arm_, T_base_world_ * T_world_object * T_object_tool, q_seed, options);
+  Pose T_above = T_world_object;
+  T_above.translation().z() += from_above_;
+  const auto above = at ? robot_.inverse(arm_, T_base_world_ * T_above * T_object_tool,
+                                         RobotModel::with(q_seed, arm_, *at), options)
+                        : std::optional<Vector>();
+  if (above) return PlacingConfiguration{T_world_object, *above, *at, false};
+  ++objections_["out of reach"];
+  return std::nullopt;
+}
+
+/// Returns whether nothing touches on the straight path of the joints down; counts what does.
+bool Putting::is_free(const Vector& q, const PlacingConfiguration& down) {
+  const CollisionVerdict verdict = world_.check_motion(RobotModel::with(q, arm_, down.arm_above),
+                                                       RobotModel::with(q, arm_, down.arm_at));
+  if (!verdict.free) ++objections_["because " + verdict.first + " would touch " + verdict.second];
+  return verdict.free;
+}
 
 std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector& q,
                                                 const Vector& opened, const Attachment& held) {
   std::optional<PlacingConfiguration> closed_only;
-  IkOptions options;
-  options.restarts = 0;
-  const Pose T_object_tool = held.T_tool_object.inverse();
   world_.set_attachment(held, {held.object});
   for (const double turn : kTurns) {
     Pose T = place;
     T.linear() = Eigen::AngleAxisd(turn * std::numbers::pi, Vector3::UnitZ()) * place.linear();
     T.translation() += (place.linear() - T.linear()) * places_.p_object_turn;
-    const auto at = robot_.inverse(arm_, T_base_world_ * T * T_object_tool, q, options);
-    Pose T_above = T;
-    T_above.translation().z() += from_above_;
-    const auto above = at ? robot_.inverse(arm_, T_base_world_ * T_above * T_object_tool,
-                                           RobotModel::with(q, arm_, *at), options)
-                          : std::optional<Vector>();
-    if (!above) {
-      ++objections_["out of reach"];
-      continue;
+    for (std::size_t seed = 0; seed <= seeds_.size(); ++seed) {
+      const Vector q_seed = seed == 0 ? q : RobotModel::with(q, arm_, seeds_[seed - 1]);
+      auto found = reach(T, q_seed, held);
+      if (!found || !is_free(q, *found)) continue;
+      found->opens = world_.check(RobotModel::with(opened, arm_, found->arm_at)).free;
+      if (found->opens) return found;
+      if (!closed_only) closed_only = std::move(found);
     }
-    CollisionVerdict verdict = world_.check(RobotModel::with(q, arm_, *at));
-    if (verdict.free) verdict = world_.check(RobotModel::with(q, arm_, *above));
-    if (!verdict.free) {
-      ++objections_["because " + verdict.first + " would touch " + verdict.second];
-      continue;
-    }
-    const bool opens = world_.check(RobotModel::with(opened, arm_, *at)).free;
-    if (opens) return PlacingConfiguration{T, *above, *at, opens};
-    if (!closed_only) closed_only = PlacingConfiguration{T, *above, *at, opens};
   }
   return closed_only;
 }

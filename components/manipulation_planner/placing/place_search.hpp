@@ -72,6 +72,9 @@ class Putting {
   Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
           const Pose& T_world_base, RestingPlaces places, double from_above);
 
+  /// Adds a configuration of the arm [rad] near which others are searched, beside the present one
+  /// and the one at rest: an arm does not find every configuration from everywhere.
+  void search_near(const Vector& arm_joints) { seeds_.push_back(arm_joints); }
   /// Returns configurations for this place, its object turned about the vertical as is best for the
   /// arm, where the hand can open if possible; nullopt: the reason is counted for objections().
   /// `q`: all axes, the hand closed on the object; `opened`: all axes, after the release.
@@ -86,12 +89,17 @@ class Putting {
   std::string objections() const;
 
  private:
+  std::optional<PlacingConfiguration> reach(const Pose& T_world_object, const Vector& q_seed,
+                                            const Attachment& held);
+  bool is_free(const Vector& q, const PlacingConfiguration& down);
+
   CollisionWorld& world_;
   const RobotModel& robot_;
   const Group& arm_;
   Pose T_base_world_;
   RestingPlaces places_;
   double from_above_;
+  std::vector<Vector> seeds_;
   std::map<std::string, int> objections_;
 };
 
