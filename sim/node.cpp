@@ -49,7 +49,8 @@ Node::Node(Bus& bus, const NodeContext& context)
     bus.subscribe<HumanObservation>(
         [this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
   if (world_->listens())
-    bus.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt&) { world_->hear(m); });
+    bus.subscribe<ActionStatus>(
+        [this](const ActionStatus& m, const Receipt&) { world_->announce(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
   bus.every(from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
 }

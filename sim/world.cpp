@@ -146,13 +146,13 @@ void SimWorld::command(const JointCommand& command, std::uint64_t writer, double
 }
 
 void SimWorld::observe(const HumanObservation& seen) { impl_->people->follow(seen); }
-void SimWorld::hear(const ActionStatus& action) {
+void SimWorld::announce(const ActionStatus& action) {
   Announcement announcement = Announcement::none;
   if (action.state == ActionState::running && action.kind == ActionKind::give)
     announcement = Announcement::offers;
   if (action.state == ActionState::running && action.kind == ActionKind::receive)
     announcement = Announcement::asks;
-  impl_->people->hear(announcement, action.human, action.object);
+  impl_->people->announce(announcement, action.human, action.object);
 }
 bool SimWorld::listens() const { return impl_->people->listen(); }
 bool SimWorld::follows() const { return impl_->people->follow_somebody(); }

@@ -37,7 +37,7 @@ class SimWorld {
   bool follows() const;
   /// Tells the people what the robot does: a give action offers the object, a receive action asks
   /// for it.
-  void hear(const ActionStatus&);
+  void announce(const ActionStatus&);
   /// Whether any person listens to the robot.
   bool listens() const;
   /// Carries out every action but pause, resume and reset, which are the caller's. Returns an empty

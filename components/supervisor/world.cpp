@@ -240,7 +240,7 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   for (const auto& box : scene.boxes) {
     if (!box.supports) continue;
     for (const auto& [kind, any_arm] :
-         {std::pair{Derived::room, false}, std::pair{Derived::room_for_a_hand, true}}) {
+         {std::pair{Derived::room, false}, std::pair{Derived::any_arm_room, true}}) {
       const double places = places_on(box, scene, ability, any_arm);
       if (places > 0) state.set({predicate_of(kind), {world.symbol(box.id), kNothing}}, places);
     }

@@ -23,17 +23,17 @@ const char* name(Type);
 
 /// What holds between names, beside SPARK's facts.
 enum class Derived : std::uint8_t {
-  hand_empty,       ///< the robot holds nothing
-  room,             ///< surface: free places within reach of the arm; the value is their number
-  heavy,            ///< object: too heavy for one hand
-  too_heavy,        ///< object: too heavy for all hands
-  two_hands,        ///< the robot has more than one
-  near_a_hand,      ///< object: within reach of one of the robot's arms, whichever
-  room_for_a_hand,  ///< surface: free places within reach of any arm; the value is their number
-  model,            ///< object, name: what kind of thing it is
-  thing,            ///< name: it is an object of the scene
-  given,            ///< anything: it is not left out
-  same,             ///< two names: they are one
+  hand_empty,    ///< the robot holds nothing
+  room,          ///< surface: free places within reach of the arm; the value is their number
+  heavy,         ///< object: too heavy for one hand
+  too_heavy,     ///< object: too heavy for all hands
+  two_hands,     ///< the robot has more than one
+  near_a_hand,   ///< object: within reach of one of the robot's arms, whichever
+  any_arm_room,  ///< surface: free places within reach of any arm; the value is their number
+  model,         ///< object, name: what kind of thing it is
+  thing,         ///< name: it is an object of the scene
+  given,         ///< anything: it is not left out
+  same,          ///< two names: they are one
 };
 
 /// Signature of a predicate.

@@ -109,12 +109,13 @@ bool People::follow_somebody() const {
                      [](const Body& person) { return !person.model.source().empty(); });
 }
 
-void People::hear(Announcement announcement, const std::string& human, const std::string& object) {
+void People::announce(Announcement announcement, const std::string& human,
+                      const std::string& object) {
   for (Body& person : people_) {
     const bool is_about_it =
         person.object >= 0 && (object.empty() || objects_[person.object].start().id == object);
     const bool is_meant = is_about_it && (human.empty() || human == person.model.id());
-    person.model.hear(is_meant ? announcement : Announcement::none);
+    person.model.announce(is_meant ? announcement : Announcement::none);
   }
 }
 

@@ -44,7 +44,7 @@ class People {
   void follow(const HumanObservation&);
   /// Tells the partners that the robot offers `object` to `human`, or asks for the object; empty:
   /// whoever, whatever.
-  void hear(Announcement announcement, const std::string& human, const std::string& object);
+  void announce(Announcement announcement, const std::string& human, const std::string& object);
   bool listen() const;  ///< whether any person is a partner, to whom the robot may say something
   bool follow_somebody() const;  ///< whether any person follows a source outside
   /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1:

@@ -97,10 +97,10 @@ void PersonModel::dart(double speed) {
   enter(PersonPhase::darting);
 }
 
-void PersonModel::hear(Announcement announcement) {
-  if (announcement == heard_) return;
-  heard_ = announcement;
-  heard_since_ = clock_;
+void PersonModel::announce(Announcement announcement) {
+  if (announcement == announcement_) return;
+  announcement_ = announcement;
+  announced_at_ = clock_;
 }
 
 void PersonModel::leave() {
@@ -220,7 +220,7 @@ bool PersonModel::offered(const PersonView& view, int side) const {
       view.object_velocity.norm() > fastest)
     return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
-  if (settings_.kind == PersonKind::partner && heard_ != Announcement::offers) return false;
+  if (settings_.kind == PersonKind::partner && announcement_ != Announcement::offers) return false;
   return (object_centre(view) - shoulder(side)).norm() <
          reach_ + (settings_.recording ? kStep : kLeanReach);
 }

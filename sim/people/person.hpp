@@ -108,11 +108,11 @@ class PersonModel {
   void refuse() { refusing_ = true; }     ///< neither reaches for nor offers an object any more
   /// Tells a partner what the robot does: a partner takes only what is offered, and offers what the
   /// robot asks for.
-  void hear(Announcement announcement);
+  void announce(Announcement announcement);
 
   const std::string& source() const { return settings_.external; }  ///< followed; empty: none
   const std::string& id() const { return settings_.id; }            ///< unique in the scenario
-  bool listens() const { return settings_.kind == PersonKind::partner; }  ///< to hear()
+  bool listens() const { return settings_.kind == PersonKind::partner; }  ///< to announce()
   PersonPhase phase() const { return phase_; }     ///< what the person does now
   const Person& body() const { return body_; }     ///< ground truth, velocities included
   Side side() const { return side_; }              ///< of the handover hand
@@ -184,8 +184,8 @@ class PersonModel {
   bool came_once_{false};  // the first reach or offer is over
   double step_clock_{0};   // of the sidestep
   double ignored_{0};      // the offer, so long [s]
-  Announcement heard_{Announcement::none};
-  double heard_since_{0};  // by the clock of the person [s]
+  Announcement announcement_{Announcement::none};
+  double announced_at_{0};  // by the clock of the person [s]
   int steps_nearer_{0};
   Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};

@@ -46,7 +46,7 @@ double PersonModel::reach_time() const {
 bool PersonModel::is_to_offer() const {
   if (refusing_) return false;
   return settings_.kind == PersonKind::giver ||
-         (heard_ == Announcement::asks && clock_ - heard_since_ >= settings_.reaction);
+         (announcement_ == Announcement::asks && clock_ - announced_at_ >= settings_.reaction);
 }
 
 void PersonModel::hold_back(const PersonView& view) {

@@ -6,8 +6,8 @@ expect task done within 70s
 expect carrier human
 task receive mug
 wait carrier both within 60s
-expect carrier surface within 60s
-expect task done within 20s
+expect carrier surface within 70s
+expect task done within 80s
 task give mug
 expect task done within 70s
 expect carrier human

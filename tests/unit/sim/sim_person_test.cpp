@@ -151,7 +151,7 @@ TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
     const PersonView view = offer({0.95, 0.05, 1.05});
     for (int i = 0; i < 3000; ++i) person.step(0.001, view);
     ASSERT_EQ(person.phase(), PersonPhase::watching) << "the robot does not offer the mug";
-    person.hear(Announcement::offers);
+    person.announce(Announcement::offers);
     for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i)
       person.step(0.001, view);
     ASSERT_EQ(person.phase(), PersonPhase::pulling) << round;
@@ -161,21 +161,21 @@ TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
     EXPECT_EQ(person.phase(), PersonPhase::keeping) << "unasked";
     const Vector3 kept = person.hand().T_world_body.translation();
 
-    person.hear(Announcement::asks);
+    person.announce(Announcement::asks);
     live(person, 1.5 * settings.reaction, aside);
-    person.hear(Announcement::none);
+    person.announce(Announcement::none);
     live(person, 2, aside);
     EXPECT_EQ(person.phase(), PersonPhase::keeping) << "the robot no longer asks";
     const Vector3 moved = person.hand().T_world_body.translation() - kept;
     EXPECT_LT(moved.cwiseProduct(Vector3(0, 1, 1)).norm(), 1e-3);
     EXPECT_LE(std::abs(moved.x()), 0.2) << "no more than the step forward again";
 
-    person.hear(Announcement::asks);
+    person.announce(Announcement::asks);
     live(person, 4, aside);
     EXPECT_EQ(person.phase(), PersonPhase::offering) << round;
     EXPECT_GT((person.hand().T_world_body.translation() - kept).norm(), 0.15);
     live(person, 0.8, aside, true);
-    person.hear(Announcement::none);
+    person.announce(Announcement::none);
     for (int i = 0; i < 4000; ++i) person.step(0.001, PersonView{});
     EXPECT_EQ(person.phase(), PersonPhase::watching);
     EXPECT_FALSE(person.wants_grip());
