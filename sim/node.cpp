@@ -14,8 +14,7 @@ namespace {
 constexpr std::uint64_t kCatchUp = 5;
 
 constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, while time stands still
-// Set-points are applied in their order, one a step; one that is older than this and has a
-// successor as old is left out.
+// Set-points are applied in order, one a step; one older than this with a successor as old is not.
 constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
 
 }  // namespace

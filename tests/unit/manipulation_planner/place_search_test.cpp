@@ -120,6 +120,36 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   EXPECT_FALSE(into.objections().empty());
 }
 
+TEST_F(Placing, a_place_found_before_the_grasp_is_found_again_from_anywhere) {
+  const Group& arm = robot_.require_group("arm");
+  CollisionWorld world(robot_, library_);
+  world.set_scene(scene_);
+  world.set_people(people_);
+  Attachment held{"mug"};
+  const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
+  Putting before(world, robot_, arm, scene_.T_world_base, {places()}, 0.1);
+  const std::vector<PlacingConfiguration> found = before.anywhere(q, q, held, 8);
+  ASSERT_GT(found.size(), 3U);
+  std::mt19937 random(11);
+  for (const PlacingConfiguration& one : found) {
+    EXPECT_TRUE(world
+                    .check_motion(RobotModel::with(q, arm, one.arm_above),
+                                  RobotModel::with(q, arm, one.arm_at))
+                    .free)
+        << "the straight path down";
+    for (int trial = 0; trial < 10; ++trial) {
+      Vector elsewhere = q;
+      for (const int axis : arm.axes) {
+        const Axis& a = robot_.axes()[static_cast<std::size_t>(axis)];
+        elsewhere[axis] = std::uniform_real_distribution<double>(a.lower, a.upper)(random);
+      }
+      Putting again(world, robot_, arm, scene_.T_world_base, {{one.T_world_object}}, 0.1);
+      again.search_near(one.arm_at);
+      EXPECT_EQ(again.anywhere(elsewhere, elsewhere, held, 1).size(), 1U) << again.objections();
+    }
+  }
+}
+
 TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
   CollisionWorld world(robot_, library_);
   world.set_scene(scene_);

@@ -99,6 +99,23 @@ TEST(Supervisor, an_untaken_object_is_put_back_and_the_task_fails_with_the_first
   EXPECT_EQ(rig.last().tree.front().state, StepState::failed);
 }
 
+TEST(Supervisor, what_finds_no_place_is_handed_to_a_person_and_the_reason_says_so) {
+  TaskRig rig;
+  rig.world.people["bert"] = false;
+  rig.fails = [](const ActionGoal& goal) {
+    if (goal.kind == ActionKind::place) return Failure("no free place");
+    const bool to_anna = goal.human == "anna" && goal.kind == ActionKind::give;
+    return to_anna ? Failure("anna did not take mug", ActionFailure::not_taken) : Failure();
+  };
+  rig.run(0.5);
+  rig.give(1);
+  ASSERT_TRUE(rig.finish());
+  EXPECT_EQ(rig.last().state, TaskState::failed);
+  EXPECT_EQ(rig.last().reason, "give mug to anna: anna did not take mug; mug was handed to bert");
+  EXPECT_NE(rig.done().find("place mug on table"), std::string::npos) << rig.done();
+  EXPECT_NE(rig.done().find("give mug to bert, go to rest"), std::string::npos) << rig.done();
+}
+
 TEST(Supervisor, when_nobody_is_named_another_person_is_asked) {
   TaskRig rig;
   rig.world.people["bert"] = false;
