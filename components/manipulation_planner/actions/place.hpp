@@ -13,7 +13,7 @@ namespace handsel::manipulation_planner {
 /// if there is none, for any.
 Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
                                    const std::string& surface);
-/// Moves what is held to above its place and down to it.
+/// Moves what is held to above one of the places and down to it; which one is up to the path.
 Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places);
 
 }  // namespace handsel::manipulation_planner

@@ -65,7 +65,7 @@ void add_places(BadFiles& table) {
   scenario("recording_missing",
            good + "people { id: \"bert\" behaviour: RECORDING recording: \"/nowhere.csv\" }\n",
            "nowhere.csv", 3);
-  scenario("varies", with(good, "behaviour: TAKER", "behaviour: TAKER varies { absent: 2 }"),
+  scenario("varies", with(good, "behaviour: PARTNER", "behaviour: PARTNER varies { absent: 2 }"),
            "must be between 0 and 1");
   scenario("long_name", with(good, "name: \"give_mug\"", "name: \"" + repeated("n", 5000) + "\""),
            "5000 bytes long");
