@@ -98,7 +98,8 @@ class StallWatch {
 };
 
 /// Tells `story`, whose failures count if the machine was there throughout, and those of the last
-/// of so many tellings in any case; `afresh` comes before each but the first.
+/// of so many tellings in any case; `afresh` comes before each but the first, after a pause that
+/// grows.
 template <class Story, class Afresh>
 void in_real_time(const Story& story, const Afresh& afresh) {
   constexpr int kTellings = 12;
@@ -119,6 +120,7 @@ void in_real_time(const Story& story, const Afresh& afresh) {
       std::printf("void: the machine took %.1f of 20 ms away; %s\n", 1e3 * lost,
                   results.GetTestPartResult(0).message());
       std::fflush(stdout);
+      std::this_thread::sleep_for(std::chrono::seconds(telling));  // stalls come in bursts
       afresh();
       continue;
     }
