@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdio>
 #include <mutex>
 #include <thread>
@@ -24,7 +25,7 @@ namespace handsel::test {
 /// test, is to wake every half millisecond.
 class StallWatch {
  public:
-  static constexpr double kTolerated = 0.004;  ///< [s]
+  static constexpr double kTolerated = 0.004;  ///< loss within 20 ms that a story survives [s]
 
   StallWatch() {
     running_ = this;
@@ -42,6 +43,13 @@ class StallWatch {
   static bool was_away() {
     const StallWatch* const watch = running_;
     return watch != nullptr && watch->worst() > kTolerated;
+  }
+
+  /// Waits for the next stall, at most so long; returns whether one came.
+  bool stalls_within(Duration time) const {
+    std::unique_lock lock(mutex_);
+    const std::size_t before = stalls_.size();
+    return stalled_.wait_for(lock, time, [&] { return stalls_.size() > before; });
   }
 
   /// The most that one processor lost within 20 ms so far [s].
@@ -86,20 +94,30 @@ class StallWatch {
       if (now - next < kPunctual) continue;
       const std::lock_guard lock(mutex_);
       stalls_.push_back({now, to_seconds(now - next), cpu});
+      stalled_.notify_all();
       next = now;
     }
   }
 
   static inline const StallWatch* running_ = nullptr;  // read by the thread of the story only
   mutable std::mutex mutex_;
+  mutable std::condition_variable stalled_;
   std::vector<Stall> stalls_;
   std::atomic<bool> end_{false};
   std::vector<std::thread> threads_;
 };
 
+/// Waits until the machine is not away for a second, for at most 20 s: stalls come in bursts.
+inline void await_quiet_machine() {
+  const StallWatch watch;
+  const TimePoint deadline = monotonic_now() + std::chrono::seconds(20);
+  while (watch.stalls_within(std::chrono::seconds(1)) && monotonic_now() < deadline) {
+  }
+}
+
 /// Tells `story`, whose failures count if the machine was there throughout, and those of the last
-/// of so many tellings in any case; `afresh` comes before each but the first, after a pause that
-/// grows.
+/// of so many tellings in any case; `afresh` comes before each but the first, once the machine is
+/// quiet.
 template <class Story, class Afresh>
 void in_real_time(const Story& story, const Afresh& afresh) {
   constexpr int kTellings = 12;
@@ -120,7 +138,7 @@ void in_real_time(const Story& story, const Afresh& afresh) {
       std::printf("void: the machine took %.1f of 20 ms away; %s\n", 1e3 * lost,
                   results.GetTestPartResult(0).message());
       std::fflush(stdout);
-      std::this_thread::sleep_for(std::chrono::seconds(telling));  // stalls come in bursts
+      await_quiet_machine();
       afresh();
       continue;
     }

@@ -23,6 +23,13 @@ class Placing : public testing::Test {
                        max_places);
   }
 
+  /// Returns the scene and the people as they are now.
+  CollisionWorld world_now() const {
+    CollisionWorld world(robot_, library_);
+    world.set_scene(scene_);
+    world.set_people(people_);
+    return world;
+  }
   /// Returns a configuration whose palm is above the table with the mug below it, turned by
   /// `R_world_mug`.
   Vector held_above_table(CollisionWorld& world, const Eigen::Matrix3d& R_world_mug,
@@ -88,9 +95,7 @@ TEST_F(Placing, finds_none_where_all_is_taken_or_out_of_reach) {
 
 TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   const Group& arm = robot_.require_group("arm");
-  CollisionWorld world(robot_, library_);
-  world.set_scene(scene_);
-  world.set_people(people_);
+  CollisionWorld world = world_now();
   Attachment held{"mug"};
   const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
   Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {places()}, 0.1);
@@ -122,9 +127,7 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
 
 TEST_F(Placing, a_place_found_before_the_grasp_is_found_again_from_anywhere) {
   const Group& arm = robot_.require_group("arm");
-  CollisionWorld world(robot_, library_);
-  world.set_scene(scene_);
-  world.set_people(people_);
+  CollisionWorld world = world_now();
   Attachment held{"mug"};
   const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
   Putting before(world, robot_, arm, scene_.T_world_base, {places()}, 0.1);
@@ -151,9 +154,7 @@ TEST_F(Placing, a_place_found_before_the_grasp_is_found_again_from_anywhere) {
 }
 
 TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
-  CollisionWorld world(robot_, library_);
-  world.set_scene(scene_);
-  world.set_people(people_);
+  CollisionWorld world = world_now();
   const Eigen::Matrix3d upside_down = Eigen::AngleAxisd(M_PI, Vector3::UnitX()).toRotationMatrix();
   Attachment held{"mug"};
   const Vector q = held_above_table(world, upside_down, held);
