@@ -1,14 +1,13 @@
 // Makes the grasp lists of the objects in the scene before anybody asks for them.
 #pragma once
 
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
-#include "components/grasp_planner/regrasp/grasp_cache.hpp"
+#include "components/grasp_planner/arm_grasps.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -18,10 +17,8 @@ inline constexpr Duration kReadList = std::chrono::milliseconds(5);
 /// Makes lists in jobs, once for each model.
 class ListPreparation {
  public:
-  /// `caches`: of each hand, used by jobs only; the first is the hand whose transfers are made.
-  /// `transfers`: nullptr: none are made. `bus` must outlive this object.
-  ListPreparation(Bus& bus, ObjectLibrary objects, std::vector<std::shared_ptr<GraspCache>> caches,
-                  std::shared_ptr<TransferCache> transfers);
+  /// `arms`: their lists and transfers are used by jobs only. `bus` must outlive this object.
+  ListPreparation(Bus& bus, ObjectLibrary objects, std::vector<ArmGrasps> arms);
 
   /// Makes the lists of the models that are new in the scene. A model that cannot be grasped by any
   /// hand makes the component degraded.
@@ -33,8 +30,7 @@ class ListPreparation {
 
   Bus& bus_;
   ObjectLibrary objects_;
-  std::vector<std::shared_ptr<GraspCache>> caches_;
-  std::shared_ptr<TransferCache> transfers_;
+  std::vector<ArmGrasps> arms_;
   std::set<std::string> prepared_;  // models whose lists were asked for
 };
 

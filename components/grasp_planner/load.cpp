@@ -20,6 +20,17 @@ GraspListSettings taker_settings(const settings::GraspPlannerSettings& text) {
   return s;
 }
 
+/// Returns the transfers from a hand of the robot to that of a person; nullptr: no such hand is
+/// known.
+std::shared_ptr<TransferCache> make_transfer_cache(const settings::GraspPlannerSettings& text,
+                                                   const std::shared_ptr<const HandGeometry>& robot,
+                                                   const GraspStore& store) {
+  if (text.taker.empty()) return nullptr;
+  const auto taker =
+      std::make_shared<const HandGeometry>(HandModel::load(hand_description(text.taker)));
+  return std::make_shared<TransferCache>(robot, taker, taker_settings(text), store);
+}
+
 }  // namespace
 
 settings::GraspPlannerSettings load_settings(const std::filesystem::path& folder) {
@@ -32,16 +43,6 @@ settings::GraspPlannerSettings load_settings(const std::filesystem::path& folder
   return s;
 }
 
-GraspStore store_of(const settings::GraspPlannerSettings& text) {
-  return GraspStore(text.store ? default_store() : "");
-}
-
-std::shared_ptr<const HandGeometry> load_hand_geometry(const RobotModel& robot) {
-  if (robot.hand().empty())
-    throw ConfigError("robot " + robot.name() + " names no hand; the grasp planner needs one");
-  return std::make_shared<const HandGeometry>(HandModel::load(hand_description(robot.hand())));
-}
-
 std::shared_ptr<const RobotModel> mobile(const RobotModel& robot,
                                          const std::filesystem::path& description) {
   if (description.empty()) return nullptr;
@@ -50,28 +51,26 @@ std::shared_ptr<const RobotModel> mobile(const RobotModel& robot,
 }
 
 std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem::path& description,
-                                 const std::shared_ptr<const HandGeometry>& hand_geometry,
-                                 const std::shared_ptr<GraspCache>& cache,
-                                 const GraspListSettings& settings, const GraspStore& store) {
+                                 const settings::GraspPlannerSettings& text) {
+  if (robot.hand().empty())
+    throw ConfigError("robot " + robot.name() + " names no hand; the grasp planner needs one");
+  // Lists are the same for each seed of the node: they are kept on disk and shared.
+  const GraspListSettings lists = list_settings(text, 1);
+  const GraspStore store(text.store ? default_store() : "");
+  const std::vector<Manipulator> all =
+      description.empty() ? hands_of(robot) : manipulators(description, robot);
   std::vector<ArmGrasps> arms;
-  if (description.empty()) return arms;
-  for (const Manipulator& m : manipulators(description, robot)) {
-    if (arms.empty()) {
-      arms.push_back({m, hand_geometry, cache});
-      continue;
-    }
-    const auto other =
-        std::make_shared<const HandGeometry>(HandModel::load(hand_description(m.hand)));
-    arms.push_back({m, other, std::make_shared<GraspCache>(other, settings, store)});
+  for (const Manipulator& arm : all) {
+    if (arm.hand.empty()) continue;
+    ArmGrasps one;
+    one.arm = arm;
+    one.hand_geometry =
+        std::make_shared<const HandGeometry>(HandModel::load(hand_description(arm.hand)));
+    one.cache = std::make_shared<GraspCache>(one.hand_geometry, lists, store);
+    one.transfers = make_transfer_cache(text, one.hand_geometry, store);
+    arms.push_back(std::move(one));
   }
   return arms;
-}
-
-std::vector<std::shared_ptr<GraspCache>> caches_of(const std::shared_ptr<GraspCache>& first,
-                                                   const std::vector<ArmGrasps>& arms) {
-  std::vector<std::shared_ptr<GraspCache>> caches{first};
-  for (std::size_t i = 1; i < arms.size(); ++i) caches.push_back(arms[i].cache);
-  return caches;
 }
 
 RegraspSettings regrasp_settings(const settings::GraspPlannerSettings& text) {
@@ -80,15 +79,6 @@ RegraspSettings regrasp_settings(const settings::GraspPlannerSettings& text) {
   s.stand_off = text.stand_off;
   s.grip = list_settings(text, 1).grip;
   return s;
-}
-
-std::shared_ptr<TransferCache> make_transfer_cache(const settings::GraspPlannerSettings& text,
-                                                   const std::shared_ptr<const HandGeometry>& robot,
-                                                   const GraspStore& store) {
-  if (text.taker.empty()) return nullptr;
-  const auto taker =
-      std::make_shared<const HandGeometry>(HandModel::load(hand_description(text.taker)));
-  return std::make_shared<TransferCache>(robot, taker, taker_settings(text), store);
 }
 
 GraspListSettings list_settings(const settings::GraspPlannerSettings& t, std::uint64_t seed) {

@@ -13,22 +13,18 @@ Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       settings_(load_settings(context.settings)),
       objects_(context.objects),
-      hand_geometry_(load_hand_geometry(*context.robot)),
-      chooser_(std::make_shared<const GraspChooser>(context.robot, hand_geometry_, context.objects,
-                                                    choice_settings(settings_),
-                                                    mobile(*context.robot, context.description))),
-      // A list is the same whatever the seed of the node: lists are kept on disk and shared.
-      cache_(std::make_shared<GraspCache>(hand_geometry_, list_settings(settings_, 1),
-                                          store_of(settings_))),
-      transfers_(make_transfer_cache(settings_, hand_geometry_, store_of(settings_))),
-      arms_(load_arms(*context.robot, context.description, hand_geometry_, cache_,
-                      list_settings(settings_, 1), store_of(settings_))),
-      lists_(bus, context.objects, caches_of(cache_, arms_), transfers_),
+      robot_(context.robot),
+      arms_(load_arms(*robot_, context.description, settings_)),
+      lists_(bus, context.objects, arms_),
       regrasp_settings_(regrasp_settings(settings_)),
       reply_out_(bus.advertise<GraspReply>()),
       regrasp_out_(bus.advertise<RegraspReply>()),
       candidates_out_(bus.advertise<GraspCandidates>()),
       candidates_(settings_.candidates_time) {
+  const auto platform = mobile(*robot_, context.description);
+  for (const ArmGrasps& arm : arms_)
+    choosers_.push_back(std::make_shared<const GraspChooser>(
+        robot_, arm.hand_geometry, objects_, choice_settings(settings_), arm.arm.name, platform));
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
     scene_ = scene;
     lists_.prepare(scene);
@@ -64,12 +60,13 @@ void Node::choose(const GraspRequest& request, bool reply) {
   result->id = request.id;
   const SceneObject* object = object_in(scene_, request.object);
   const ObjectModel* model = object != nullptr ? objects_(object->model) : nullptr;
-  result->reason = objection(request, scene_, chooser_->robot(), model);
+  result->reason = objection(request, scene_, *robot_, arms_, model);
   const bool work = result->reason.empty();
   if (work) candidates_.on_choice(object->T_world_object);
+  const std::size_t arm = work ? arm_of(request, arms_) : 0;
   bus_.run_job(
-      [cache = cache_, transfers = transfers_, chooser = chooser_, request, scene = scene_,
-       people = people_, model, result, work](const CancelToken& token) {
+      [cache = arms_[arm].cache, transfers = arms_[arm].transfers, chooser = choosers_[arm],
+       request, scene = scene_, people = people_, model, result, work](const CancelToken& token) {
         if (!work) return Duration{};
         const auto cancelled = [&token] { return token.cancelled(); };
         try {
@@ -115,15 +112,14 @@ void Node::answer(const RegraspRequest& request) {
   regrasps_.add(request.id);
   auto answer = std::make_shared<RegraspAnswer>();
   answer->reply.id = request.id;
-  answer->reply.reason = objection(request, scene_, chooser_->robot(), arms_.size(), objects_);
+  answer->reply.reason = objection(request, scene_, *robot_, arms_.size(), objects_);
   const bool work = answer->reply.reason.empty();
   const ObjectModel* model = work ? objects_(object_in(scene_, request.object)->model) : nullptr;
   bus_.run_job(
       [this, answer, request, model, scene = scene_](const CancelToken& token) {
         if (model == nullptr) return Duration{};
         try {
-          *answer = answer_regrasp(request,
-                                   {chooser_->robot(), arms_, objects_, scene, regrasp_settings_},
+          *answer = answer_regrasp(request, {*robot_, arms_, objects_, scene, regrasp_settings_},
                                    *model, [&token] { return token.cancelled(); });
         } catch (const ConfigError& e) {
           answer->reply.reason = e.what();

@@ -11,7 +11,6 @@
 #include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "components/grasp_planner/list_preparation.hpp"
 #include "components/grasp_planner/load.hpp"
-#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "components/grasp_planner/regrasp/regrasp_desk.hpp"
 #include "components/grasp_planner/regrasp/regrasp_queue.hpp"
 #include "components/grasp_planner/request_queue.hpp"
@@ -31,13 +30,9 @@ class Node {
   Bus& bus_;
   settings::GraspPlannerSettings settings_;
   ObjectLibrary objects_;
-  std::shared_ptr<const HandGeometry> hand_geometry_;
-  std::shared_ptr<const GraspChooser> chooser_;
-  std::shared_ptr<GraspCache> cache_;  // used by jobs only, one after the other
-  // used by jobs only; nullptr: no hand of a person is known
-  std::shared_ptr<TransferCache> transfers_;
-  std::vector<ArmGrasps>
-      arms_;  // used by jobs only; the first has the geometry and the lists above
+  std::shared_ptr<const RobotModel> robot_;
+  std::vector<ArmGrasps> arms_;  // lists and transfers: used by jobs only, one after the other
+  std::vector<std::shared_ptr<const GraspChooser>> choosers_;  // of each of these arms
   ListPreparation lists_;
   RegraspSettings regrasp_settings_;
   std::unique_ptr<Publisher<GraspReply>> reply_out_;

@@ -15,8 +15,16 @@ const SceneObject* object_in(const Scene& scene, const std::string& id) {
   return object != scene.objects.end() ? &*object : nullptr;
 }
 
+std::size_t arm_of(const GraspRequest& request, const std::vector<ArmGrasps>& arms) {
+  if (request.group.empty()) return 0;
+  const auto found = std::find_if(arms.begin(), arms.end(), [&](const ArmGrasps& one) {
+    return one.arm.name == request.group;
+  });
+  return static_cast<std::size_t>(found - arms.begin());
+}
+
 std::string objection(const GraspRequest& request, const Scene& scene, const RobotModel& robot,
-                      const ObjectModel* model) {
+                      const std::vector<ArmGrasps>& arms, const ObjectModel* model) {
   const SceneObject* object = object_in(scene, request.object);
   if (object == nullptr) return "object " + request.object + " is not in the scene";
   if (!scene.robot_known) return "the place of the robot is not known yet";
@@ -29,8 +37,13 @@ std::string objection(const GraspRequest& request, const Scene& scene, const Rob
   if (request.start.size() != robot.dof())
     return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " +
            std::to_string(robot.dof());
-  if (!request.group.empty() && request.group != "arm")
-    return "grasps are planned for the group \"arm\", not for \"" + request.group + "\"";
+  if (arm_of(request, arms) == arms.size()) {
+    std::string known;
+    for (const ArmGrasps& one : arms)
+      known += (known.empty() ? "\"" : ", \"") + one.arm.name + "\"";
+    return "robot " + robot.name() + " has no arm \"" + request.group + "\" with a hand; it has " +
+           known;
+  }
   return {};
 }
 

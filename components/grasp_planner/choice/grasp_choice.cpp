@@ -20,6 +20,20 @@ constexpr std::size_t kShortList =
 constexpr std::size_t kPlacesServed =
     3;  // places of the platform with grasps, then the search ends
 
+/// Returns an arm of the robot with its hand; ConfigError where one of the two is missing.
+Manipulator hand_of(const RobotModel& robot, const std::string& arm) {
+  robot.require_group(arm);
+  for (Manipulator& hand : hands_of(robot)) {
+    if (hand.name != arm || hand.arm == nullptr) continue;
+    if (hand.fingers == nullptr) break;
+    if (hand.palm < 0 || hand.arm->tip != hand.palm)
+      throw ConfigError("robot " + robot.name() + ": the tip_link of group \"" + arm +
+                        "\" must be the palm of its hand");
+    return hand;
+  }
+  throw ConfigError("robot " + robot.name() + ": group \"" + arm + "\" carries no hand");
+}
+
 bool alike(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() < kSameDistance &&
          Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() <
@@ -115,26 +129,23 @@ std::string Choice::why_none(const GraspList& list) const {
 
 GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot,
                            std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
-                           const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
+                           const ChoiceSettings& settings, const std::string& arm,
+                           std::shared_ptr<const RobotModel> mobile)
     : robot_(std::move(robot)),
       mobile_(std::move(mobile)),
       hand_geometry_(std::move(hand_geometry)),
       library_(std::move(library)),
       settings_(settings) {
-  arm_ = &robot_->require_group("arm");
-  hand_ = &robot_->require_group("hand");
-  if (arm_->tip < 0 || arm_->tip != robot_->tool_link()) {
-    throw ConfigError("robot " + robot_->name() +
-                      ": the arm's tip_link must be the tool_link, the palm of the hand");
-  }
+  manipulator_ = hand_of(*robot_, arm);
+  const std::vector<int>& fingers = manipulator_.fingers->axes;
   const std::vector<Axis>& axes = hand_geometry_->hand.model().axes();
-  bool same = axes.size() == hand_->axes.size();
+  bool same = axes.size() == fingers.size();
   for (std::size_t i = 0; same && i < axes.size(); ++i)
-    same = robot_->axes()[static_cast<std::size_t>(hand_->axes[i])].name == axes[i].name;
+    same = robot_->axes()[static_cast<std::size_t>(fingers[i])].name == axes[i].name;
   if (!same) {
-    throw ConfigError("robot " + robot_->name() +
-                      ": its group \"hand\" must list the joints of hand " +
-                      hand_geometry_->hand.name() + " in the order of its fingers");
+    throw ConfigError("robot " + robot_->name() + ": its group \"" + manipulator_.fingers->name +
+                      "\" must list the joints of hand " + hand_geometry_->hand.name() +
+                      " in the order of its fingers");
   }
   retreats_ = retreat_directions(hand_geometry_->hand);
 }
@@ -235,8 +246,9 @@ void GraspChooser::search_places(Search& search,
   const std::uint64_t budget = search.out.reaches + settings_.platform_reaches;
   const std::size_t enough = std::max(1U, request.max_grasps);
   std::size_t served = 0;
-  for (const PlatformPlace& place : places_around(*robot_, *arm_, request.start, T_world_now,
-                                                  search.start.T_world_object.translation())) {
+  for (const PlatformPlace& place :
+       places_around(*robot_, *manipulator_.arm, request.start, T_world_now,
+                     search.start.T_world_object.translation())) {
     if (served >= kPlacesServed || found.size() >= enough || search.out.reaches >= budget ||
         (cancelled && cancelled()))
       break;

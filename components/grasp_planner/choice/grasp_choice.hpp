@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "common/collision/collision_world.hpp"
+#include "common/model/manipulator.hpp"
 #include "components/grasp_planner/list/grasp_list.hpp"
 #include "components/grasp_planner/pair/transfer.hpp"
 
@@ -115,19 +116,18 @@ struct ChoiceInputs {
 /// What does not change from request to request.
 class GraspChooser {
  public:
-  /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not
-  /// those of the hand description. `mobile`: the robot on its platform (on_platform), or nullptr.
+  /// Chooses for one arm of the robot. ConfigError when that arm has no hand at its tip, or the
+  /// axes of its hand are not those of the hand description. `arm`: its name as hands_of()
+  /// gives it. `mobile`: the robot on its platform (on_platform), or nullptr.
   GraspChooser(std::shared_ptr<const RobotModel> robot,
                std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
-               const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile = nullptr);
+               const ChoiceSettings& settings, const std::string& arm = "arm",
+               std::shared_ptr<const RobotModel> mobile = nullptr);
 
   /// Chooses the grasps that serve now; deterministic for equal inputs. Where no grasp serves from
   /// where the robot stands and the request allows it, places of the platform are searched, the
   /// shortest drive first; the reasons stay those of where it stands.
   Choice choose(const ChoiceInputs& inputs) const;
-
-  /// Returns the robot model without a moving platform.
-  const RobotModel& robot() const { return *robot_; }
 
  private:
   struct Search;
@@ -139,8 +139,7 @@ class GraspChooser {
   std::shared_ptr<const HandGeometry> hand_geometry_;
   ObjectLibrary library_;
   ChoiceSettings settings_;
-  const Group* arm_{};
-  const Group* hand_{};
+  Manipulator manipulator_;  // the arm that takes the object
   // unit, hand frame: directions to back off from a grasp, the straightest first
   std::vector<Vector3> retreats_;
 };

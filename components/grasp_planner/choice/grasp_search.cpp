@@ -197,7 +197,8 @@ GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& 
     const Pose T_world_hand = T_world_held * g.T_object_hand;
     const double behind = (handover_place - T_world_hand.translation()).normalized().dot(to_person);
     if (behind < 0 || behind <= best.behind) continue;
-    if (reach(T_world_hand, RobotModel::with(inputs.request.start, *self.arm_, arm_q), 1))
+    if (reach(T_world_hand, RobotModel::with(inputs.request.start, *self.manipulator_.arm, arm_q),
+              1))
       best = {behind, T_world_held};
   }
   return best;
@@ -212,8 +213,8 @@ bool GraspChooser::Search::below_support(const Grasp& g) {
 }
 
 Vector GraspChooser::Search::whole(const Vector& arm_q, const Vector& hand_q) const {
-  return RobotModel::with(RobotModel::with(inputs.request.start, *self.arm_, arm_q), *self.hand_,
-                          hand_q);
+  return RobotModel::with(RobotModel::with(inputs.request.start, *self.manipulator_.arm, arm_q),
+                          *self.manipulator_.fingers, hand_q);
 }
 
 std::optional<Vector> GraspChooser::Search::reach(const Pose& T_world_hand, const Vector& seed,
@@ -228,7 +229,7 @@ std::optional<Vector> GraspChooser::Search::inverse(const Pose& T_world_hand, co
   options.max_iterations = 80;
   options.restarts = restarts;
   options.random_seed = inputs.request.seed + 1;
-  return robot().inverse(*self.arm_, T_root_world * T_world_hand, seed, options);
+  return robot().inverse(*self.manipulator_.arm, T_root_world * T_world_hand, seed, options);
 }
 
 bool GraspChooser::Search::free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q) {
@@ -246,7 +247,7 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
   for (int i = 0; i <= steps; ++i) {
     const double share = static_cast<double>(i) / steps;
     const Pose T_object_hand =
-        T_object_root * robot().link_pose(from + share * (to - from), robot().tool_link());
+        T_object_root * robot().link_pose(from + share * (to - from), self.manipulator_.palm);
     ++out.touch_tests;
     const double clearance =
         i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
@@ -287,7 +288,7 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
   Pose T_lifted = T_world_hand;
   T_lifted.translation().z() += settings().lift;
   const auto lifted =
-      reach(T_lifted, RobotModel::with(inputs.request.start, *self.arm_, grasp_q), 0);
+      reach(T_lifted, RobotModel::with(inputs.request.start, *self.manipulator_.arm, grasp_q), 0);
   return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift &&
          free(start.world, *lifted, g.hand_joints);
 }
@@ -326,14 +327,16 @@ ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
 ChoiceReason GraspChooser::Search::put_down(const Grasp& g, PuttingDown& down) {
   const Pose T_world_hand = goal->T_world_object * g.T_object_hand;
   const auto at =
-      reach(T_world_hand, RobotModel::with(inputs.request.start, *self.arm_, g.arm_joints), 2);
+      reach(T_world_hand,
+            RobotModel::with(inputs.request.start, *self.manipulator_.arm, g.arm_joints), 2);
   if (!at) return ChoiceReason::goal_out_of_reach;
   carrying->set_attachment({inputs.request.object, g.T_object_hand.inverse()}, {});
   if (!free(*carrying, *at, g.hand_joints) || !free(goal->world, *at, g.pregrasp_joints))
     return ChoiceReason::goal_collision;
   Pose T_above = T_world_hand;
   T_above.translation().z() += settings().lift;
-  const auto above = reach(T_above, RobotModel::with(inputs.request.start, *self.arm_, *at), 0);
+  const auto above =
+      reach(T_above, RobotModel::with(inputs.request.start, *self.manipulator_.arm, *at), 0);
   if (!above || (*above - *at).cwiseAbs().maxCoeff() > kLargestLift)
     return ChoiceReason::goal_lowering;
   const Vector from = whole(*above, g.hand_joints), to = whole(*at, g.hand_joints);
@@ -367,7 +370,8 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
     const ChoiceReason put = put_down(g, found.goal);
     if (put != ChoiceReason::chosen) return put;
   }
-  found.rank += settings().rank_configuration * rest_score_of(robot(), *self.arm_, g.arm_joints);
+  found.rank +=
+      settings().rank_configuration * rest_score_of(robot(), *self.manipulator_.arm, g.arm_joints);
   Pose T_world_seen = start.T_world_object;
   if (found.transfer) {
     found.rank += settings().rank_handover * found.transfer->score + settings().rank_transfer -

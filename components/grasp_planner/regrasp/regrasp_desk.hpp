@@ -10,17 +10,10 @@
 #include "common/base/time.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
-#include "components/grasp_planner/regrasp/grasp_cache.hpp"
+#include "components/grasp_planner/arm_grasps.hpp"
 #include "components/grasp_planner/regrasp/regrasp.hpp"
 
 namespace handsel::grasp_planner {
-
-/// An arm, the geometry of its hand and the grasp lists of that hand.
-struct ArmGrasps {
-  Manipulator arm;                                    ///< groups of arm and hand in the robot model
-  std::shared_ptr<const HandGeometry> hand_geometry;  ///< geometry of the hand of this arm
-  std::shared_ptr<GraspCache> cache;  ///< grasp lists of that hand, made when first asked for
-};
 
 struct RegraspAnswer {
   RegraspReply reply;       ///< as sent to the client; its reason says why there is no sequence

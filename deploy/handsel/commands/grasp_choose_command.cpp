@@ -98,7 +98,7 @@ int choose(const ChooseOptions& o) {
   }
   auto mobile = o.move_platform ? on_platform(*stage.robot, stage.file) : std::nullopt;
   const GraspChooser chooser(
-      stage.robot, robot.hand_geometry, stage.library(), {},
+      stage.robot, robot.hand_geometry, stage.library(), {}, "arm",
       mobile ? std::make_shared<const RobotModel>(std::move(*mobile)) : nullptr);
   const auto begin = std::chrono::steady_clock::now();
   const Choice choice = chooser.choose({request, robot.list, *robot.object, scene, people});

@@ -67,7 +67,8 @@ HumanState anna(double x, double y) {
 
 Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& people = {},
               const ChoiceSettings& settings = {}) {
-  const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, robot().mobile);
+  const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, "arm",
+                             robot().mobile);
   return chooser.choose({r, mug().list, *mug().object, scene, people});
 }
 
