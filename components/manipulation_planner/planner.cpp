@@ -2,6 +2,7 @@
 
 #include "common/messages/names.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/handover/time_to_handover.hpp"
 
@@ -176,7 +177,10 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       outcome = co_await receive(parts_, goal.object, goal.human, goal.surface);
       break;
     case ActionKind::regrasp:
-      outcome = co_await regrasp(parts_, goal);
+      if (goal.surface.empty() && !goal.has_goal)
+        outcome = co_await change_hands(parts_, goal.object);
+      else
+        outcome = co_await regrasp(parts_, goal);
       break;
     case ActionKind::carry:
       outcome = co_await carry(parts_, goal);

@@ -56,7 +56,7 @@ int run(int cases) {
     const Pose T_world_object = tool_at(q);
     const manipulation_planner::OtpQuery query{
         scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}, {}};
-    return manipulation_planner::find_otp(robot, query, q, settings);
+    return manipulation_planner::find_otp(robot, robot.require_group("arm"), query, q, settings);
   };
   const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes,
                           const Vector& start) {

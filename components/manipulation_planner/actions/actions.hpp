@@ -22,6 +22,8 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
                          const std::string& onto);
 /// Puts the held object down on a surface.
 Routine<Outcome> place(Parts& parts, const std::string& object, const std::string& surface);
+/// Takes the held object in another hand.
+Routine<Outcome> change_hands(Parts& parts, const std::string& object);
 /// Brings an object to its goal through two hands, one after the other.
 Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal);
 /// Carries an object to its goal with two hands, as a closed chain.

@@ -5,6 +5,7 @@
 #include "common/messages/names.hpp"
 #include "common/model/srs_arm.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/actions/two_hands.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"

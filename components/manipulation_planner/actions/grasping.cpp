@@ -77,29 +77,13 @@ Routine<Outcome> close_hand(Parts& parts, const std::string& object, const Grasp
 
 }  // namespace
 
-Routine<Outcome> use_arm(Parts& parts, const std::string& arm) {
-  const auto& all = parts.arm.manipulators();
-  const auto wanted = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) {
-    return m.name == arm && m.arm != nullptr;
-  });
-  if (wanted == all.end())
-    co_return Outcome::failure("robot " + parts.arm.robot().name() + " has no arm \"" + arm + "\"");
-  const auto index = static_cast<std::size_t>(wanted - all.begin());
-  if (index == parts.arm.index()) co_return Outcome{};
-  const bool is_idle = co_await parts.waiting.until([&parts] { return parts.worker.is_idle(); },
-                                                    parts.settings.request_timeout);
-  if (!is_idle) co_return Outcome::failure("a computation for the other arm does not end");
-  parts.arm.select(index);
-  parts.held.set_grasp(std::nullopt);
-  co_return Outcome{};
-}
-
 Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
                               std::uint32_t max_grasps) {
   parts.action.phase = ActionPhase::choosing_grasp;
   GraspRequest request;
   parts.clients.grasp.open(request);
   request.object = object;
+  request.group = parts.arm.group().name;
   request.start = parts.now.set_point();
   request.for_human = for_human;
   request.max_grasps = max_grasps;

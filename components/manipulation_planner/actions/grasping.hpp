@@ -1,4 +1,4 @@
-// Steps that several actions have in common: the choice of an arm, grasps, retreats of the hand.
+// Steps that several actions have in common: grasps, retreats of the hand.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,6 @@ struct GraspList {
 };
 
 // References must outlive the routines.
-/// Uses another arm and its hand for what follows.
-Routine<Outcome> use_arm(Parts& parts, const std::string& arm);
 /// Asks for at most `max_grasps` grasps of an object. `for_human`: who will get it, empty: nobody.
 Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
                               std::uint32_t max_grasps);

@@ -1,9 +1,12 @@
 // The action pick.
+#include "components/manipulation_planner/actions/pick.hpp"
+
 #include <algorithm>
 #include <functional>
 #include <memory>
 
 #include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/place.hpp"
 #include "components/manipulation_planner/handover/otp_search.hpp"
 
@@ -31,14 +34,14 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
   auto settings = parts.settings;
   settings.exchange_goals = 1;
   return [result = std::move(result), grasps, settings, person, T_world_object,
-          robot = parts.arm.shared_robot(), scene = parts.now.scene(), layers = parts.now.layers(),
-          q = parts.now.set_point()] {
+          robot = parts.arm.shared_robot(), arm = parts.arm.group(), scene = parts.now.scene(),
+          layers = parts.now.layers(), q = parts.now.set_point()] {
     for (std::size_t i = 0; i < grasps.size(); ++i) {
       const Pose T_tool_object = grasps[i].T_object_hand.inverse();
       const std::vector<Vector3> barred = barred_directions(grasps[i]);
       const OtpQuery query{
           scene, person, layers, T_world_object, T_tool_object, barred, grasps[i].partners};
-      const OtpSearch search = find_otp(*robot, query, q, settings);
+      const OtpSearch search = find_otp(*robot, arm, query, q, settings);
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
       else
@@ -96,13 +99,8 @@ Routine<Outcome> try_grasps(Parts& parts, const std::string& object, const std::
 
 }  // namespace
 
-Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human,
-                      const std::string& onto) {
-  if (parts.held.is_holding() && parts.held.id() == object) co_return Outcome{};
-  parts.action.phase = ActionPhase::looking_for_object;
-  const auto is_seen = [&] { return parts.now.object(object) != nullptr; };
-  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout);
-  if (!seen) co_return Outcome::failure("object " + object + " is not in the scene");
+Routine<Outcome> pick_by_arm(Parts& parts, const std::string& object, const std::string& for_human,
+                             const std::string& onto) {
   Outcome last;
   const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.reach_timeout);
   for (int round = 0; round < kRounds; ++round) {
@@ -121,6 +119,25 @@ Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string
     }
     last = co_await try_grasps(parts, object, for_human, list.grasps, last);
     if (last.good || parts.held.is_holding()) co_return last;
+  }
+  co_return last;
+}
+
+Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human,
+                      const std::string& onto) {
+  if (parts.held.is_holding() && parts.held.id() == object) co_return Outcome{};
+  parts.action.phase = ActionPhase::looking_for_object;
+  const auto is_seen = [&] { return parts.now.object(object) != nullptr; };
+  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout);
+  if (!seen) co_return Outcome::failure("object " + object + " is not in the scene");
+  const Vector3 p_object = parts.now.object(object)->T_world_object.translation();
+  const std::vector<std::string> arms = arms_for(parts, p_object, parts.now.surface(onto));
+  Outcome last;
+  for (const std::string& arm : arms) {
+    last = co_await use_arm(parts, arm);
+    if (last.good) last = co_await pick_by_arm(parts, object, for_human, onto);
+    if (last.good || parts.held.is_holding()) co_return last;
+    if (arms.size() > 1) parts.refuse(arm, last.reason);
   }
   co_return last;
 }

@@ -87,6 +87,13 @@ Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places) {
 }
 
 Routine<Outcome> place(Parts& parts, const std::string& object, const std::string& onto) {
+  const std::string none;
+  Outcome done = co_await put_on(parts, object, onto, none);
+  co_return done;
+}
+
+Routine<Outcome> put_on(Parts& parts, const std::string& object, const std::string& onto,
+                        const std::string& taker) {
   if (!parts.held.is_holding() || parts.held.id() != object)
     co_return Outcome::failure("the hand does not hold " + object);
   const SceneBox* surface = parts.now.surface(onto);
@@ -95,13 +102,23 @@ Routine<Outcome> place(Parts& parts, const std::string& object, const std::strin
     co_return Outcome::failure("object " + object + " has no model");
   parts.action.phase = ActionPhase::choosing_place;
   const Vector open = opening(parts);
-  FoundPlaces found = co_await find_places(parts, *surface, open);
+  FoundPlaces found = co_await find_places(parts, *surface, open, taker);
   if (!found.outcome.good) co_return found.outcome;
   if (found.configurations.empty())
-    co_return Outcome::failure("no free place on " + onto +
-                               " within the arm's reach: " + found.objections);
+    co_return Outcome::failure("no free place on " + onto + " within the reach of " +
+                               (taker.empty() ? "the arm: " : "both arms: ") + found.objections);
   if (found.is_lying) parts.refuse("place upright", found.objections);
-  Outcome lowered = co_await lower(parts, found.configurations);
+  Outcome lowered;
+  if (taker.empty()) {
+    lowered = co_await lower(parts, found.configurations);
+  } else {
+    // The best place for the taker, not the nearest to the arm in use.
+    for (const PlacingConfiguration& configuration : found.configurations) {
+      const std::vector<PlacingConfiguration> this_one{configuration};
+      lowered = co_await lower(parts, this_one);
+      if (lowered.good) break;
+    }
+  }
   if (!lowered.good) co_return lowered;
   parts.destinations.clear();
   co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); }, kPersonTimeout);

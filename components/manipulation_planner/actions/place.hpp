@@ -13,6 +13,9 @@ namespace handsel::manipulation_planner {
 /// if there is none, for any.
 Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
                                    const std::string& surface);
+/// Puts the held object on a surface. `taker`: arm that will take it from there; empty: none.
+Routine<Outcome> put_on(Parts& parts, const std::string& object, const std::string& surface,
+                        const std::string& taker);
 /// Moves what is held to above one of the places and down to it; which one is up to the path.
 Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places);
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/actions/rest.hpp"
 #include "components/manipulation_planner/actions/take.hpp"
@@ -20,9 +21,9 @@ constexpr double kMaxShift = 0.03;      // of an object, after which its grasps 
 constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
 constexpr double kSameDistance =
     0.5;  // distances of the arm's farthest axis that count as equal [rad]
-constexpr double kMinEpsilon = 0.03;   // of a grasp that does not slip as the object is carried
-constexpr double kWeakPenalty = 1.5;   // distance that avoids a grasp below kMinEpsilon [rad]
-constexpr std::size_t kMaxPlaces = 8;  // of a surface that are tried: the giver waits
+constexpr double kMinEpsilon = 0.03;  // of a grasp that does not slip as the object is carried
+constexpr double kWeakPenalty = 1.5;  // distance that avoids a grasp below kMinEpsilon [rad]
+constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the giver waits
 
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
 Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wanted,
@@ -69,7 +70,7 @@ Routine<GraspList> ask_clear_grasps(Parts& parts, const Offer& offer) {
 /// object can be put down by none.
 Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
                           std::vector<Grasp>& grasps) {
-  const DestinationLimits limits{grasps.size(), kMaxPlaces};
+  const DestinationLimits limits{grasps.size(), kMaxPlacesTried};
   const ServingGrasps later = co_await find_destinations(parts, offer.object, onto, grasps, limits);
   for (const auto& [grasp, destination] : later.at) parts.destinations.add(destination);
   if (later.at.empty() && !later.objections.empty())
@@ -88,26 +89,63 @@ Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& o
   co_return !later.outcome.good || !later.at.empty();
 }
 
-/// Tries grasps until one takes the object or the offer ends. `failed`: ids of grasps that did not.
+/// A grasp by one of the arms: the place of the arm among its manipulators and the id of the grasp.
+using GraspOfArm = std::pair<std::size_t, std::uint64_t>;
+
+/// Tries grasps until one takes the object or the offer ends. `failed`: grasps that did not.
 Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first,
-                            const std::vector<Grasp>& grasps, std::set<std::uint64_t>& failed,
+                            const std::vector<Grasp>& grasps, std::set<GraspOfArm>& failed,
                             Outcome last) {
   TakeAttempt attempt = first;
-  const bool all_failed = std::all_of(grasps.begin(), grasps.end(),
-                                      [&](const Grasp& g) { return failed.count(g.id) > 0; });
+  const std::size_t arm = parts.arm.index();
+  const bool all_failed = std::all_of(grasps.begin(), grasps.end(), [&](const Grasp& g) {
+    return failed.count({arm, g.id}) > 0;
+  });
   if (all_failed) failed.clear();
   for (const Grasp& grasp : grasps) {
-    if (failed.count(grasp.id) > 0) continue;
+    if (failed.count({arm, grasp.id}) > 0) continue;
     attempt.chosen = grasp;
     last = co_await take(parts, attempt);
     if (last.good) co_return last;
     parts.refuse("grasp " + std::to_string(grasp.id), last.reason);
-    if (!last.target_moved()) failed.insert(grasp.id);
+    if (!last.target_moved()) failed.insert({arm, grasp.id});
     if (last.target_moved() || last.end == MotionEnd::late) break;
     const Vector3 p_hand = parts.arm.T_world_tool().translation();
     if (!parts.offers.find(attempt.offer.object, attempt.offer.giver, p_hand)) break;
   }
   co_return last;
+}
+
+/// Grasps of what is offered, by one arm.
+struct OfferGrasps {
+  GraspList list;
+  bool serves{};  ///< the object can be put down by some of them
+};
+
+/// Asks for grasps by one arm after the other, the nearest first, until the object can be put down
+/// by some; uses that arm, else the first one that has grasps.
+Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
+                                           const std::string& onto, const Vector3& p_object) {
+  OfferGrasps first;
+  std::string first_arm;
+  const std::vector<std::string> arms = arms_for(parts, p_object, parts.now.surface(onto));
+  for (const std::string& arm : arms) {
+    Outcome used = co_await use_arm(parts, arm);
+    OfferGrasps found;
+    if (used.good)
+      found.list = co_await ask_clear_grasps(parts, offer);
+    else
+      found.list.outcome = used;
+    const bool has_grasps = found.list.outcome.good && !found.list.grasps.empty();
+    if (has_grasps) found.serves = co_await rank_grasps(parts, offer, onto, found.list.grasps);
+    if (found.serves) co_return found;
+    if (first_arm.empty() || (has_grasps && first.list.grasps.empty())) {
+      first = std::move(found);
+      first_arm = arm;
+    }
+  }
+  if (first_arm != arms.back()) co_await use_arm(parts, first_arm);
+  co_return first;
 }
 
 /// Waits for another offer after no grasp of this one is reachable: the giver often offers
@@ -144,7 +182,7 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   if (parts.held.is_holding() && (wanted.empty() || parts.held.id() == wanted)) co_return Outcome{};
   const double timeout = parts.settings.receive_timeout;
   Outcome last = nothing_offered(wanted, giver, timeout);
-  std::set<std::uint64_t> failed;
+  std::set<GraspOfArm> failed;
   TimePoint deadline = parts.now.time() + from_seconds(timeout);
   const TimePoint patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
@@ -156,12 +194,11 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
     parts.action.human = offer->giver;
     const Vector3 p_asked = parts.now.object(offer->object)->T_world_object.translation();
     parts.action.exchange_point = p_asked;
-    GraspList list = co_await ask_clear_grasps(parts, *offer);
+    const auto [list, serves] = co_await choose_arm_and_grasps(parts, *offer, onto, p_asked);
     if (!list.outcome.good || list.grasps.empty()) {
       last = co_await await_other_offer(parts, *offer, p_asked, list.outcome, last);
       continue;
     }
-    const bool serves = co_await rank_grasps(parts, *offer, onto, list.grasps);
     if (!serves && parts.now.time() < patient_until) {
       last = co_await await_other_offer(parts, *offer, p_asked, cannot_put_down(*offer), last);
       continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/actions/place.hpp"
 #include "components/manipulation_planner/actions/rest.hpp"

@@ -1,6 +1,7 @@
 #include "components/manipulation_planner/actions/rest.hpp"
 
 #include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
 

@@ -175,7 +175,7 @@ Routine<Step> approach_offer(Parts& parts, const TakeAttempt& take, std::optiona
   if (!grasp) co_return Step{Progress::failed, out_of_reach()};
   const Vector q = parts.arm.set_point_with(grasp->approach_joints);
   const RobotModel& robot = parts.arm.robot();
-  const Pose T_standoff = parts.now.T_world_base() * robot.link_pose(q, robot.tool_link());
+  const Pose T_standoff = parts.now.T_world_base() * robot.link_pose(q, parts.arm.palm());
   const double error = (T_standoff.translation() - parts.arm.T_world_tool().translation()).norm();
   co_return Step{error > kMaxStandoffError ? Progress::again : Progress::at_standoff,
                  moved_away(object + " is moved about")};
@@ -215,9 +215,8 @@ Routine<Outcome> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
   parts.action.phase = ActionPhase::grasp;
   parts.offers.set_hand_at_offer(true);
   const bool is_laid_in = is_put_into_hand(parts, take);
-  const Group* present = is_laid_in ? &parts.arm.robot().require_group("hand") : nullptr;
   const Vector closing =
-      is_laid_in ? RobotModel::part(parts.now.set_point(), *present) : grasp.hand_joints;
+      is_laid_in ? RobotModel::part(parts.now.set_point(), parts.arm.fingers()) : grasp.hand_joints;
   const double timeout = parts.settings.hand_timeout;
   HandResult closed =
       co_await parts.hand.run(HandAction::grasp, closing, timeout, &grasp.hand_effort);

@@ -30,14 +30,15 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
       T_world_object != nullptr ? std::optional<Pose>(*T_world_object) : std::nullopt;
   const auto& grasp = parts.held.grasp();
   const std::function<void()> job =
-      [choice, T_present, robot = parts.arm.shared_robot(), scene = parts.now.scene(),
-       layers = parts.now.layers(), who = *person, q = parts.now.set_point(),
-       T_tool_object = parts.held.attachment().T_tool_object, T_now = parts.held.T_world_object(),
+      [choice, T_present, robot = parts.arm.shared_robot(), arm = parts.arm.group(),
+       scene = parts.now.scene(), layers = parts.now.layers(), who = *person,
+       q = parts.now.set_point(), T_tool_object = parts.held.attachment().T_tool_object,
+       T_now = parts.held.T_world_object(),
        barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{},
        partners = grasp ? grasp->partners : std::vector<PartnerGrasp>{},
        settings = parts.settings] {
         const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred, partners};
-        choice->search = find_otp(*robot, query, q, settings);
+        choice->search = find_otp(*robot, arm, query, q, settings);
         if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
       };
   choice->outcome = co_await parts.worker.run(job);

@@ -221,10 +221,9 @@ std::vector<Vector3> barred_directions(const Grasp& grasp) {
   return fingers.size() == 2 ? normals : std::vector<Vector3>{};
 }
 
-OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
-                   const settings::ManipulationPlannerSettings& settings) {
+OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
+                   const Vector& q, const settings::ManipulationPlannerSettings& settings) {
   OtpSearch out;
-  const Group& arm = robot.require_group("arm");
   const OtpCosts costs(query, settings);
   if (!costs.apart()) {
     out.reason = "person " + query.person.id + " stands inside the robot's base";

@@ -55,13 +55,13 @@ struct OtpQuery {
 /// two fingers hold the object: they open away from it.
 std::vector<Vector3> barred_directions(const Grasp& grasp);
 
-/// Searches object transfer points. `q`: all axes, near which configurations are searched [rad, m].
-/// The object keeps its tilt; only its place and heading change. Places in, under or behind
-/// furniture as the person sees it, and those an outside layer forbids, are left out. The person
-/// must be able to draw the object toward them, and to grasp it with a wrist that is comfortable:
-/// the grasp of theirs with the smallest strain counts at each pose.
-OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
-                   const settings::ManipulationPlannerSettings& settings);
+/// Searches object transfer points for what `arm` holds. `q`: all axes, near which configurations
+/// are searched [rad, m]. The object keeps its tilt; only its place and heading change. Places in,
+/// under or behind furniture as the person sees it, and those an outside layer forbids, are left
+/// out. The person must be able to draw the object toward them, and to grasp it with a wrist that
+/// is comfortable: the grasp of theirs with the smallest strain counts at each pose.
+OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
+                   const Vector& q, const settings::ManipulationPlannerSettings& settings);
 
 /// Returns the cost of a pose of the object as find_otp() counts it, whether the robot reaches the
 /// pose or not; nullopt: it is no object transfer point.

@@ -19,17 +19,28 @@ struct PlacingJob {
   Scene scene;
   HumanState people;
   Group arm, fingers;
-  int palm;
   double lift_height;
   Vector q;
+  ArmReach reach;  // of the arm that is to reach the places well
 };
 
 PlacingJob placing_job(Parts& parts) {
-  return {parts.arm.shared_robot(),   parts.worker.world(parts.arm.robot(), parts.now.objects()),
-          parts.now.objects(),        parts.now.scene(),
-          parts.now.people(),         parts.arm.group(),
-          parts.arm.fingers(),        parts.arm.palm(),
-          parts.settings.lift_height, parts.arm.configuration()};
+  return {parts.arm.shared_robot(),
+          parts.worker.world(parts.arm.robot(), parts.now.objects()),
+          parts.now.objects(),
+          parts.now.scene(),
+          parts.now.people(),
+          parts.arm.group(),
+          parts.arm.fingers(),
+          parts.settings.lift_height,
+          parts.arm.configuration(),
+          arm_reach(parts.arm.robot(), &parts.arm.group(), parts.arm.palm())};
+}
+
+/// Searches for places that an arm of this name reaches well, from now on.
+void search_for(const Parts& parts, const std::string& arm, PlacingJob& job) {
+  for (const Manipulator& m : parts.arm.manipulators())
+    if (m.name == arm) job.reach = arm_reach(parts.arm.robot(), m.arm, m.palm);
 }
 
 void set_world(const PlacingJob& job) {
@@ -41,7 +52,7 @@ void set_world(const PlacingJob& job) {
 std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
                             const std::string& object, const Pose& T_now, std::size_t max_places) {
   PlacingSettings placing;
-  placing.reach = arm_reach(*job.robot, &job.arm, job.palm);
+  placing.reach = job.reach;
   const PlacingScene in{*job.robot, job.scene, job.people, job.objects};
   return free_places(in, object, surface, T_now, max_places, placing);
 }
@@ -104,7 +115,10 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
   co_return *found;
 }
 
-Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening) {
+Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening,
+                                 const std::string& taker) {
+  PlacingJob placing = placing_job(parts);
+  search_for(parts, taker, placing);
   const Attachment held = parts.held.attachment();
   const auto& grasp = parts.held.grasp();
   const std::optional<Destination> chosen =
@@ -113,7 +127,7 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
   auto found = std::make_shared<FoundPlaces>();
   const std::function<void()> job = [found, chosen, opening, held, box = surface,
                                      model = parts.now.model_of(held.object),
-                                     in = placing_job(parts), T_now = parts.held.T_world_object()] {
+                                     in = std::move(placing), T_now = parts.held.T_world_object()] {
     set_world(in);
     std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
     if (chosen) places.insert(places.begin(), chosen->T_world_object);

@@ -43,7 +43,9 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
                                          const std::vector<Grasp>& grasps,
                                          const DestinationLimits& limits);
 /// Searches places on a surface for what is held; the one that was found before the grasp comes
-/// first. `opening`: fingers after the release.
-Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening);
+/// first. `opening`: fingers after the release. `taker`: arm that is to reach the place well,
+/// because it takes the object from there; empty: the arm in use.
+Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening,
+                                 const std::string& taker = "");
 
 }  // namespace handsel::manipulation_planner

@@ -26,7 +26,7 @@ class OtpSearchTest : public ::testing::Test {
     const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
                T_tool_mug = make_pose({0.08, 0.02, 0.23});
     const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, partners};
-    return find_otp(*rig_.robot, query, rig_.q, many);
+    return find_otp(*rig_.robot, rig_.robot->require_group("arm"), query, rig_.q, many);
   }
   Rig rig_;
   Person& anna_{rig_.people.people[0]};
