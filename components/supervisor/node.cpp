@@ -38,12 +38,24 @@ Ability ability_of(const settings::SupervisorSettings& settings, const NodeConte
   if (context.robot == nullptr) return ability;
   if (const auto it = settings.payload.find(context.robot->name()); it != settings.payload.end())
     ability.payload = it->second;
-  ability.reach = arm_reach(*context.robot).length;
   if (context.description.empty()) return ability;
   config::RobotDescription description;
   load_text_proto(context.description, description);
   ability.hands = 1 + description.other_arms_size();
   return ability;
+}
+
+/// Returns the arms that have a hand, as they are placed in the scene.
+std::vector<Ability::Arm> arms_of(const RobotModel& robot, const Scene& scene) {
+  std::vector<Ability::Arm> arms;
+  for (const Manipulator& hand : hands_of(robot)) {
+    const ArmReach reach = arm_reach(robot, hand.arm, hand.palm);
+    if (reach.shoulder < 0) continue;
+    const Pose T_base_shoulder = robot.link_pose(scene.robot_position, reach.shoulder);
+    arms.push_back({hand.fingers != nullptr ? hand.fingers->name : "",
+                    (scene.T_world_base * T_base_shoulder).translation(), reach.length});
+  }
+  return arms;
 }
 
 }  // namespace
@@ -87,21 +99,7 @@ void Node::feed() {
 }
 
 void Node::on_scene(const Scene& scene, TimePoint arrival) {
-  const int shoulder = robot_ != nullptr ? arm_reach(*robot_).shoulder : -1;
-  if (shoulder >= 0 && scene.robot_known) {
-    core_.set_shoulder(
-        (scene.T_world_base * robot_->link_pose(scene.robot_position, shoulder)).translation());
-    std::vector<Ability::Arm> others;
-    const std::vector<Manipulator> hands = hands_of(*robot_);
-    for (std::size_t i = 1; i < hands.size(); ++i) {
-      const ArmReach other = arm_reach(*robot_, hands[i].arm, hands[i].palm);
-      others.push_back(
-          {(scene.T_world_base * robot_->link_pose(scene.robot_position, other.shoulder))
-               .translation(),
-           other.length});
-    }
-    core_.set_other_arms(others);
-  }
+  if (robot_ != nullptr && scene.robot_known) core_.set_arms(arms_of(*robot_, scene));
   core_.on(scene, arrival);
 }
 

@@ -28,11 +28,6 @@ void Situation::on(const ActionStatus& status) {
   if (other) world_.reset();
 }
 
-void Situation::set_shoulder(const Vector3& shoulder) {
-  ability_.reach_known = true;
-  ability_.shoulder = shoulder;
-}
-
 World& Situation::world() {
   if (world_) return *world_;
   world_ = make_world(*facts_, *scene_, ability_);

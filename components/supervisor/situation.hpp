@@ -22,10 +22,8 @@ class Situation {
   void on(const Scene& scene, TimePoint now);
   /// Replaces the status of the running action; what the hand holds enters world() at once.
   void on(const ActionStatus& status);
-  /// Sets the shoulder of the arm in the world [m]; from then on the reach of the arms counts.
-  void set_shoulder(const Vector3& shoulder);
-  /// Sets shoulder and reach of the other arms, which count once set_shoulder() was called.
-  void set_other_arms(const std::vector<Ability::Arm>& arms) { ability_.other_arms = arms; }
+  /// Sets the arms of the robot, whose reach counts from then on.
+  void set_arms(std::vector<Ability::Arm> arms) { ability_.arms = std::move(arms); }
 
   /// Returns whether facts and scene have both arrived.
   bool known() const { return facts_.has_value() && scene_.has_value(); }

@@ -63,10 +63,8 @@ class Supervisor {
   }
   /// Takes the advice of attention; the next step() acts on its change of the task.
   void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }
-  /// Sets the shoulder of the arm in the world [m]; from then on the reach of the arms counts.
-  void set_shoulder(const Vector3& shoulder) { situation_.set_shoulder(shoulder); }
-  /// Sets shoulder and reach of the other arms of the robot.
-  void set_other_arms(const std::vector<Ability::Arm>& arms) { situation_.set_other_arms(arms); }
+  /// Sets the arms of the robot, whose reach counts from then on.
+  void set_arms(std::vector<Ability::Arm> arms) { situation_.set_arms(std::move(arms)); }
 
   /// Goals that found no room so far.
   std::uint64_t goals_turned_away() const { return inbox_.turned_away(); }

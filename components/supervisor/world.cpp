@@ -51,15 +51,20 @@ std::vector<Type> types_of(FactKind kind) {
   return {};
 }
 
-bool reaches(const Ability& ability, const Vector3& p, bool any_arm) {
-  if (!ability.reach_known || (p - ability.shoulder).norm() <= ability.reach) return true;
-  return any_arm && std::any_of(ability.other_arms.begin(), ability.other_arms.end(),
-                                [&](const Ability::Arm& arm) {
-                                  return (p - arm.shoulder).norm() <= arm.reach;
-                                });
+bool reaches(const Ability::Arm& arm, const Vector3& p) {
+  return (p - arm.shoulder).norm() <= arm.reach;
 }
 
-double places_on(const SceneBox& box, const Scene& scene, const Ability& ability, bool any_arm) {
+/// Returns whether one of the arms reaches a point; true where none is known.
+bool reach(const std::vector<Ability::Arm>& arms, const Vector3& p) {
+  return arms.empty() || std::any_of(arms.begin(), arms.end(),
+                                     [&](const Ability::Arm& arm) { return reaches(arm, p); });
+}
+
+/// Returns the number of free places within reach of one of the arms, at most kMostPlaces. `spot`:
+/// distance kept between things [m].
+double places_on(const SceneBox& box, const Scene& scene, const std::vector<Ability::Arm>& arms,
+                 double spot) {
   const double top = box.size.z() / 2;
   std::vector<Vector3> taken;  // box frame
   for (const auto& object : scene.objects)
@@ -71,15 +76,37 @@ double places_on(const SceneBox& box, const Scene& scene, const Ability& ability
   for (double x = -x_end; x <= x_end + 1e-9 && found < kMostPlaces; x += kStep)
     for (double y = -y_end; y <= y_end + 1e-9 && found < kMostPlaces; y += kStep) {
       const Vector3 p(x, y, top);
-      if (!reaches(ability, box.T_world_box * p, any_arm)) continue;
+      if (!reach(arms, box.T_world_box * p)) continue;
       const bool free = std::all_of(taken.begin(), taken.end(), [&](const Vector3& t) {
-        return (t - p).head<2>().norm() >= ability.spot;
+        return (t - p).head<2>().norm() >= spot;
       });
       if (!free) continue;
       taken.push_back(p);
       ++found;
     }
   return found;
+}
+
+/// Returns the arms within whose reach a surface has a free place.
+std::vector<Ability::Arm> arms_with_room(const SceneBox& box, const Scene& scene,
+                                         const Ability& ability) {
+  std::vector<Ability::Arm> out;
+  for (const Ability::Arm& arm : ability.arms)
+    if (places_on(box, scene, {arm}, ability.spot) > 0) out.push_back(arm);
+  return out;
+}
+
+/// Returns whether the arm that holds an object, or one that reaches the object, is among `near`. A
+/// person brings what they hold within reach of any arm.
+bool can_bring(const SceneObject& object, const Ability& ability,
+               const std::vector<Ability::Arm>& near) {
+  if (ability.arms.empty()) return true;
+  if (object.holder == Holder::human) return !near.empty();
+  if (object.holder != Holder::robot)
+    return !near.empty() && reach(near, object.T_world_object.translation());
+  const std::string& hand = object.holder_id.empty() ? ability.arms.front().hand : object.holder_id;
+  return std::any_of(near.begin(), near.end(),
+                     [&](const Ability::Arm& arm) { return arm.hand == hand; });
 }
 
 bool in_someones_hands(const Facts& facts, const std::string& object, FactKind kind) {
@@ -105,8 +132,7 @@ const std::vector<PredicateSign>& known_predicates() {
                            {"heavy", {T::object}},
                            {"too_heavy", {T::object}},
                            {"two_hands", {}},
-                           {"near_a_hand", {T::object}},
-                           {"room_for_a_hand", {T::surface}},
+                           {"one_arm", {T::object, T::surface}},
                            {"model", {T::object, T::name}},
                            {"thing", {T::name}},
                            {"given", {T::name}},
@@ -226,8 +252,6 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   for (const auto& object : scene.objects) {
     const Symbol o = world.symbol(object.id);
     state.set({predicate_of(Derived::thing), {o, kNothing}});
-    if (reaches(ability, object.T_world_object.translation(), true))
-      state.set({predicate_of(Derived::near_a_hand), {o, kNothing}});
     if (!object.model.empty())
       state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
     const ObjectModel* model = ability.objects ? ability.objects(object.model) : nullptr;
@@ -239,11 +263,15 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   }
   for (const auto& box : scene.boxes) {
     if (!box.supports) continue;
-    for (const auto& [kind, any_arm] :
-         {std::pair{Derived::room, false}, std::pair{Derived::any_arm_room, true}}) {
-      const double places = places_on(box, scene, ability, any_arm);
-      if (places > 0) state.set({predicate_of(kind), {world.symbol(box.id), kNothing}}, places);
-    }
+    const double places = places_on(box, scene, ability.arms, ability.spot);
+    if (places <= 0) continue;
+    const Symbol s = world.symbol(box.id);
+    state.set({predicate_of(Derived::room), {s, kNothing}}, places);
+    state.set({predicate_of(Derived::one_arm), {kNothing, s}});
+    const std::vector<Ability::Arm> near = arms_with_room(box, scene, ability);
+    for (const auto& object : scene.objects)
+      if (can_bring(object, ability, near))
+        state.set({predicate_of(Derived::one_arm), {world.symbol(object.id), s}});
   }
   return world;
 }

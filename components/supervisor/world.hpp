@@ -23,17 +23,16 @@ const char* name(Type);
 
 /// What holds between names, beside SPARK's facts.
 enum class Derived : std::uint8_t {
-  hand_empty,    ///< the robot holds nothing
-  room,          ///< surface: free places within reach of the arm; the value is their number
-  heavy,         ///< object: too heavy for one hand
-  too_heavy,     ///< object: too heavy for all hands
-  two_hands,     ///< the robot has more than one
-  near_a_hand,   ///< object: within reach of one of the robot's arms, whichever
-  any_arm_room,  ///< surface: free places within reach of any arm; the value is their number
-  model,         ///< object, name: what kind of thing it is
-  thing,         ///< name: it is an object of the scene
-  given,         ///< anything: it is not left out
-  same,          ///< two names: they are one
+  hand_empty,  ///< the robot holds nothing
+  room,        ///< surface: free places within reach of any arm; the value is their number
+  heavy,       ///< object: too heavy for one hand
+  too_heavy,   ///< object: too heavy for all hands
+  two_hands,   ///< the robot has more than one
+  one_arm,     ///< object, surface: one arm reaches both; an object in a hand: that arm
+  model,       ///< object, name: what kind of thing it is
+  thing,       ///< name: it is an object of the scene
+  given,       ///< anything: it is not left out
+  same,        ///< two names: they are one
 };
 
 /// Signature of a predicate.
@@ -111,18 +110,16 @@ class World {
 
 /// What the robot can carry and reach.
 struct Ability {
-  double payload{};                   ///< of one hand [kg]; 0: any weight
-  int hands{1};                       ///< number of hands, whose payloads add up
-  bool reach_known{false};            ///< false: everything counts as within reach
-  Vector3 shoulder{Vector3::Zero()};  ///< world [m]
-  double reach{};                     ///< [m]
-  /// Another arm of the robot.
+  double payload{};  ///< of one hand [kg]; 0: any weight
+  int hands{1};      ///< number of hands, whose payloads add up
+  /// An arm of the robot.
   struct Arm {
+    std::string hand;                   ///< group of its hand, as SceneObject::holder_id has it
     Vector3 shoulder{Vector3::Zero()};  ///< world [m]
     double reach{};                     ///< from the shoulder [m]
   };
-  std::vector<Arm> other_arms{};  ///< used where reach_known
-  double spot{0.2};               ///< distance kept between things on a surface [m]
+  std::vector<Arm> arms{};  ///< empty: not known, everything counts as within reach
+  double spot{0.2};         ///< distance kept between things on a surface [m]
   /// Finds an object model by the name of the model; nullptr: unknown.
   std::function<const ObjectModel*(const std::string&)> objects{};
 };

@@ -7,6 +7,7 @@
 
 #include "common/cost/human_cost.hpp"
 #include "common/cost/person_frame.hpp"
+#include "common/model/manipulator.hpp"
 #include "common/model/object_extent.hpp"
 #include "components/spark/directed.hpp"
 #include "components/spark/quotas.hpp"
@@ -26,6 +27,16 @@ constexpr double kUnknownExtent = 0.1;  // [m] of a thing without a model
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
+/// Returns the reach of each arm that has a hand.
+std::vector<ArmReach> reaches_of(const RobotModel& robot) {
+  std::vector<ArmReach> out;
+  for (const Manipulator& hand : hands_of(robot)) {
+    const ArmReach reach = arm_reach(robot, hand.arm, hand.palm);
+    if (reach.shoulder >= 0) out.push_back(reach);
+  }
+  return out;
+}
+
 double angle_to(const Person& person, const Vector3& p) {
   const Vector3 from = person.gaze_known ? person.gaze_origin : joint_of(person, "head").position;
   const Vector3 along =
@@ -41,7 +52,7 @@ FactFinder::FactFinder(const settings::SparkSettings& settings,
       robot_(std::move(robot)),
       library_(std::move(objects)),
       capsules_(robot_capsules(*robot_)),
-      reach_(arm_reach(*robot_)),
+      arms_(reaches_of(*robot_)),
       handover_(settings),
       lasting_(settings.fact_dwell),
       instant_(0) {}
@@ -165,6 +176,25 @@ void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k,
                  !nested && apart < kLoosely * limit, evidence("%.2f m apart", apart)});
 }
 
+Candidate FactFinder::reach_fact(const Scene& scene, const SceneObject& object) const {
+  double away = 0, length = 0;  // of the arm that has to stretch least
+  for (const ArmReach& arm : arms_) {
+    const Vector3 p_shoulder =
+        scene.T_world_base * links_[static_cast<std::size_t>(arm.shoulder)].translation();
+    const double distance = (object.T_world_object.translation() - p_shoulder).norm();
+    if (length > 0 && distance / arm.length >= away / length) continue;
+    away = distance;
+    length = arm.length;
+  }
+  return {FactKind::reachable_by_robot,
+          object.id,
+          "",
+          away,
+          away < 0.95 * length,
+          away < length,
+          evidence("%.2f m from the shoulder of an arm of %.2f m", away, length)};
+}
+
 void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
                              std::vector<Candidate>& out) const {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -177,16 +207,7 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
     if (object.holder == Holder::surface)
       out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, true, true,
                      "its bottom on the top of " + object.holder_id});
-    if (scene.robot_known && reach_.shoulder >= 0) {
-      const double away =
-          (where -
-           scene.T_world_base * links_[static_cast<std::size_t>(reach_.shoulder)].translation())
-              .norm();
-      out.push_back(
-          {FactKind::reachable_by_robot, object.id, "", away, away < 0.95 * reach_.length,
-           away < reach_.length,
-           evidence("%.2f m from the shoulder of an arm of %.2f m", away, reach_.length)});
-    }
+    if (scene.robot_known && !arms_.empty()) out.push_back(reach_fact(scene, object));
     for (const Person& person : people.people) {
       const bool reach = within_reach(person, where);
       out.push_back({FactKind::reachable_by_human, object.id, person.id, 1, reach, reach,

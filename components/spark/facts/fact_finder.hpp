@@ -45,6 +45,7 @@ class FactFinder {
                   const RobotPartner& robot, std::vector<Candidate>& out) const;
   void hand_facts(const Scene& scene, const Person& person, std::vector<Candidate>& out) const;
   void thing_facts(const Scene& scene, const HumanState& people, std::vector<Candidate>& out) const;
+  Candidate reach_fact(const Scene& scene, const SceneObject& object) const;
   void pair_facts(const Scene& scene, std::size_t i, std::size_t k,
                   std::vector<Candidate>& out) const;
   Extent extent(const SceneObject& object) const;
@@ -56,7 +57,7 @@ class FactFinder {
   std::vector<LinkCapsule> capsules_;
   std::vector<Pose> links_;
   std::vector<Extent> extents_;  // of the scene's objects
-  ArmReach reach_;
+  std::vector<ArmReach> arms_;
   std::map<std::string, Zone> zones_;
   HandoverFacts handover_;
   FactMemory lasting_, instant_;  // what is found here; what was found with a memory of its own

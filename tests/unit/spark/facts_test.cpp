@@ -227,6 +227,24 @@ TEST_F(FactsTest, who_can_reach_what) {
   EXPECT_FALSE(find(look(2), FactKind::reachable_by_robot, "mug"));
 }
 
+TEST_F(FactsTest, either_arm_of_two_reaches) {
+  const auto duo =
+      std::make_shared<const RobotModel>(RobotModel::load(resource("robots/duo/duo.txtpb")));
+  FactFinder finder(shipped(), duo, [this](const std::string& name) { return model(name); });
+  scene_.robot_position = duo->rest_configuration();
+  const auto reaches = [&](double y, double t) {
+    mug_.T_world_object.translation() = Vector3(0.5, y, 0.9);
+    scene_.objects = {mug_};
+    people_.people = {anna_};
+    return find(finder.find(scene_, people_, at(t)), FactKind::reachable_by_robot, "mug") !=
+           nullptr;
+  };
+  EXPECT_TRUE(reaches(0.9, 1)) << "the left arm";
+  EXPECT_TRUE(reaches(-0.9, 2)) << "the right arm";
+  EXPECT_FALSE(reaches(1.8, 3));
+  EXPECT_FALSE(reaches(-1.8, 4));
+}
+
 // ---- a real handover between two people (120 Hz, both upper bodies, an object with force sensors)
 // ----
 

@@ -105,7 +105,8 @@ TEST(TaskPlanner, clears_a_table_of_six_nearest_first_as_a_tree) {
   EXPECT_EQ(cleared.plan.tree[0].text, "clear table");
   EXPECT_EQ(cleared.plan.tree[1].text, "clear f away");
   EXPECT_EQ(cleared.plan.tree[1].depth, 1u);
-  EXPECT_EQ(cleared.plan.tree[2].text, "fetch f");
+  EXPECT_EQ(cleared.plan.tree[2].text, "bring f to shelf");
+  EXPECT_EQ(cleared.plan.tree[3].text, "fetch f");
 }
 
 TEST(TaskPlanner, what_is_out_of_reach_is_left_where_it_is_and_told) {
@@ -195,6 +196,25 @@ TEST(TaskPlanner, refuses_at_once_with_what_would_make_it_possible) {
             "carry mug on shelf, go to rest");
   heavy.mass = 7;
   says(goal(TaskKind::place, "mug", "", "shelf"), "mug is too heavy for the robot", weak);
+}
+
+TEST(TaskPlanner, an_object_changes_hands_where_one_arm_does_not_reach_both_places) {
+  TaskWorld world = mug_on_table();  // the shelf stands at x = 0 m, the table at x = 5 m
+  Ability two;
+  two.hands = 2;
+  two.arms = {{"hand", {0, 0, 1}, 1.2}, {"left_hand", {5, 0, 1}, 1.2}};
+  const TaskGoal to_shelf = goal(TaskKind::place, "mug", "", "shelf");
+  EXPECT_EQ(ask(to_shelf, world, {}, two).steps(), "regrasp mug on shelf, go to rest");
+  world.on.clear();
+  world.held_by["mug"] = kRobotName;  // in the first hand
+  EXPECT_EQ(ask(to_shelf, world, {}, two).steps(), "place mug on shelf, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "table"), world, {}, two).steps(),
+            "regrasp mug, place mug on table, go to rest");
+  EXPECT_EQ(ask(goal(TaskKind::regrasp, "mug"), world, {}, two).steps(), "regrasp mug");
+  world.held_by.clear();
+  world.on["mug"] = "table";
+  two.arms[1] = {"left_hand", {2.5, 0, 1}, 3};  // reaches both
+  EXPECT_EQ(ask(to_shelf, world, {}, two).steps(), "pick mug, place mug on shelf, go to rest");
 }
 
 TEST(TaskPlanner, the_same_question_has_the_same_answer) {
