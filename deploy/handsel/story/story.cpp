@@ -42,6 +42,7 @@ const std::map<std::string, ConditionRule>& condition_rules() {
       {"cause", {ConditionKind::cause, true, false}},
       {"phase", {ConditionKind::phase, true, false}},
       {"carrier", {ConditionKind::carrier, true, false}},
+      {"hand", {ConditionKind::hand, true, false}},
       {"task", {ConditionKind::task, true, false}},
       {"handover", {ConditionKind::handover, false, false}},
       {"moving", {ConditionKind::moving, false, false}},
@@ -89,7 +90,7 @@ class LineParser {
       step_.limit = take_duration("for");
     } else if (verb == "task") {
       step_.kind = StepKind::task;
-      take_rest("a kind of task");
+      take_task();
     } else if (verb == "pause" || verb == "resume" || verb == "cancel" || verb == "acknowledge" ||
                verb == "speed") {
       step_.kind = StepKind::control;
@@ -158,6 +159,18 @@ class LineParser {
     const std::size_t before = position_;
     while (position_ < words_.size()) step_.words.push_back(take());
     if (position_ == before) fail("the line ends where " + wanted + " should follow");
+  }
+  /// Takes kind and object of a task, then pairs of a preposition and a name.
+  void take_task() {
+    take_rest("a kind of task");
+    for (std::size_t i = 2; i < step_.words.size(); i += 2) {
+      const std::string& word = step_.words[i];
+      if (word != "to" && word != "from" && word != "on")
+        fail("\"" + word +
+             "\" is not understood here; to PERSON, from PERSON or on SURFACE may follow");
+      if (i + 1 == step_.words.size())
+        fail("the line ends where a name should follow \"" + word + "\"");
+    }
   }
   void take_condition() {
     std::string phrase;

@@ -32,6 +32,7 @@ enum class ConditionKind {
   cause,     ///< cause C: the controller names it
   phase,     ///< phase P of the running action
   carrier,   ///< carrier robot|human|surface|both
+  hand,      ///< hand GROUP: the fingers of this group of joints have grasped something
   task,      ///< task done|failed|cancelled|paused|running|refused
   handover,  ///< the simulator's oracle says so
   moving,

@@ -37,6 +37,18 @@ bool is_calm(const Condition& condition) {
          (condition.kind == ConditionKind::mode && condition.subject == name(Mode::normal));
 }
 
+/// Returns whether the hand of a group of joints has grasped something. Throws ConfigError where
+/// the robot has no such hand.
+bool has_grasped(const ExecutionStatus& execution, const std::string& group) {
+  if (group == "hand") return execution.hand == HandState::grasped;
+  std::string known = "hand";
+  for (const OtherHandState& other : execution.other_hands) {
+    if (other.group == group) return other.hand == HandState::grasped;
+    known += ", " + other.group;
+  }
+  throw ConfigError("\"" + group + "\" is no hand of this robot; there are " + known);
+}
+
 std::string where(const Story& story, const StoryStep& step) {
   return story.name + ":" + std::to_string(step.line) + ": ";
 }
@@ -334,6 +346,8 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
       return fresh(snapshot.action) && phase_text(snapshot.action.sample) == subject;
     case ConditionKind::carrier:
       return fresh(snapshot.ground_truth) && ground_truth.carrier == subject;
+    case ConditionKind::hand:
+      return fresh(snapshot.execution) && has_grasped(execution, subject);
     case ConditionKind::task:
       return task_is(subject, snapshot);
     case ConditionKind::handover:

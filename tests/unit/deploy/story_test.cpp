@@ -57,6 +57,9 @@ TEST(Story, every_line_becomes_a_step) {
 TEST(Story, a_mistake_is_named_with_its_line) {
   EXPECT_THAT(error_of(""), HasSubstr("no step"));
   EXPECT_THAT(error_of("task give mug\n"), HasSubstr("f:1: a story begins with start"));
+  EXPECT_THAT(error_of("start a\ntask give mug anna\n"),
+              HasSubstr("f:2: \"anna\" is not understood here; to PERSON"));
+  EXPECT_THAT(error_of("start a\ntask give mug to\n"), HasSubstr("should follow \"to\""));
   EXPECT_THAT(error_of("start a\nstart b\n"), HasSubstr("f:2: a story starts once"));
   EXPECT_THAT(error_of("start a\nexpct ready\n"), HasSubstr("f:2: \"expct\" is no step"));
   EXPECT_THAT(error_of("start a\nexpect happiness within 1s\n"),
