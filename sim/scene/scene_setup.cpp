@@ -70,7 +70,7 @@ class Reader {
       break;
     }
     out_.never_releases = scenario_.robot_never_releases();
-    out_.no_weld = scenario_.no_weld();
+    out_.help_hold = scenario_.help_hold();
     return std::move(out_);
   }
 

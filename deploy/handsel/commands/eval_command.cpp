@@ -403,7 +403,7 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->add_option("--by", options->by,
                       "tables by these draws only, e.g. object (default: by every draw)");
   command->add_option("--participant", options->participant, "pseudonym that the lines carry");
-  add_no_weld_option(*command);
+  add_help_hold_option(*command);
   command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")
       ->check(kAboveZero);
   command->add_option("--shard", options->shard,

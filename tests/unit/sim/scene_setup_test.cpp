@@ -99,5 +99,13 @@ TEST(FreePlaces, no_free_place_is_an_error_that_names_object_and_surface) {
                           [] { return 0.5; }));
 }
 
+TEST(Hold, the_grasp_constraint_helps_only_where_a_scenario_asks) {
+  EXPECT_FALSE(SimSettings{}.constraint);
+  EXPECT_FALSE(set_up_with(cluttered(0), 1).help_hold);
+  config::Scenario helped = cluttered(0);
+  helped.set_help_hold(true);
+  EXPECT_TRUE(set_up_with(helped, 1).help_hold);
+}
+
 }  // namespace
 }  // namespace handsel::sim
