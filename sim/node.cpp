@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "common/config/resources.hpp"
+#include "common/config/scenario.hpp"
 
 namespace handsel::sim {
 
@@ -25,7 +25,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       bus_(bus),
       output_(bus, settings_) {
   if (context.scenario.empty()) throw ConfigError("the simulator needs --scenario");
-  load_text_proto(context.scenario, scenario_);
+  scenario_ = read_scenario(context.scenario, context.seed);
   restart();
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
     if (m.robot != context_.robot->name())

@@ -21,7 +21,7 @@ SimWorld::Impl::Impl(const RobotModel& robot_model, const ObjectLibrary& library
       reference{side.position(), side.velocity(), side.acceleration(), side.effort()},
       limits(robot_model, s.robot_side.max_gap, s.setpoint_period),
       separations(robot_model, s.ssm) {
-  settings.constraint = settings.constraint && !setup.no_weld;
+  settings.constraint = settings.constraint || setup.help_hold;
   dynamics.setGravity(btVector3(0, 0, -9.81));
   dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
   dynamics.getSolverInfo().m_solverMode |=

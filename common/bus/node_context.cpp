@@ -3,7 +3,7 @@
 #include <map>
 
 #include "common/config/resources.hpp"
-#include "common/config/scenario_robot.hpp"
+#include "common/config/scenario.hpp"
 
 namespace handsel {
 
@@ -28,7 +28,7 @@ ObjectLibrary load_object_library() {
 NodeContext load_context(const std::string& robot, const std::string& scenario,
                          const std::filesystem::path& settings, std::uint64_t seed) {
   NodeContext context;
-  context.description = robot_description(robot.empty() ? scenario_robot(scenario) : robot);
+  context.description = robot_description(robot.empty() ? scenario_robot(scenario, seed) : robot);
   context.robot = std::make_shared<const RobotModel>(RobotModel::load(context.description));
   context.objects = load_object_library();
   if (!scenario.empty()) context.scenario = scenario_file(scenario);

@@ -1,7 +1,7 @@
 #include "components/ros2_lane/node.hpp"
 
 #include "common/config/resources.hpp"
-#include "common/config/schema/scenario.pb.h"
+#include "common/config/scenario.hpp"
 #include "common/config/settings_text.hpp"
 #include "common/model/description/description_parts.hpp"
 
@@ -80,11 +80,8 @@ void Node::on(const ros2::Transforms& message, TimePoint arrival, bool is_static
 
 void Node::open_robot(const NodeContext& context) {
   if (settings_.robot_in.empty()) return;
-  if (!context.scenario.empty()) {
-    config::Scenario scenario;
-    load_text_proto(context.scenario, scenario);
-    joints_.set_base(to_pose(scenario.base()));
-  }
+  if (!context.scenario.empty())
+    joints_.set_base(to_pose(read_scenario(context.scenario, context.seed).base()));
   robot_out_ = bus_.advertise<RobotState>();
   topics_.read<ros2::JointState>(settings_.robot_in, Profile::sensor,
                                  [this](const ros2::JointState& m, const Receipt& r) {

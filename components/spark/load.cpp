@@ -25,10 +25,4 @@ settings::SparkSettings load_settings(const std::filesystem::path& folder) {
   return settings;
 }
 
-config::Scenario load_scenario(const std::filesystem::path& file) {
-  config::Scenario scenario;
-  if (!file.empty()) load_text_proto(file, scenario);
-  return scenario;
-}
-
 }  // namespace handsel::spark

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/config/scenario.hpp"
 #include "components/spark/capture_age.hpp"
 #include "components/spark/load.hpp"
 #include "components/spark/place.hpp"
@@ -9,7 +10,7 @@
 namespace handsel::spark {
 
 Node::Node(Bus& bus, const NodeContext& context)
-    : Node(bus, context, load_scenario(context.scenario)) {}
+    : Node(bus, context, read_scenario(context.scenario, context.seed)) {}
 
 Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     : bus_(bus),

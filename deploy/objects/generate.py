@@ -158,6 +158,24 @@ def can():
              [f"cylinder {{ radius: {R} length: {H} }}"])
 
 
+def torch():
+    R, head, r, H = 0.027, 0.055, 0.018, 0.19
+    h = H / 2
+    mesh = revolve([(0, -h), (R, -h), (R, -h + head), (r, -h + head + 0.02), (r, h), (0, h)])
+    handle = H - head - 0.02
+    describe("torch", "A torch that stands on its head, its handle upward.", mesh, 0.28, 0.6,
+             [f"{at(0, 0, -h + head / 2)} cylinder {{ radius: {R} length: {head} }}",
+              f"{at(0, 0, -h + head + 0.01)} cylinder {{ radius: {(R + r) / 2:g} length: 0.02 }}",
+              f"{at(0, 0, h - handle / 2)} cylinder {{ radius: {r} length: {handle:g} }}"], (0, 0, -0.02))
+
+
+def tube():
+    R, H = 0.028, 0.32
+    describe("tube", "A long cardboard tube with its ends closed, standing.",
+             revolve([(0, -H / 2), (R, -H / 2), (R, H / 2), (0, H / 2)]), 0.22, 0.6,
+             [f"cylinder {{ radius: {R} length: {H} }}"])
+
+
 def merge(mesh, other, x, y, z):
     """Adds a body that is closed by itself; where bodies overlap they are one thing."""
     before = len(mesh.vertices)
@@ -188,6 +206,8 @@ def tray():
 mug()
 bottle()
 can()
+torch()
+tube()
 tray()
 describe("box", "A small carton.", block(0.055, 0.085, 0.13), 0.25, 0.6, ["box { x: 0.055 y: 0.085 z: 0.13 }"])
 describe("ball", "A rubber ball.", ball(0.036), 0.15, 0.8, ["sphere: 0.036"])

@@ -5,6 +5,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/messages/names.hpp"
+#include "sim/scene/free_place.hpp"
 
 namespace handsel::sim {
 
@@ -51,6 +52,8 @@ class Reader {
     read_start();
     for (const auto& box : scenario_.boxes()) read_box(box);
     for (const auto& object : scenario_.objects()) read_object(object);
+    for (int i = 0; i < scenario_.objects_size(); ++i)
+      if (scenario_.objects(i).free_place()) put_at_free_place(i);
     for (const auto& person : scenario_.people()) read_person(person);
     for (const auto& sensor : scenario_.human_sensors())
       out_.human_sensors.push_back(sensor_of(sensor, coverage, true));
@@ -67,7 +70,7 @@ class Reader {
       break;
     }
     out_.never_releases = scenario_.robot_never_releases();
-    out_.no_weld = scenario_.no_weld();
+    out_.help_hold = scenario_.help_hold();
     return std::move(out_);
   }
 
@@ -124,18 +127,74 @@ class Reader {
       fail("object " + object.id() + " is of model " + object.model() +
            ", which is not under objects/");
     o.T_world_object.translation() += Vector3(jitter(object.jitter()), jitter(object.jitter()), 0);
-    if (!object.on().empty()) {
-      const auto box = std::find_if(out_.boxes.begin(), out_.boxes.end(),
-                                    [&](const StartBox& b) { return b.id == object.on(); });
-      if (box == out_.boxes.end())
-        fail("object " + object.id() + " stands on " + object.on() +
-             ", which is no box of the scenario");
-      if (object.pose().xyz().z() == 0) {
-        o.T_world_object.translation().z() =
-            box->T_world_box.translation().z() + box->size.z() / 2 + o.model->height_above_support;
-      }
+    if (object.turn() > 0)
+      o.T_world_object.linear() =
+          Eigen::AngleAxisd(jitter(object.turn()), Vector3::UnitZ()).toRotationMatrix() *
+          o.T_world_object.linear();
+    if (object.on().empty() && object.free_place())
+      fail("object " + object.id() + " is at a free place but `on` names no box");
+    if (!object.on().empty() && object.pose().xyz().z() == 0) {
+      const StartBox& box = surface_of(object);
+      o.T_world_object.translation().z() =
+          box.T_world_box.translation().z() + box.size.z() / 2 + o.model->height_above_support;
     }
     out_.objects.push_back(o);
+  }
+
+  const StartBox& surface_of(const config::ObjectPlacement& object) const {
+    const auto box = std::find_if(out_.boxes.begin(), out_.boxes.end(),
+                                  [&](const StartBox& b) { return b.id == object.on(); });
+    if (box == out_.boxes.end())
+      fail("object " + object.id() + " stands on " + object.on() +
+           ", which is no box of the scenario");
+    return *box;
+  }
+
+  /// Returns the radius of a circle about the origin that contains the object, seen from above [m].
+  static double radius_of(const ObjectModel& model) {
+    double radius = 0;
+    for (const Vector3& v : model.mesh.vertices)
+      radius = std::max(radius, Vector2(v.x(), v.y()).norm());
+    return radius;
+  }
+
+  /// The objects that already have a place on the box, and the boxes that reach through its top.
+  Surface surface_on(const StartBox& box) const {
+    const Pose T_box_world = box.T_world_box.inverse();
+    Surface surface;
+    surface.size = Vector2(box.size.x(), box.size.y());
+    for (int i = 0; i < scenario_.objects_size(); ++i) {
+      const config::ObjectPlacement& other = scenario_.objects(i);
+      if (other.on() != box.id || (other.free_place() && !placed_.contains(i))) continue;
+      const Vector3 p = T_box_world * out_.objects[i].T_world_object.translation();
+      surface.circles.push_back({{p.x(), p.y()}, radius_of(*out_.objects[i].model)});
+    }
+    const double top = box.size.z() / 2;
+    for (const StartBox& other : out_.boxes) {
+      if (other.id == box.id) continue;
+      const Pose T = T_box_world * other.T_world_box;
+      const Vector3 half = T.linear().cwiseAbs() * other.size / 2;
+      const Vector3 low = T.translation() - half, high = T.translation() + half;
+      constexpr double kHeadroom = 0.4;  // [m] what stands below a lower board is out of reach
+      if (high.z() > top + 1e-3 && low.z() < top + kHeadroom)
+        surface.rectangles.push_back({{low.x(), low.y()}, {high.x(), high.y()}});
+    }
+    return surface;
+  }
+
+  void put_at_free_place(int index) {
+    const config::ObjectPlacement& object = scenario_.objects(index);
+    const StartBox& box = surface_of(object);
+    StartObject& start = out_.objects[index];
+    const double clearance = object.clearance() > 0 ? object.clearance() : 0.05;
+    const auto place = free_place(surface_on(box), radius_of(*start.model), clearance, [&] {
+      return std::uniform_real_distribution<double>(0, 1)(random_);
+    });
+    if (!place) fail("there is no free place for object " + object.id() + " on " + box.id);
+    const double z = start.T_world_object.translation().z();
+    start.T_world_object.translation() = box.T_world_box * Vector3(place->x(), place->y(), 0);
+    start.T_world_object.translation().z() = z;
+    placed_.insert(index);
   }
 
   void read_person(const config::PersonDescription& person) {
@@ -324,6 +383,7 @@ class Reader {
   const ObjectLibrary& library_;
   std::filesystem::path data_root_;
   std::mt19937_64 random_;
+  std::set<int> placed_;  // objects that have found their free place
   SceneSetup out_;
 };
 

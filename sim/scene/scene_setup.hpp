@@ -53,7 +53,7 @@ struct SceneSetup {
   std::vector<TimedControl> disturbances;                     ///< in time order
   std::string watched;    ///< object of the first task, else the first object; may be empty
   bool never_releases{};  ///< injected fault: the hand does not open again (StuckHand)
-  bool no_weld{};         ///< contacts alone hold objects, without a grasp constraint
+  bool help_hold{};       ///< a grasp constraint helps to hold objects
 };
 
 /// Throws ConfigError or MissingError naming what in the scenario is wrong and what there is.

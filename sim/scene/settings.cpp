@@ -39,7 +39,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.position_noise = read.position_noise;
   s.coverage = read.coverage;
   s.ssm.reaction = read.reaction;
-  s.constraint = std::getenv("HANDSEL_NO_WELD") == nullptr;
+  s.constraint = std::getenv("HANDSEL_HELP_HOLD") != nullptr;
   s.setpoint_period = read.setpoint_period;
   s.pad.friction = read.pad_friction;
   s.pad.patch = read.pad_patch;

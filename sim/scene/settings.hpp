@@ -18,7 +18,7 @@ struct SimSettings {
   ServoSettings servo;                            ///< joint servos of the robot
   PadSettings pad;                                ///< surface of its fingers
   /// A grasp constraint of limited force helps to hold while the contacts pass force closure.
-  bool constraint{true};
+  bool constraint{false};
   RobotSideSettings robot_side;  ///< how the robot's driver takes set-points
   /// Grasp constraint of a robot's hand, grip of a person's hand.
   GripSettings robot_grip, person_grip;

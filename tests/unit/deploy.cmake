@@ -8,4 +8,5 @@ handsel_test(includes SOURCES ${CMAKE_CURRENT_LIST_DIR}/includes_test.cpp LABEL 
 handsel_test(docs SOURCES ${CMAKE_CURRENT_LIST_DIR}/docs_test.cpp LABEL unit)
 handsel_test(compose_file SOURCES ${CMAKE_CURRENT_LIST_DIR}/deploy/compose_file_test.cpp LINK handsel_command LABEL unit)
 handsel_test(criteria SOURCES ${CMAKE_CURRENT_LIST_DIR}/deploy/criteria_test.cpp LINK handsel_lockstep LABEL unit)
+handsel_test(tally SOURCES ${CMAKE_CURRENT_LIST_DIR}/deploy/tally_test.cpp LINK handsel_lockstep LABEL unit)
 handsel_test(study SOURCES ${CMAKE_CURRENT_LIST_DIR}/deploy/study_test.cpp LINK handsel_lockstep LABEL unit)

@@ -1,4 +1,5 @@
 handsel_test(sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sim/time_keeper_test.cpp LINK handsel_sim_core LABEL unit)
+handsel_test(scene_setup SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/scene_setup_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(sim_oracle SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_oracle_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(sim_person SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_person_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(sensors SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sensors_test.cpp LINK handsel_sim_core LABEL unit)

@@ -14,6 +14,7 @@ namespace {
 constexpr double kOfferCheckPeriod = 0.02;  // [s]
 constexpr double kMaxStandoffError = 0.02;  // of the hand, where the straight motion in begins [m]
 constexpr double kReleaseTime = 0.2;      // with the load, before what was taken is drawn away [s]
+constexpr double kUnsureTime = 1.5;       // for the giver's hand to go where the grip is unsure [s]
 constexpr double kMaxInHandError = 0.05;  // of an object that was put into the hand [m]
 constexpr double kNear = 0.5;             // to giver or object: the arm retreats straight first [m]
 constexpr double kMaxDetour = 1.3;        // length of a path over that of the straight one
@@ -210,8 +211,14 @@ Routine<Step> reach_offer(Parts& parts, const TakeAttempt& take, std::optional<G
   co_return Step{grasp ? Progress::again : Progress::failed, done};
 }
 
+/// What closing the hand came to.
+struct Closing {
+  Outcome outcome;
+  bool unsure{};  ///< the fingers have closed, but do not all push as planned
+};
+
 /// Closes the hand; what lies in it otherwise than planned is pressed on where the fingers are.
-Routine<Outcome> close_on_offer(Parts& parts, const TakeAttempt& take, const Grasp& grasp) {
+Routine<Closing> close_on_offer(Parts& parts, const TakeAttempt& take, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
   parts.offers.set_hand_at_offer(true);
   const bool is_laid_in = is_put_into_hand(parts, take);
@@ -220,21 +227,22 @@ Routine<Outcome> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
   const double timeout = parts.settings.hand_timeout;
   HandResult closed =
       co_await parts.hand.run(HandAction::grasp, closing, timeout, &grasp.hand_effort);
-  if (!closed.outcome.good) co_return closed.outcome;
-  if (closed.state != HandState::grasped && !is_laid_in)
-    co_return Outcome::failure("the hand did not get hold of it");
-  co_return Outcome{};
+  Closing result{closed.outcome, false};
+  if (!closed.outcome.good || closed.state == HandState::grasped || is_laid_in) co_return result;
+  result.outcome = Outcome::failure("the hand did not get hold of it");
+  result.unsure = true;
+  co_return result;
 }
 
 /// Waits until the giver has released the object. Fingers that press on it feel some of its weight,
 /// too: it is the robot's when that stays and the giver's hand has gone.
-Routine<Outcome> await_release(Parts& parts, const Offer& offer) {
+Routine<Outcome> await_release(Parts& parts, const Offer& offer, double timeout) {
   parts.action.phase = ActionPhase::waiting_for_release;
   const auto is_given = [&] {
     return is_held_by_robot(parts, offer.object) &&
            !parts.held.is_at_hand_of(offer.giver, offer.object);
   };
-  const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.let_go_timeout);
+  const TimePoint deadline = parts.now.time() + from_seconds(timeout);
   TimePoint since = parts.now.time();
   while (parts.now.time() < deadline && to_seconds(parts.now.time() - since) < kReleaseTime) {
     if (!is_given()) since = parts.now.time();
@@ -284,8 +292,15 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
     co_await retreat_from_offer(parts, take.offer);
     co_return step.outcome;
   }
-  Outcome taken = co_await close_on_offer(parts, take, *grasp);
-  if (taken.good) taken = co_await await_release(parts, take.offer);
+  const Closing closed = co_await close_on_offer(parts, take, *grasp);
+  Outcome taken = closed.outcome;
+  if (taken.good) taken = co_await await_release(parts, take.offer, parts.settings.let_go_timeout);
+  if (closed.unsure) {
+    // A giver who feels the robot hold the object releases it at once: a hand that opened then
+    // would drop it. One who still holds it keeps their hand there.
+    const Outcome released = co_await await_release(parts, take.offer, kUnsureTime);
+    if (released.good) taken = released;
+  }
   if (!taken.good) {
     Outcome off = co_await back_off(parts, take.offer, *grasp, taken);
     co_return off;

@@ -15,6 +15,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
+#include "common/config/scenario.hpp"
 #include "common/config/schema/attention.pb.h"
 #include "deploy/handsel/cli/above_zero.hpp"
 #include "deploy/handsel/cli/json_line.hpp"
@@ -23,6 +24,7 @@
 #include "deploy/handsel/commands/commands.hpp"
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "deploy/handsel/eval/study.hpp"
+#include "deploy/handsel/eval/tally.hpp"
 #include "deploy/handsel/eval/trial.hpp"
 #include "deploy/handsel/system/system_options.hpp"
 
@@ -30,7 +32,7 @@ namespace handsel {
 namespace {
 
 struct EvalOptions {
-  std::vector<std::string> scenarios{"give_mug"}, modes{"adaptive"}, laws, from;
+  std::vector<std::string> scenarios{"give_mug"}, modes{"adaptive"}, laws, from, by;
   std::string robot, out, shard, report, participant;
   int trials{10}, jobs{0};
   std::uint64_t seed{1};
@@ -133,29 +135,40 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-struct Tally {
-  int trials{0}, successes{0};
-  std::map<std::string, int> failures;
-
-  void add(const nlohmann::json& line) {
-    const bool success = line["success"];
-    ++trials;
-    successes += success;
-    if (!success) ++failures[line.value("failure", "") + ": " + line.value("reason", "")];
+void print_table(const TrialTable& table, const std::vector<std::string>& by) {
+  const std::vector<std::string> known = table.headings();
+  for (const std::string& heading : by) {
+    if (std::find(known.begin(), known.end(), heading) != known.end()) continue;
+    std::string all;
+    for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
+    std::fprintf(stderr, "--by %s: no trial has drawn it; there is: %s\n", heading.c_str(),
+                 all.empty() ? "nothing" : all.c_str());
   }
-};
-
-void print_table(const std::map<std::string, Tally>& tallies) {
-  std::fprintf(stderr, "%-24s %7s %8s   %s\n", "scenario", "trials", "success",
-               "95 % interval (Wilson)");
-  for (const auto& [scenario, tally] : tallies) {
-    const auto [low, high] = wilson_interval(tally.successes, tally.trials);
-    std::fprintf(stderr, "%-24s %7d %6.1f %%   %.1f … %.1f %%\n", scenario.c_str(), tally.trials,
-                 100.0 * tally.successes / tally.trials, 100 * low, 100 * high);
-    for (const auto& [failure, count] : tally.failures)
-      std::fprintf(stderr, "  %4d %s\n", count, failure.c_str());
-  }
+  std::fputs(table.text(by).c_str(), stderr);
 }
+
+/// The inputs of each trial: a context is loaded once for each robot.
+class Contexts {
+ public:
+  Contexts(std::string scenario, std::string robot, std::filesystem::path settings)
+      : scenario_(std::move(scenario)), robot_(std::move(robot)), settings_(std::move(settings)) {}
+  NodeContext of(std::uint64_t seed) {
+    const std::string robot = robot_.empty() ? scenario_robot(scenario_, seed) : robot_;
+    const auto known = loaded_.find(robot);
+    NodeContext context =
+        known != loaded_.end()
+            ? known->second
+            : loaded_.emplace(robot, system_context(scenario_, robot, seed, settings_))
+                  .first->second;
+    context.seed = seed;
+    return context;
+  }
+
+ private:
+  std::string scenario_, robot_;
+  std::filesystem::path settings_;
+  std::map<std::string, NodeContext> loaded_;
+};
 
 /// All conditions of a seed side by side, in an order drawn by the seed: what disturbs a machine,
 /// or a person, disturbs all alike.
@@ -164,10 +177,9 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
   std::vector<Trial> trials;
   const Shard shard = parse_shard(options.shard);
   for (const std::string& scenario : options.scenarios) {
-    std::vector<NodeContext> contexts;
+    std::vector<Contexts> contexts;
     for (const Condition& condition : conditions)
-      contexts.push_back(
-          system_context(scenario, options.robot, first, condition.settings->folder()));
+      contexts.emplace_back(scenario, options.robot, condition.settings->folder());
     for (int i = 0; i < count; ++i) {
       if (i % shard.count != shard.index) continue;
       const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
@@ -178,10 +190,9 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
       for (const std::size_t k : order) {
         const Condition& condition = conditions[k];
         Trial trial{
-            .context = contexts[k],
+            .context = contexts[k].of(seed),
             .options = {
                 .scenario = scenario, .attention = condition.mode, .timeout = options.timeout}};
-        trial.context.seed = seed;
         trial.options.condition = condition.name;
         trial.options.participant = options.participant;
         trial.options.order = trials.size() + 1;
@@ -264,7 +275,7 @@ void report(const EvalOptions& options, const Study& study) {
 /// Lines of trials done before, e.g. by the shards of a batch engine.
 int report_files(const EvalOptions& options) {
   Study study;
-  std::map<std::string, Tally> tallies;
+  TrialTable table;
   for (const std::string& file : options.from) {
     std::ifstream in(file);
     if (std::filesystem::is_directory(file)) throw ConfigError(file + " is not a file");
@@ -283,7 +294,7 @@ int report_files(const EvalOptions& options) {
                           ": this is no line of handsel eval");
       try {
         study.add(line);
-        tallies[line["scenario"]].add(line);
+        table.add(line);
       } catch (const nlohmann::json::exception&) {
         throw ConfigError(
             file + ":" + std::to_string(number) +
@@ -291,7 +302,7 @@ int report_files(const EvalOptions& options) {
       }
     }
   }
-  print_table(tallies);
+  print_table(table, options.by);
   report(options, study);
   return 0;
 }
@@ -312,11 +323,11 @@ int evaluate(const EvalOptions& options) {
     if (!out) throw ConfigError("cannot write " + options.out);
   }
   const bool to_stdout = options.out.empty();
-  std::map<std::string, Tally> tallies;
+  TrialTable table;
   Study study;
   std::size_t done = 0, successes = 0;
   const bool clean = run_trials(trials, jobs_of(options), [&](const nlohmann::json& line) {
-    tallies[line["scenario"]].add(line);
+    table.add(line);
     study.add(line);
     successes += line["success"].get<bool>();
     if (to_stdout) {
@@ -333,7 +344,7 @@ int evaluate(const EvalOptions& options) {
       std::fprintf(stderr, "\r%zu of %zu trials, %zu succeeded ", done, trials.size(), successes);
   });
   if (progress_wanted()) std::fprintf(stderr, "\n");
-  print_table(tallies);
+  print_table(table, options.by);
   report(options, study);
   if (options.replay) return successes == trials.size() ? 0 : 1;
   return clean ? 0 : 1;
@@ -389,8 +400,10 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->add_option(
       "--from", options->from,
       "report on these files of lines instead of trials, e.g. on those of all shards");
+  command->add_option("--by", options->by,
+                      "tables by these draws only, e.g. object (default: by every draw)");
   command->add_option("--participant", options->participant, "pseudonym that the lines carry");
-  add_no_weld_option(*command);
+  add_help_hold_option(*command);
   command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")
       ->check(kAboveZero);
   command->add_option("--shard", options->shard,

@@ -6,6 +6,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
+#include "common/config/scenario.hpp"
 #include "deploy/handsel/cli/above_zero.hpp"
 #include "deploy/handsel/cli/terminal.hpp"
 #include "deploy/handsel/commands/commands.hpp"
@@ -28,12 +29,6 @@ struct RunOptions {
   double timeout{0.0};
 };
 
-config::Scenario read_scenario(const std::string& name) {
-  config::Scenario scenario;
-  load_text_proto(scenario_file(name), scenario);
-  return scenario;
-}
-
 struct TemporaryFile {
   std::filesystem::path path;
   ~TemporaryFile() {
@@ -42,9 +37,11 @@ struct TemporaryFile {
   }
 };
 
-/// The scenario with its first person played from a recording, as a file of its own.
+/// The scenario with its first person played from a recording, as a file of its own. Each process
+/// draws from it what varies.
 std::filesystem::path with_recording(const std::string& name, const std::string& recording) {
-  config::Scenario scenario = read_scenario(name);
+  config::Scenario scenario;
+  load_text_proto(scenario_file(name), scenario);
   if (scenario.people().empty())
     throw ConfigError("--human needs a scenario with a person; " + name + " has none");
   scenario.mutable_people(0)->set_behaviour(config::RECORDING);
@@ -88,7 +85,8 @@ void write_report(const std::string& file, const nlohmann::json& report) {
 
 int run(RunOptions& options) {
   catch_interrupts();
-  const config::Scenario scenario = read_scenario(options.system.scenario);
+  const config::Scenario scenario =
+      read_scenario(scenario_file(options.system.scenario), options.system.seed);
   scenario_goals(scenario);  // a scenario that cannot be performed starts nothing
   const std::string shown = options.system.scenario;
   if (!options.report.empty())

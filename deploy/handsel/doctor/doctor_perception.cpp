@@ -7,8 +7,7 @@
 
 #include "common/bus/executor.hpp"
 #include "common/config/resources.hpp"
-#include "common/config/scenario_robot.hpp"
-#include "common/config/schema/scenario.pb.h"
+#include "common/config/scenario.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
@@ -172,10 +171,10 @@ bool has_reader(const DomainView& view, const TopicRow& row) {
 /// same way.
 PerceptionGround ground_of(const DoctorOptions& options) {
   PerceptionGround ground;
-  config::Scenario scenario;
-  load_text_proto(scenario_file(options.scenario), scenario);
-  const RobotModel robot = RobotModel::load(
-      robot_description(options.robot.empty() ? scenario_robot(options.scenario) : options.robot));
+  const std::uint64_t seed = SystemOptions{}.seed;
+  const config::Scenario scenario = read_scenario(scenario_file(options.scenario), seed);
+  const RobotModel robot = RobotModel::load(robot_description(
+      options.robot.empty() ? scenario_robot(options.scenario, seed) : options.robot));
   ground.base = sim::pose_of(scenario.base()).translation();
   ground.reach = spark::reach_of(robot, ground.base);
   std::error_code ignored;

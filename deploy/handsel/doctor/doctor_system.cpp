@@ -11,8 +11,8 @@
 #include "common/base/errors.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/config/resources.hpp"
+#include "common/config/scenario.hpp"
 #include "common/config/schema/bridge.pb.h"
-#include "common/config/schema/scenario.pb.h"
 #include "common/model/hand_model.hpp"
 #include "components/spark/calibration.hpp"
 #include "deploy/handsel/doctor/doctor.hpp"
@@ -161,7 +161,7 @@ std::vector<Finding> check_descriptions(const DoctorOptions& options) {
   std::vector<Finding> out;
   config::Scenario scenario;
   out.push_back(attempt("scenario", [&] {
-    load_text_proto(scenario_file(options.scenario), scenario);
+    scenario = read_scenario(scenario_file(options.scenario), SystemOptions{}.seed);
     return options.scenario;
   }));
   std::string robot, hand;

@@ -11,13 +11,15 @@
 #include <optional>
 
 #include "common/base/errors.hpp"
-#include "common/config/resources.hpp"
+#include "common/config/scenario.hpp"
 #include "deploy/handsel/eval/criteria.hpp"
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "deploy/handsel/eval/report.hpp"
 #include "deploy/handsel/recording/recorder.hpp"
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
+#include "sim/scene/scene_setup.hpp"
+#include "sim/scene/settings.hpp"
 
 namespace handsel {
 namespace {
@@ -36,14 +38,53 @@ std::string failure_kind(const Performer& performer, const GroundTruth& ground_t
   return "task_" + last.state;
 }
 
+/// What distinguishes the person of the first task; empty: nobody, or a person of no scenario.
+Json traits_of(const NodeContext& context, const config::Scenario& scenario) {
+  if (scenario.tasks().empty() || scenario.tasks(0).human().empty()) return {};
+  const sim::SimSettings settings = sim::load_settings(context.settings);
+  const sim::SceneSetup setup = sim::set_up(scenario, *context.robot, context.objects,
+                                            settings.coverage, settings.data_root, context.seed);
+  for (const sim::StartPerson& person : setup.people) {
+    if (person.settings.id != scenario.tasks(0).human()) continue;
+    const sim::BehaviourProfile& behaviour = person.settings.behaviour;
+    Json traits = Json::array({behaviour.seated ? "seated" : "standing"});
+    const std::pair<bool, const char*> others[] = {{person.settings.left_handed, "left-handed"},
+                                                   {behaviour.hesitation > 0, "hesitates"},
+                                                   {behaviour.withdraws, "withdraws"},
+                                                   {behaviour.look_away > 0, "looks away"},
+                                                   {!behaviour.sidestep.isZero(), "steps aside"},
+                                                   {behaviour.early, "takes early"}};
+    for (const auto& [has, trait] : others)
+      if (has) traits.push_back(trait);
+    return traits;
+  }
+  return {};
+}
+
+/// What the seed drew, of a scenario with draws; null otherwise.
+Json drawn_of(const NodeContext& context) {
+  const DrawnScenario drawn = draw_scenario(context.scenario, context.seed);
+  if (drawn.variants.empty() && drawn.tops.empty()) return {};
+  Json out(drawn.variants);
+  for (const auto& [box, height] : drawn.tops) out[box + "_top_m"] = height;
+  try {
+    if (Json traits = traits_of(context, drawn.scenario); !traits.is_null()) out["person"] = traits;
+  } catch (const std::exception&) {
+    // A scene that cannot be set up is the failure of the trial, which names the reason.
+  }
+  return out;
+}
+
 Json base_line(const NodeContext& context, const TrialOptions& options) {
   Json line{{"scenario", options.scenario},
             {"seed", context.seed},
+            {"robot", context.robot->name()},
             {"attention", options.attention},
             {"law", options.clock_law}};
   line["condition"] = options.condition.empty() ? options.attention : options.condition;
   if (!options.participant.empty()) line["participant"] = options.participant;
   if (options.order > 0) line["order"] = options.order;
+  if (Json drawn = drawn_of(context); !drawn.is_null()) line["drawn"] = std::move(drawn);
   return line;
 }
 
@@ -102,8 +143,7 @@ Json finish_worker(const Worker& worker, const std::vector<Trial>& trials, bool&
 }  // namespace
 
 nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options) {
-  config::Scenario scenario;
-  load_text_proto(context.scenario, scenario);
+  const config::Scenario scenario = read_scenario(context.scenario, context.seed);
   LockstepSystem system(context);
   const Criteria criteria(system.bus(), system.network());
   if (options.hash_outputs) system.network().hash_outputs();

@@ -4,7 +4,7 @@
 
 #include "common/bus/node_context.hpp"
 #include "common/config/resources.hpp"
-#include "common/config/schema/scenario.pb.h"
+#include "common/config/scenario.hpp"
 #include "deploy/handsel/system/processes.hpp"
 #include "sim/scene/scene_setup.hpp"
 #include "sim/scene/settings.hpp"
@@ -17,8 +17,7 @@ void check_scene(const SystemOptions& options) {
   };
   if (has(options.without) || (!options.only.empty() && !has(options.only))) return;
   check_system(options);
-  config::Scenario scenario;
-  load_text_proto(scenario_file(options.scenario), scenario);
+  const config::Scenario scenario = read_scenario(scenario_file(options.scenario), options.seed);
   const RobotModel robot = RobotModel::load(robot_description(robot_of(options)));
   const sim::SimSettings settings = sim::load_settings(resource("config"));
   sim::set_up(scenario, robot, load_object_library(), settings.coverage, settings.data_root,

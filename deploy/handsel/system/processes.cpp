@@ -7,8 +7,7 @@
 #include "common/base/errors.hpp"
 #include "common/bus/state_directory.hpp"
 #include "common/config/resources.hpp"
-#include "common/config/scenario_robot.hpp"
-#include "common/config/schema/scenario.pb.h"
+#include "common/config/scenario.hpp"
 #include "common/model/object_model.hpp"
 #include "common/model/robot_model.hpp"
 
@@ -39,8 +38,7 @@ void require_processes(const std::vector<std::string>& names) {
 bool is_paced_by_simulator(const SystemOptions& options) {
   if (std::getenv("HANDSEL_SIM_TIME") != nullptr) return false;  // the processes read it themselves
   if (!options.whole() || options.ros2) return false;
-  config::Scenario scenario;
-  load_text_proto(scenario_file(options.scenario), scenario);
+  const config::Scenario scenario = read_scenario(scenario_file(options.scenario), options.seed);
   return std::none_of(scenario.people().begin(), scenario.people().end(),
                       [](const config::PersonDescription& person) {
                         return person.behaviour() == config::EXTERNAL;
@@ -88,13 +86,12 @@ std::filesystem::path state_folder(const SystemOptions& options) {
 }
 
 std::string robot_of(const SystemOptions& options) {
-  return options.robot.empty() ? scenario_robot(options.scenario) : options.robot;
+  return options.robot.empty() ? scenario_robot(options.scenario, options.seed) : options.robot;
 }
 
 void check_system(const SystemOptions& options) {
-  config::Scenario scenario;
   const std::filesystem::path file = scenario_file(options.scenario);
-  load_text_proto(file, scenario);
+  const config::Scenario scenario = read_scenario(file, options.seed);
   const RobotModel model = RobotModel::load(robot_description(robot_of(options)));
   for (const auto& [joint, position] : scenario.start()) {
     bool known = false;

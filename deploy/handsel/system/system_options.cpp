@@ -32,13 +32,13 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
   command.add_option("--record", options.record,
                      "write everything that is said into this MCAP file");
   command.add_flag("--ros2", options.ros2, "with the connection to ROS 2 (docs/ros2.md)");
-  add_no_weld_option(command);
+  add_help_hold_option(command);
 }
 
-void add_no_weld_option(CLI::App& command) {
+void add_help_hold_option(CLI::App& command) {
   command.add_flag_callback(
-      "--no-weld", [] { setenv("HANDSEL_NO_WELD", "1", 1); },
-      "contact alone holds what the robot grasps: no grasp constraint helps");
+      "--help-hold", [] { setenv("HANDSEL_HELP_HOLD", "1", 1); },
+      "a grasp constraint helps to hold what the robot grasps (default: contact alone)");
 }
 
 void announce_page(System& system, bool headless) {

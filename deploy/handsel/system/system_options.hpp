@@ -13,10 +13,10 @@ inline constexpr Duration kReadyTimeout = std::chrono::seconds(15);
 
 /// --domain N (default: $HANDSEL_DOMAIN, else 0).
 void add_domain_option(CLI::App& command, int& domain);
-/// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --no-weld.
+/// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --help-hold.
 void add_system_options(CLI::App& command, SystemOptions& options);
-/// --no-weld, passed to the simulator through the environment's HANDSEL_NO_WELD.
-void add_no_weld_option(CLI::App& command);
+/// --help-hold, passed to the simulator through the environment's HANDSEL_HELP_HOLD.
+void add_help_hold_option(CLI::App& command);
 /// Prints the page's address, or why there is no page; opens it in a browser when there is a
 /// display and not `headless`.
 void announce_page(System& system, bool headless);

@@ -203,7 +203,7 @@ class Rig {
   void obey(const HandCommand& command) {
     execution.hand_command = command.id;
     execution.hand = command.action == HandAction::grasp
-                         ? (grasp_holds ? HandState::grasped : HandState::empty)
+                         ? (grasp_holds && !unsure ? HandState::grasped : HandState::empty)
                      : command.action == HandAction::release_on_pull ? HandState::grasped
                      : opens_for > 0                                 ? HandState::moving
                                                                      : HandState::idle;
@@ -245,6 +245,7 @@ class Rig {
   Vector touching_posture;
   Pose T_tool_mug{Pose::Identity()};
   bool grasped_as_it_stands{false};
+  bool unsure{false};  // the hand reports that it closed on nothing, also where the object comes
   TimePoint now{};
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0}, led_over{0};

@@ -268,6 +268,44 @@ TEST(ManipulationPlanner, from_an_offer_that_is_moved_away_it_backs_off_with_the
   EXPECT_EQ(rig.planner.status().refusals.back().reason, "mug was moved away");
 }
 
+TEST(ManipulationPlanner, an_unsure_grip_does_not_open_on_what_the_giver_has_released) {
+  for (const bool released : {true, false}) {
+    Rig rig;
+    rig.unsure = true;
+    rig.object_comes = released;
+    rig.hold_out();
+    rig.start(ActionKind::receive);
+    rig.run(200);
+    EXPECT_EQ(rig.planner.status().state, released ? ActionState::succeeded : ActionState::failed)
+        << rig.planner.status().reason;
+    EXPECT_EQ(rig.planner.status().holding, released);
+    EXPECT_EQ(rig.phases.back(), released ? "retreat" : "backing off");
+    EXPECT_EQ(rig.planner.status().reason, released ? "" : "the hand did not get hold of it");
+  }
+}
+
+TEST(ManipulationPlanner, a_grip_that_bears_the_load_is_worth_a_longer_motion) {
+  for (const double margin : {1.0, -3.0}) {
+    Rig rig;
+    rig.hold_out();
+    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
+    rig.grasped_as_it_stands = true;
+    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
+    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
+    rig.grasps[0].margin = margin;
+    rig.grasps[1].margin = 1.0;
+    rig.q =
+        RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
+    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, false};
+    rig.start(ActionKind::receive);
+    rig.run_until("reaching the object");
+    rig.cycle();
+    const bool from_above =
+        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+    EXPECT_EQ(from_above, margin < 0) << "the hand below it is nearer";
+  }
+}
+
 TEST(ManipulationPlanner, who_does_not_let_go_keeps_it) {
   Rig rig;
   rig.object_comes = false;

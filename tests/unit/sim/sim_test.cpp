@@ -220,8 +220,10 @@ TEST(SimGrasp, two_points_do_not_hold_but_two_patches_or_three_points_do) {
       << "another object";
 }
 
-TEST(SimGrasp, carries_the_mug_and_measures_its_weight) {
-  SimWorld world = make(from_open(mug_in_hand()));
+TEST(SimGrasp, carries_the_mug_with_help_and_measures_its_weight) {
+  config::Scenario scenario = from_open(mug_in_hand());
+  scenario.set_help_hold(true);
+  SimWorld world = make(scenario);
   Driver driver(world, start());
   driver.move(closed(start()), 1.5);
   driver.move(raised(driver.q()), 2.0);
