@@ -131,7 +131,7 @@ TEST_P(Exchanges, succeed_in_each_scenario) {
   EXPECT_GE(static_cast<double>(done), kSuccess * static_cast<double>(runs));
 }
 
-INSTANTIATE_TEST_SUITE_P(OverDds, Exchanges, testing::Values("trial_give", "trial_receive"),
+INSTANTIATE_TEST_SUITE_P(OverDds, Exchanges, testing::Values("trial_give_mug", "trial_receive_mug"),
                          [](const auto& instance) { return std::string(instance.param); });
 
 TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {

@@ -2,7 +2,9 @@
 // a crash is one failed trial.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "deploy/handsel/eval/trial.hpp"
@@ -102,6 +104,44 @@ TEST(Trials, a_crash_is_counted_and_the_rest_still_runs) {
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0]["failure"], "crash");
   EXPECT_EQ(lines[1]["failure"], "timeout");
+}
+
+TEST(Trials, contact_alone_holds_what_is_given_and_received) {
+  for (const char* scenario : {"give_mug", "receive_mug", "give_box_panda"}) {
+    const nlohmann::json line = run_trial(system_context(scenario, "", 1), {.scenario = scenario});
+    EXPECT_TRUE(line["success"].get<bool>()) << scenario << ": " << line["reason"];
+    EXPECT_EQ(line["contact_share"], 1.0) << scenario << ": a grasp constraint helped";
+    EXPECT_EQ(line["drops"], 0) << scenario;
+  }
+}
+
+TEST(Trials, a_line_and_every_component_agree_on_what_the_seed_drew) {
+  std::set<std::string> robots;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const NodeContext context = system_context("trial_give", "", seed);
+    const nlohmann::json line = run_trial(context, {.scenario = "trial_give", .timeout = 0.2});
+    const nlohmann::json& drawn = line["drawn"];
+    EXPECT_EQ(drawn["robot"], line["robot"]);
+    EXPECT_EQ(drawn["robot"], context.robot->name());
+    EXPECT_TRUE(drawn["person"].is_array());
+    robots.insert(drawn["robot"]);
+    if (seed > 2) continue;
+    LockstepSystem system(context);
+    Scene scene;
+    system.bus().subscribe<Scene>([&](const Scene& s, const Receipt&) { scene = s; });
+    system.network().run_for(from_seconds(1));
+    const auto table = std::find_if(scene.boxes.begin(), scene.boxes.end(),
+                                    [](const SceneBox& box) { return box.id == "table"; });
+    ASSERT_NE(table, scene.boxes.end());
+    EXPECT_NEAR(table->T_world_box.translation().z() + table->size.z() / 2,
+                drawn["table_top_m"].get<double>(), 1e-9);
+    const auto thing = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                    [](const SceneObject& o) { return o.id == "thing"; });
+    ASSERT_NE(thing, scene.objects.end());
+    EXPECT_EQ(thing->model, drawn["object"]);
+    EXPECT_EQ(std::to_string(scene.objects.size() - 1), drawn["clutter"]);
+  }
+  EXPECT_GE(robots.size(), 3u);
 }
 
 /// Values of Newcombe (1998), table I.

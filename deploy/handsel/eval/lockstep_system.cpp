@@ -17,7 +17,8 @@ namespace handsel {
 
 NodeContext system_context(const std::string& scenario, const std::string& robot,
                            std::uint64_t seed, const std::filesystem::path& settings) {
-  return load_context(robot_of({.robot = robot, .scenario = scenario, .seed = seed}), scenario, settings, seed);
+  return load_context(robot_of({.robot = robot, .scenario = scenario, .seed = seed}), scenario,
+                      settings, seed);
 }
 
 template <class Node>
