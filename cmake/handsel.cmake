@@ -19,7 +19,7 @@ endif()
 
 # Several sources of a library are compiled as one, since most of the time goes into shared headers.
 option(HANDSEL_UNITY "Compile sources in groups: a full build is faster, a change rebuilds more" ON)
-set(HANDSEL_UNITY_BATCH 6)
+set(HANDSEL_UNITY_BATCH 12)
 
 # handsel_unity(<target>): compiles the sources of the target in groups.
 function(handsel_unity target)

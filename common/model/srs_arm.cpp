@@ -8,8 +8,8 @@ namespace {
 constexpr double kSame = 1e-6;  // [m] and [rad], for recognising the shape
 constexpr int kCircleSamples = 48;
 constexpr int kRefinements = 24;
-constexpr double kViolation = 1e3;                     // cost of each radian outside the limits
-constexpr double kOnLimit = 1e-7, kWorthTrying = 0.3;  // [rad] outside the limits
+constexpr double kViolation = 1e3;  // cost of each radian outside the limits
+constexpr double kArmOnLimit = 1e-7, kArmWorthTrying = 0.3;  // [rad] outside the limits
 constexpr double kRestWeight = 0.02;
 constexpr double kMargin = 0.15;  // [rad] wanted to the limits
 constexpr double kMarginWeight = 4.0;
@@ -294,11 +294,11 @@ std::optional<SrsArm::Solution> SrsArm::solve(const Pose& T_root_tip, const Axes
       if (cost[i] < cost[least]) least = i;
     }
     keep(refine(problem, 2 * M_PI * least / kCircleSamples));
-    for (int i = 0; i < kCircleSamples && outside(best.q) > kOnLimit; ++i) {
+    for (int i = 0; i < kCircleSamples && outside(best.q) > kArmOnLimit; ++i) {
       const double before = cost[(i + kCircleSamples - 1) % kCircleSamples],
                    after = cost[(i + 1) % kCircleSamples];
       if (i != least && cost[i] <= before && cost[i] <= after &&
-          cost[i] < kViolation * kWorthTrying)
+          cost[i] < kViolation * kArmWorthTrying)
         keep(refine(problem, 2 * M_PI * i / kCircleSamples));
     }
   }

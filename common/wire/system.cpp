@@ -6,7 +6,7 @@
 
 namespace handsel {
 namespace {
-constexpr Range kLimitRatio{0, 1e9};
+constexpr Range kReportedLimitRatio{0, 1e9};
 }  // namespace
 
 void describe(WireIo& io, TopicHealth& m, handsel_TopicHealth& w) {
@@ -105,10 +105,11 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.integer("ssm_violations", m.ssm_violations, w.ssm_violations);
   io.number("peak_closing_speed", m.peak_closing_speed, w.peak_closing_speed, kCoordinate);
   io.number("contact_force", m.contact_force, w.contact_force, {0, 1e9});
-  io.number("limit_ratio_velocity", m.limit_ratio_velocity, w.limit_ratio_velocity, kLimitRatio);
+  io.number("limit_ratio_velocity", m.limit_ratio_velocity, w.limit_ratio_velocity,
+            kReportedLimitRatio);
   io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration,
-            kLimitRatio);
-  io.number("limit_ratio_jerk", m.limit_ratio_jerk, w.limit_ratio_jerk, kLimitRatio);
+            kReportedLimitRatio);
+  io.number("limit_ratio_jerk", m.limit_ratio_jerk, w.limit_ratio_jerk, kReportedLimitRatio);
   io.integer("limit_violations", m.limit_violations, w.limit_violations);
   io.integer("self_or_scene_collisions", m.self_or_scene_collisions, w.self_or_scene_collisions);
   io.integer("commanders", m.commanders, w.commanders);

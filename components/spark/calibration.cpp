@@ -11,8 +11,8 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kUnit = 1e-3;    // a quaternion's norm, a matrix' products may be off by this
-constexpr double kFarthest = 50;  // nothing stands farther from the world's origin [m]
+constexpr double kUnit = 1e-3;  // a quaternion's norm, a matrix' products may be off by this
+constexpr double kFarthestSensor = 50;  // nothing stands farther from the world's origin [m]
 
 std::optional<std::chrono::sys_days> date(const std::string& text) {
   int y = 0, m = 0, d = 0, used = 0;
@@ -35,10 +35,10 @@ std::string number(double value) {
 template <class Fail>
 Pose read(const config::Rigid& in, const Fail& fail) {
   const Vector3 p(in.position().x(), in.position().y(), in.position().z());
-  if (!p.allFinite() || p.norm() > kFarthest)
+  if (!p.allFinite() || p.norm() > kFarthestSensor)
     fail("stands " + number(p.norm()) +
          " m from the world's origin; positions are in metres, no farther than " +
-         number(kFarthest));
+         number(kFarthestSensor));
   if (in.has_orientation() && in.rotation_size() > 0)
     fail("has an orientation and a rotation; it must be one of them");
   if (in.rotation_size() > 0) {

@@ -9,13 +9,13 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kBestReach = 0.7;                    // of a place from a shoulder [m]
-constexpr double kEdge = 0.08;                        // kept free at the edge of a surface [m]
-constexpr double kMinEdgeDistance = 0.01;             // of any part of the object [m]
-constexpr double kGrid = 0.02;                        // between places that are tried [m]
-constexpr double kMinGap = 0.2;                       // to other things [m]
-constexpr std::size_t kMaxPlacesOfTwo = 4;            // on a surface
-constexpr double kRetreatRatios[] = {1.0, 0.8, 0.6};  // of the planned retreat
+constexpr double kBestReach = 0.7;          // of a place from a shoulder [m]
+constexpr double kEdge = 0.08;              // kept free at the edge of a surface [m]
+constexpr double kMinEdgeDistance = 0.01;   // of any part of the object [m]
+constexpr double kGrid = 0.02;              // between places that are tried [m]
+constexpr double kMinGap = 0.2;             // to other things [m]
+constexpr std::size_t kMaxPlacesOfTwo = 4;  // on a surface
+constexpr double kReleaseRetreatRatios[] = {1.0, 0.8, 0.6};  // of the planned retreat
 
 /// Returns the shoulders of all arms in the world.
 std::vector<Vector3> shoulders_of(const Parts& parts) {
@@ -175,7 +175,7 @@ Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, co
   const Pose T_off = robot.link_pose(closed, parts.arm.palm()).inverse() *
                      robot.link_pose(after, parts.arm.palm());
   std::string why = "no configuration of the arm lies there";
-  for (const double ratio : kRetreatRatios) {
+  for (const double ratio : kReleaseRetreatRatios) {
     Pose T = T_off;
     T.translation() *= ratio;
     const auto off = parts.arm.reach(parts.arm.T_world_tool() * T);

@@ -3,8 +3,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr int kMaxTries = 20;       // to send a hand command
-constexpr double kTryPeriod = 0.3;  // between tries [s]
+constexpr int kMaxHandTries = 20;       // to send a hand command
+constexpr double kHandTryPeriod = 0.3;  // between tries [s]
 
 }  // namespace
 
@@ -23,13 +23,13 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
     return now_.execution()->hand_command == id && arm_.hand_state() != HandState::refused;
   };
   bool acknowledged = false;
-  for (int tries = 0; tries < kMaxTries && !acknowledged; ++tries) {
+  for (int tries = 0; tries < kMaxHandTries && !acknowledged; ++tries) {
     const bool ready =
         co_await waiting_.until([this] { return link_.may_move(); }, settings_.permission_timeout);
     if (!ready) break;
     command.epoch = now_.execution()->epoch;
     link_.send(command);
-    acknowledged = co_await waiting_.until(is_acknowledged, kTryPeriod);
+    acknowledged = co_await waiting_.until(is_acknowledged, kHandTryPeriod);
   }
   arm_.set_finger_goal(std::nullopt);
   if (acknowledged && action == HandAction::move) arm_.set_finger_goal(position);

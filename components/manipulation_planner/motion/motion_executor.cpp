@@ -14,7 +14,7 @@ constexpr double kSameGoal = 1e-6;        // [rad]
 constexpr double kMaxDuration = 600;      // a motion this long has been forgotten by everybody [s]
 constexpr double kAttemptPause = 0.3;     // before the next attempt [s]
 constexpr double kMaxRetreatRatio = 1.5;  // of the retreat distance, from people
-constexpr double kRetreatRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
+constexpr double kYieldRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
 
 /// Returns the sum of the max norms of the segments [rad].
 double length_of(const std::vector<Vector>& waypoints) {
@@ -200,7 +200,7 @@ static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& 
   std::vector<Vector> goals =
       parts.retreat.steps_away(start, T_world_base, people, kMaxRetreatRatio * distance);
   std::reverse(goals.begin(), goals.end());
-  for (const double ratio : kRetreatRatios) {
+  for (const double ratio : kYieldRatios) {
     for (const Vector3& direction : retreat_directions_from(parts, touched)) {
       Pose T = parts.arm.T_world_tool();
       T.translation() += ratio * distance * direction;

@@ -10,10 +10,10 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSure = 0.3;                // confidence of a joint that measures
-constexpr int kAverageOver = 60;             // looks
-constexpr double kCorrection = 0.02;         // [m]
-constexpr double kLeast = 0.6, kMost = 2.2;  // [m]
+constexpr double kSureJoint = 0.3;                      // confidence of a joint that measures
+constexpr int kAverageOver = 60;                        // looks
+constexpr double kCorrection = 0.02;                    // [m]
+constexpr double kMinStature = 0.6, kMaxStature = 2.2;  // [m]
 
 constexpr std::array<std::pair<const char*, const char*>, 13> kBones = {
     {{"l_shoulder", "l_elbow"},
@@ -57,7 +57,7 @@ void BodySize::see(const ObservedPerson& body) {
   std::array<const ObservedJoint*, kBodyJoints.size()> seen{};
   for (const ObservedJoint& joint : body.joints)
     if (const int i = body_joint_index(joint.name);
-        i >= 0 && joint.confidence >= kSure && joint.position.allFinite())
+        i >= 0 && joint.confidence >= kSureJoint && joint.position.allFinite())
       seen[static_cast<std::size_t>(i)] = &joint;
   std::vector<double> said;
   for (const Bone& bone : bones()) {
@@ -69,7 +69,7 @@ void BodySize::see(const ObservedPerson& body) {
   if (said.empty()) return;
   const auto middle = said.begin() + static_cast<std::ptrdiff_t>(said.size() / 2);
   std::nth_element(said.begin(), middle, said.end());
-  if (!(*middle >= kLeast && *middle <= kMost)) return;
+  if (!(*middle >= kMinStature && *middle <= kMaxStature)) return;
   samples_ = std::min(samples_ + 1, kAverageOver);
   mean_ += (*middle - mean_) / samples_;
   if (std::abs(mean_ - stature_) > kCorrection) stature_ = mean_;

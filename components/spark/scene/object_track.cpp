@@ -13,7 +13,7 @@ constexpr double kSameMove = 0.004;       // [m] a sample this near the estimate
 constexpr double kSameTurn = 0.06;        // [rad] and turned by no more
 constexpr int kObjectAverageOver = 15;    // [samples]
 constexpr double kVelocityMemory = 0.06;  // [s]
-constexpr double kFastest = 2.5;          // [m/s] of what somebody carries
+constexpr double kFastestObject = 2.5;    // [m/s] of what somebody carries
 constexpr double kLeap = 0.1;             // [m] beyond that a thing has jumped
 constexpr double kTrust = 0.2;            // [s] a source silent for longer is not believed
 constexpr double kAgree = 0.01;           // [m] two sources may differ by this
@@ -78,7 +78,7 @@ void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTrac
         return (sample.T_world_object.translation() - track.last_seen_at).norm();
       };
       const double possible =
-          kLeap + kFastest * to_seconds(at - std::min(a->second.seen, b->second.seen));
+          kLeap + kFastestObject * to_seconds(at - std::min(a->second.seen, b->second.seen));
       const bool leapt =
           apart(observed[i], a->second) > possible && apart(observed[k], b->second) > possible;
       if (leapt && apart(observed[i], b->second) < possible &&
@@ -106,7 +106,7 @@ bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
                 double doubt_time) {
   const double leap = (observed.T_world_object.translation() - track.last_seen_at).norm();
-  if (track.samples > 0 && leap > kLeap + kFastest * to_seconds(seen - track.seen)) {
+  if (track.samples > 0 && leap > kLeap + kFastestObject * to_seconds(seen - track.seen)) {
     track.jump = leap;
     track.jump_until = seen + from_seconds(doubt_time);
   }

@@ -219,7 +219,7 @@ json describe(const RobotModel& robot) {
           {"groups", groups}};
 }
 
-void print(const json& info) {
+void print_model(const json& info) {
   std::printf("%s: %zu links from %s, %zu joints, %zu axes, %zu shapes, %.2f kg\n",
               info["name"].get<std::string>().c_str(), info["links"].get<std::size_t>(),
               info["root"].get<std::string>().c_str(), info["joints"].get<std::size_t>(),
@@ -299,7 +299,7 @@ void add_model_commands(CLI::App& app, int& exit_code) {
     if (json_wanted(options->as_json))
       std::cout << info.dump() << '\n';
     else
-      print(info);
+      print_model(info);
     exit_code = 0;
   });
   CLI::App* fk = add("fk", "Poses of all links in the root frame for joint values on stdin");
