@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMaxStraightTurn = 0.9;  // of one axis; with more the tool swings around [rad]
 constexpr double kRetreatRatios[] = {1.0, 0.75, 0.5, 0.3};  // of the retreat distance
-constexpr double kLiftRatios[] = {1.0, 0.85};               // of the lift height
+constexpr double kLiftRatios[] = {1.0, 0.85, 0.6, 0.4};     // of the lift height
 
 /// Lifts what was grasped straight up.
 Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string& for_human) {
