@@ -1,5 +1,5 @@
 # After the main job the person holds the mug. Asked for it, the person hands it back; the robot puts it down and gives it again.
-start give_mug seed 4
+start back_and_forth seed 4
 wait ready within 15s
 task give mug
 expect task done within 70s
