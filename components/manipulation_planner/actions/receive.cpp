@@ -23,7 +23,7 @@ constexpr double kSameDistance =
     0.5;  // distances of the arm's farthest axis that count as equal [rad]
 constexpr double kMinEpsilon = 0.03;  // of a grasp that does not slip as the object is carried
 constexpr double kWeakPenalty = 1.5;  // distance that avoids a grasp below kMinEpsilon [rad]
-constexpr double kSlipPenalty = 6.0;  // likewise a grasp that lacks kMaxLack of grip [rad]
+constexpr double kSlipPenalty = 6.0;  // distance that avoids a grip short of kMaxLack [rad]
 constexpr double kMaxLack = 2.0;      // of the margin of a grip below 0, worst that counts [N]
 constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the giver waits
 
