@@ -63,7 +63,7 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
 /// Offers the object until the receiver takes it; else the hand keeps it.
 Routine<Outcome> offer(Parts& parts, const std::string& object, const std::string& receiver) {
   parts.action.phase = ActionPhase::offer;
-  parts.action.exchange_point = parts.held.T_world_object().translation();
+  show_offered(parts, receiver, parts.action);
   parts.action.exchange_engaged = true;
   const Vector open = opening(parts);
   const double timeout = parts.settings.offer_timeout;

@@ -52,6 +52,17 @@ void show(const OtpPose& pose, ActionStatus& action) {
   action.partner_strain = pose.partner ? pose.partner->strain : 0.0;
 }
 
+void show_offered(const Parts& parts, const std::string& receiver, ActionStatus& action) {
+  OtpPose offered;
+  offered.T_world_object = parts.held.T_world_object();
+  const Person* person = parts.now.person(receiver);
+  const auto arm = person != nullptr ? human_arm(*person, Side::right) : std::nullopt;
+  const auto& grasp = parts.held.grasp();
+  if (arm && grasp)
+    offered.partner = easiest_partner(*arm, grasp->partners, offered.T_world_object);
+  show(offered, action);
+}
+
 void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion) {
   motion.goals.clear();
   for (const auto& pose : search.poses) motion.goals.push_back(pose.arm_joints);

@@ -7,7 +7,6 @@
 
 #include "common/cost/reach_check.hpp"
 #include "common/model/human/human_body.hpp"
-#include "common/model/human/human_wrist.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -123,17 +122,9 @@ class OtpCosts {
   }
   /// Returns whether grasps of the person count: some are known, of a body whose arm is known.
   bool has_partners() const { return !partners_.empty() && right_arm_ && settings_.w_wrist > 0; }
-  /// Returns the grasp in which the person takes the object with the smallest strain; nullopt: in
-  /// none, wrist or arm do not get there.
+  /// Returns the easiest grasp of the person for an object at a pose; nullopt: there is none.
   std::optional<PartnerPose> partner_at(const Pose& T_world_object) const {
-    std::optional<PartnerPose> best;
-    for (const PartnerGrasp& partner : partners_) {
-      const Pose T_world_wrist = T_world_object * partner.T_object_wrist;
-      const auto wrist = wrist_posture(*right_arm_, T_world_wrist);
-      if (!wrist || wrist->strain > 1 || (best && best->strain <= wrist->strain)) continue;
-      best = PartnerPose{partner.id, T_world_wrist, wrist->strain};
-    }
-    return best;
+    return easiest_partner(*right_arm_, partners_, T_world_object);
   }
   /// Cost of how the person has to hold wrist and arm.
   double of_partner(const std::optional<PartnerPose>& partner) const {
@@ -261,6 +252,19 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
                  std::to_string(unreachable) + " of " + std::to_string(out.tried) +
                  " poses beyond the robot's reach";
   return out;
+}
+
+std::optional<PartnerPose> easiest_partner(const HumanArm& arm,
+                                           const std::vector<PartnerGrasp>& partners,
+                                           const Pose& T_world_object) {
+  std::optional<PartnerPose> best;
+  for (const PartnerGrasp& partner : partners) {
+    const Pose T_world_wrist = T_world_object * partner.T_object_wrist;
+    const auto wrist = wrist_posture(arm, T_world_wrist);
+    if (!wrist || wrist->strain > 1 || (best && best->strain <= wrist->strain)) continue;
+    best = PartnerPose{partner.id, T_world_wrist, wrist->strain};
+  }
+  return best;
 }
 
 std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object,

@@ -11,6 +11,7 @@
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/human/human_wrist.hpp"
 #include "common/model/robot_model.hpp"
 
 namespace handsel::manipulation_planner {
@@ -54,6 +55,12 @@ struct OtpQuery {
 /// normals, object frame): the object cannot be drawn out in these directions. Empty when more than
 /// two fingers hold the object: they open away from it.
 std::vector<Vector3> barred_directions(const Grasp& grasp);
+
+/// Returns the grasp in which a person takes an object at `T_world_object` with the smallest strain
+/// of wrist and arm; nullopt: in none, wrist or arm do not get there.
+std::optional<PartnerPose> easiest_partner(const HumanArm& arm,
+                                           const std::vector<PartnerGrasp>& partners,
+                                           const Pose& T_world_object);
 
 /// Searches object transfer points for what `arm` holds. `q`: all axes, near which configurations
 /// are searched [rad, m]. The object keeps its tilt; only its place and heading change. Places in,
