@@ -26,7 +26,7 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
                               const Pose* T_world_object);
 /// Reports the pose that a handover is planned for, and the grasp of the person there.
 void show(const OtpPose& pose, ActionStatus& action);
-/// Reports where the object is held out now, and the easiest grasp of the receiver there: of
+/// Reports where the object is offered now, and the easiest grasp of the receiver there: of
 /// several poses found, the arm goes to the one that it reaches first.
 void show_offered(const Parts& parts, const std::string& receiver, ActionStatus& action);
 /// Sets the goals of a motion to what was found for the receiver as they are now.
