@@ -25,6 +25,8 @@ object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0.001 }
 timeout: 90
 )";
 constexpr double kPace = 0.8;  // of the person [m/s]
+// Of the wrist of a person from the middle of the mug, in any grasp of the mug [m].
+constexpr double kMaxWrist = 0.22;
 
 struct Carried {
   bool offered{};
@@ -138,7 +140,7 @@ TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_s
                 run.has_partner, run.partner_strain, run.partner_distance);
     EXPECT_TRUE(run.has_partner) << "no grasp of the person was chosen with that of the robot";
     EXPECT_LE(run.partner_strain, 1.0);
-    EXPECT_LT(run.partner_distance, 0.3) << "the wrist did not follow the exchange point";
+    EXPECT_LT(run.partner_distance, kMaxWrist) << "the wrist did not follow the exchange point";
     reached += run.reached;
     led_over += run.moved > 0.15 && run.switches > 0 && run.standing < 0.05;
   }
