@@ -14,7 +14,7 @@ Parts::Parts(const settings::ManipulationPlannerSettings& s,
       link(arm, now, waiting, outbox, clients.ids, settings),
       hand(arm, link, now, waiting, action, settings),
       retreat(arm.robot(), arm.group()),
-      offers(now, {settings.held_out, settings.offer_still}),
+      offers(now, offer_bounds(settings)),
       area(arm, retreat, now),
       monitor(arm, held, offers, area, now, settings),
       replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost)) {}

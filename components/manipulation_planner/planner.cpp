@@ -63,7 +63,8 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   parts_.now.set_time(now);
   parts_.waiting.set_now(now);
   parts_.monitor.update();
-  if (parts_.offers.has_accepted()) parts_.offers.update(parts_.arm.T_world_tool().translation());
+  if (parts_.now.set_point().size() == parts_.arm.robot().dof())
+    parts_.offers.update(parts_.arm.T_world_tool().translation());
   parts_.link.repeat_stop();
   auto& path = parts_.clients.path;
   if (path.take_dropped()) {

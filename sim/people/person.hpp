@@ -120,6 +120,8 @@ class PersonModel {
   /// Whether a handover is under way: from reach or offer until the object is withdrawn or
   /// the hand is back. Never for a fetcher, which takes an object by itself.
   bool in_handover() const;
+  /// Whether the person offers the object at rest: from the end of the motion until the withdrawal.
+  bool is_offering() const;
   /// Where the handover hand is wanted; axes turn with the body.
   const BodyState& hand() const { return hands_[index()]; }
   const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right

@@ -42,6 +42,10 @@ double PersonModel::reach_time() const {
   return wavers ? 2 * kPart * duration_ + settings_.behaviour.hesitation : duration_;
 }
 
+bool PersonModel::is_offering() const {
+  return phase_ == PersonPhase::offering && since() >= reach_time();
+}
+
 /// A giver offers unasked, a partner when the robot has asked for a reaction time.
 bool PersonModel::is_to_offer() const {
   if (refusing_) return false;

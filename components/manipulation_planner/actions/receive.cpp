@@ -13,9 +13,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kOfferTime = 0.25;     // for which an offer must last [s]
-constexpr double kLateOfferTime = 1.0;  // for which an object before the body must be at rest [s]
-constexpr double kLongWait = 3.0;  // without an offer, before such an object counts as offered [s]
+constexpr double kClearAfter = 2.0;     // without an offer, before the offer area is cleared [s]
+constexpr double kLongWait = 8.0;       // without an offer, before weaker signs count [s]
 constexpr double kObserveAgain = 0.02;  // [s]
 constexpr double kMaxShift = 0.03;      // of an object, after which its grasps are outdated [m]
 constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
@@ -28,26 +27,19 @@ constexpr double kMaxLack = 2.0;      // of the margin of a grip below 0, worst 
 constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the giver waits
 
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
-Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wanted,
-                                          const std::string& giver, TimePoint deadline) {
-  std::optional<Offer> offer;
+Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver,
+                                          TimePoint deadline) {
   bool has_cleared = false;
-  parts.offers.clear();
+  parts.offers.await();
   parts.action.exchange_engaged = false;
-  parts.offers.set_waited_long(false);
   const TimePoint began = parts.now.time();
-  for (TimePoint since = began; parts.now.time() < deadline;) {
+  while (parts.now.time() < deadline) {
     parts.action.phase = ActionPhase::watching_for_offer;
-    const std::optional<Offer> seen =
-        parts.offers.find(wanted, giver, parts.arm.T_world_tool().translation());
-    if (!seen || seen != offer) since = parts.now.time();
-    offer = seen;
-    const double lasted = to_seconds(parts.now.time() - since);
-    if (offer && lasted >= (parts.offers.waited_long() ? kLateOfferTime : kOfferTime))
-      co_return offer;
+    const std::optional<Offer> offer = parts.offers.made();
+    if (offer) co_return offer;
     const double waited = to_seconds(parts.now.time() - began);
     parts.offers.set_waited_long(waited > kLongWait);
-    if (!offer && !has_cleared && waited > kLongWait + kLateOfferTime &&
+    if (!has_cleared && !parts.offers.is_seen() && waited > kClearAfter &&
         parts.area.is_occupied(giver)) {
       has_cleared = true;
       Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);
@@ -189,7 +181,7 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   TimePoint deadline = parts.now.time() + from_seconds(timeout);
   const TimePoint patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
-    std::optional<Offer> offer = co_await await_offer(parts, wanted, giver, deadline);
+    std::optional<Offer> offer = co_await await_offer(parts, giver, deadline);
     if (!offer) break;
     parts.offers.accept(*offer);
     parts.offers.set_hand_at_offer(false);

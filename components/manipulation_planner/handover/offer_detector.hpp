@@ -1,9 +1,12 @@
 // Detects that a person offers an object, with hysteresis. Pure.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
+#include "common/config/settings/manipulation_planner.hpp"
+#include "components/manipulation_planner/handover/object_trail.hpp"
 #include "components/manipulation_planner/snapshot.hpp"
 
 namespace handsel::manipulation_planner {
@@ -15,11 +18,20 @@ struct Offer {
   bool operator==(const Offer&) const = default;
 };
 
-/// Bounds of an offer.
+/// Bounds of an offer. Extension: level distance of the object from the shoulder of the hand that
+/// holds the object, over the stature of its holder. Own method.
 struct OfferBounds {
-  double min_distance{};  ///< level distance of an offered object from the torso, at least [m]
-  double max_speed{};     ///< of an offered object [m/s]
+  double min_extension{};   ///< of an object that is far from the robot's hand
+  double near_extension{};  ///< of one within `near_hand`: people hold back before a hand
+  double near_hand{};       ///< distance of the object from the robot's hand [m]
+  double max_height{};  ///< of the object above that shoulder, over the stature; may be negative
+  double max_angle{};   ///< between the directions to the object and to the robot [rad]
+  double max_speed{};   ///< of an offered object [m/s]
+  double rest_time{};   ///< for which it must be at rest at least [s]
 };
+
+/// Returns the bounds of the settings.
+OfferBounds offer_bounds(const settings::ManipulationPlannerSettings& settings);
 
 class OfferDetector {
  public:
@@ -51,8 +63,15 @@ class OfferDetector {
   const Offer& accepted() const { return accepted_; }
   /// Returns whether an offer is accepted.
   bool has_accepted() const { return !accepted_.giver.empty(); }
-  /// Observes, each step, whether the accepted offer holds.
+  /// Begins to wait for an offer: none is accepted, and none has been seen.
+  void await();
+  /// Observes, each step, whether the accepted offer holds or, with none accepted, who offers what
+  /// was asked for. `p_hand`: the robot's hand, world [m].
   void update(const Vector3& p_hand);
+  /// Returns the offer that has been at rest for long enough, as of the last update().
+  std::optional<Offer> made() const;
+  /// Returns whether an offer was seen at the last update(), at rest or not.
+  bool is_seen() const { return seen_.has_value(); }
   /// Returns whether the accepted offer holds, or held so recently that noise may hide it.
   bool is_still_offered() const;
   /// Returns whether the accepted offer has not held for so long that it was withdrawn.
@@ -67,14 +86,25 @@ class OfferDetector {
   bool is_engaged() const { return hand_at_offer_ || is_still_offered(); }
 
  private:
-  double min_distance(const Person& person, const SceneObject& object, bool is_fact) const;
+  double min_extension(const Person& person, const SceneObject& object,
+                       const Vector3& p_hand) const;
+  void follow_objects();
+  std::optional<Offer> find(const std::string& object, const std::string& giver,
+                            const Vector3& p_hand, double max_speed) const;
+  bool is_above_support(const Offer& offer) const;
+  bool is_for_robot(const Person& person, const Vector3& p_shoulder, const Vector3& p_object,
+                    const Vector3& p_hand) const;
 
   const Snapshot& now_;
   OfferBounds bounds_;
   Offer asked_, accepted_;
-  bool waited_long_{};
+  bool waited_long_{}, is_seen_weakly_{};
   bool hand_at_offer_{};
+  double extension_{};  // when the offer was accepted
   TimePoint offered_at_{};
+  std::optional<Offer> seen_;  // at rest or not, not accepted yet
+  TimePoint seen_since_{};
+  std::map<std::string, ObjectTrail> trails_;  // of the objects in people's hands, by id
 };
 
 }  // namespace handsel::manipulation_planner

@@ -2,12 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kHeldOut = 0.3, kMaxSpeed = 0.1;
+constexpr double kMaxSpeed = 0.06;
+constexpr OfferBounds kBounds{.min_extension = 0.27,
+                              .near_extension = 0.20,
+                              .near_hand = 0.43,
+                              .max_height = -0.05,
+                              .max_angle = 0.65,
+                              .max_speed = kMaxSpeed,
+                              .rest_time = 0.2};
 
 class OfferDetectorTest : public testing::Test {
  protected:
@@ -16,38 +25,55 @@ class OfferDetectorTest : public testing::Test {
     scene_.objects.push_back({"mug", "mug", Pose::Identity(), Holder::human, "anna", 0});
     Person anna;
     anna.id = "anna";
+    anna.stature = 1.75;
     anna.joints = standing_body({1.5, 0, 0}, 3.14159, 1.75);
     people_.people.push_back(anna);
-    hold_at(0.35);
-    set_fact(true);
+    hold_at(0.30);
   }
-  void put(const Vector3& from_torso) {
-    Pose& T = scene_.objects[0].T_world_object;
-    T = make_pose(torso().position + from_torso);
+  /// The mug in the right hand, so far from the shoulder over the stature, `aside` [rad] from the
+  /// direction ahead, `up` over the stature above the shoulder.
+  void hold_at(double extension, double aside = 0, double up = -0.15) {
+    Person& anna = people_.people[0];
+    const Vector3 p =
+        joint("r_shoulder").position +
+        anna.stature * Vector3(-extension * std::cos(aside), extension * std::sin(aside), up);
+    scene_.objects[0].T_world_object = make_pose(p);
+    joint("r_hand").position = p + Vector3(0.08, 0, 0);
+    show();
+  }
+  void show() {
     now_.on(scene_);
     now_.on(people_);
-  }
-  /// The mug toward the robot, `distance` [m] from the torso.
-  void hold_at(double distance) { put({-distance, 0, 0}); }
-  void set_fact(bool holds) {
-    Facts facts;
-    if (holds) facts.facts = {{FactKind::offering, "anna", "mug", 0.0, 1.0}};
-    now_.on(facts);
   }
   void at(double time) {
     now_.set_time(TimePoint{} + from_seconds(time));
     detector_.update(p_hand_);
   }
-  bool is_offered() const { return detector_.find("", "", p_hand_).has_value(); }
-  BodyJoint& torso() {
-    return people_.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))];
+  /// Moves the mug from one extension to another with a minimum-jerk profile, and steps until
+  /// `rest` [s] later. Returns when it was found, since the end of the motion [s]; negative: never.
+  double bring(double from, double to, double rest) {
+    constexpr double kDuration = 0.9;
+    const double begin = clock_;
+    for (; clock_ < begin + kDuration + rest; clock_ += 0.02) {
+      const double s = std::min(1.0, (clock_ - begin) / kDuration);
+      hold_at(from + s * s * s * (10 - 15 * s + 6 * s * s) * (to - from));
+      at(clock_);
+      if (detector_.made()) return clock_ - begin - kDuration + 1;
+    }
+    return -1;
   }
+  bool is_offered() const { return detector_.find("", "", p_hand_).has_value(); }
+  BodyJoint& joint(const char* name) {
+    return people_.people[0].joints[static_cast<std::size_t>(body_joint_index(name))];
+  }
+  BodyJoint& torso() { return joint("torso"); }
 
   Scene scene_;
   HumanState people_;
   Snapshot now_{ObjectLibrary{}};
-  OfferDetector detector_{now_, {kHeldOut, kMaxSpeed}};
-  Vector3 p_hand_{0.5, 0, 1.1};
+  OfferDetector detector_{now_, kBounds};
+  Vector3 p_hand_{0.35, 0, 1.1};
+  double clock_{1.0};
 };
 
 TEST_F(OfferDetectorTest, finds_who_offers_what_and_only_that) {
@@ -58,35 +84,95 @@ TEST_F(OfferDetectorTest, finds_who_offers_what_and_only_that) {
   EXPECT_FALSE(detector_.find("box", "", p_hand_));
   EXPECT_FALSE(detector_.find("", "ben", p_hand_));
   scene_.objects[0].holder = Holder::surface;
-  hold_at(0.35);
+  hold_at(0.30);
   EXPECT_FALSE(is_offered());
 }
 
 TEST_F(OfferDetectorTest, an_object_in_motion_is_no_offer) {
   scene_.objects[0].velocity = {0, 0, 2 * kMaxSpeed};
-  hold_at(0.35);
+  hold_at(0.30);
   EXPECT_FALSE(is_offered());
 }
 
-TEST_F(OfferDetectorTest, an_accepted_offer_holds_nearer_to_the_body) {
-  hold_at(kHeldOut - 0.01);
-  EXPECT_FALSE(is_offered());
-  hold_at(kHeldOut + 0.01);
-  ASSERT_TRUE(is_offered());
-  detector_.accept({"mug", "anna"});
-  hold_at(kHeldOut - 0.01);
+TEST_F(OfferDetectorTest, what_is_kept_raised_or_held_aside_is_no_offer) {
+  hold_at(0.18);
+  EXPECT_FALSE(is_offered()) << "before the body";
+  hold_at(0.30, 0, 0.02);
+  EXPECT_FALSE(is_offered()) << "at the mouth or before the eyes";
+  hold_at(0.30, 1.2);
+  EXPECT_FALSE(is_offered()) << "aside";
+  hold_at(0.30, 0.3);
   EXPECT_TRUE(is_offered());
-  hold_at(kHeldOut - 0.02);
+}
+
+TEST_F(OfferDetectorTest, what_is_held_out_to_another_person_is_no_offer) {
+  Person ben = people_.people[0];
+  ben.id = "ben";
+  ben.joints = standing_body({0.75, 0.25, 0}, 0, 1.75);
+  people_.people.push_back(ben);
+  hold_at(0.30, 0.1);
+  EXPECT_FALSE(is_offered());
+  people_.people.pop_back();
+  hold_at(0.30, 0.1);
+  EXPECT_TRUE(is_offered());
+}
+
+TEST_F(OfferDetectorTest, before_the_robots_hand_a_bent_arm_counts) {
+  hold_at(0.23);
+  EXPECT_FALSE(is_offered());
+  p_hand_ = scene_.objects[0].T_world_object.translation() - Vector3(0.42, 0, 0);
+  EXPECT_TRUE(is_offered());
+}
+
+TEST_F(OfferDetectorTest, an_accepted_offer_holds_nearer_to_the_body) {
+  detector_.accept({"mug", "anna"});
+  hold_at(0.275);
+  EXPECT_TRUE(is_offered());
+  hold_at(0.25);
   EXPECT_FALSE(is_offered());
   detector_.clear();
-  hold_at(kHeldOut - 0.01);
+  hold_at(0.265);
   EXPECT_FALSE(is_offered());
+}
+
+TEST_F(OfferDetectorTest, an_offer_is_made_soon_after_the_object_has_come_to_rest) {
+  const double found = bring(0.15, 0.30, 1.0);
+  EXPECT_GT(found, 1.0);
+  EXPECT_LT(found, 1.25);
+}
+
+TEST_F(OfferDetectorTest, a_motion_out_and_back_at_once_is_no_offer) {
+  EXPECT_LT(bring(0.15, 0.30, 0.0), 0);
+  EXPECT_LT(bring(0.30, 0.15, 0.5), 0);
+}
+
+TEST_F(OfferDetectorTest, what_was_moved_about_must_rest_longer) {
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LT(bring(0.20, 0.30, 0.0), 0);
+    if (i < 2) {
+      EXPECT_LT(bring(0.30, 0.20, 0.0), 0);
+    }
+  }
+  const double found = bring(0.30, 0.30, 0.0);
+  EXPECT_GT(found, 0) << "found at last";
+}
+
+TEST_F(OfferDetectorTest, above_a_support_an_object_must_rest_longer) {
+  const Vector3 p = scene_.objects[0].T_world_object.translation();
+  SceneBox box;
+  box.id = "table";
+  box.supports = true;
+  box.size = {0.6, 0.6, 0.1};
+  box.T_world_box = make_pose(p - Vector3(0, 0, 0.2));
+  scene_.boxes.push_back(box);
+  EXPECT_LT(bring(0.15, 0.30, 0.3), 0);
+  EXPECT_GE(bring(0.30, 0.30, 0.5), 0);
 }
 
 TEST_F(OfferDetectorTest, an_offer_hidden_by_noise_holds_and_a_longer_gap_ends_it) {
   at(1.0);
   detector_.accept({"mug", "anna"});
-  hold_at(0.1);
+  hold_at(0.15);
   at(1.1);
   EXPECT_TRUE(detector_.is_still_offered());
   at(1.3);
@@ -94,48 +180,36 @@ TEST_F(OfferDetectorTest, an_offer_hidden_by_noise_holds_and_a_longer_gap_ends_i
   EXPECT_FALSE(detector_.is_withdrawn());
   at(1.7);
   EXPECT_TRUE(detector_.is_withdrawn());
-  hold_at(0.35);
+  hold_at(0.30);
   at(1.8);
   EXPECT_TRUE(detector_.is_still_offered());
   EXPECT_FALSE(detector_.is_withdrawn());
 }
 
-TEST_F(OfferDetectorTest, a_bent_arm_counts_only_of_who_was_asked_and_toward_the_robot) {
-  set_fact(false);
-  hold_at(kHeldOut + 0.03);
-  EXPECT_FALSE(is_offered());
+TEST_F(OfferDetectorTest, after_a_long_wait_what_is_before_the_robots_hand_counts) {
+  hold_at(0.15);
+  p_hand_ = scene_.objects[0].T_world_object.translation() - Vector3(0.4, 0, 0);
   detector_.set_asked({"mug", "anna"});
-  EXPECT_TRUE(is_offered());
-  hold_at(kHeldOut + 0.01);
-  EXPECT_FALSE(is_offered());
-  put({0, kHeldOut + 0.03, 0});
-  EXPECT_FALSE(is_offered()) << "beside the body";
-  put({0, 0.45, 0});
-  EXPECT_TRUE(is_offered()) << "farther out than anything is kept";
-}
-
-TEST_F(OfferDetectorTest, after_a_long_wait_an_object_before_the_body_counts) {
-  hold_at(kHeldOut - 0.02);
   EXPECT_FALSE(is_offered());
   detector_.set_waited_long(true);
   EXPECT_TRUE(is_offered());
-  hold_at(kHeldOut - 0.04);
+  p_hand_.x() -= 0.3;
   EXPECT_FALSE(is_offered());
 }
 
 TEST_F(OfferDetectorTest, a_fast_step_or_motion_into_the_hand_is_an_approach) {
   detector_.accept({"mug", "anna"});
-  p_hand_ = torso().position - Vector3(0.65, 0, 0);  // 0.3 m before the mug
+  p_hand_ = scene_.objects[0].T_world_object.translation() - Vector3(0.3, 0, 0);
   EXPECT_FALSE(detector_.is_giver_approaching(p_hand_));
   torso().velocity = {-0.5, 0, 0};
-  hold_at(0.35);
+  hold_at(0.30);
   EXPECT_TRUE(detector_.is_giver_approaching(p_hand_));
   torso().velocity = {0.5, 0, 0};
-  hold_at(0.35);
+  hold_at(0.30);
   EXPECT_FALSE(detector_.is_giver_approaching(p_hand_)) << "away from the hand";
   torso().velocity.setZero();
   scene_.objects[0].velocity = {-0.5, 0, 0};
-  hold_at(0.35);
+  hold_at(0.30);
   EXPECT_TRUE(detector_.is_giver_approaching(p_hand_));
   p_hand_.x() -= 0.3;
   EXPECT_FALSE(detector_.is_giver_approaching(p_hand_)) << "far from the hand";
@@ -144,7 +218,7 @@ TEST_F(OfferDetectorTest, a_fast_step_or_motion_into_the_hand_is_an_approach) {
 TEST_F(OfferDetectorTest, the_hand_at_the_object_is_engaged_without_an_offer) {
   at(1.0);
   detector_.accept({"mug", "anna"});
-  hold_at(0.1);
+  hold_at(0.15);
   at(2.0);
   EXPECT_FALSE(detector_.is_engaged());
   detector_.set_hand_at_offer(true);

@@ -98,7 +98,7 @@ TEST(ManipulationPlanner, an_offer_whose_measure_trembles_does_not_end) {
   rig.share = 0.15;
   rig.hold_out();
   rig.facts.facts.clear();
-  Vector3 p_mug{1.145, 0, 1.1};  // 2.5 cm beyond what is kept before the body
+  Vector3 p_mug{0.995, 0.1, 1.1};  // 3 cm beyond the least extension
   rig.scene.objects[0].T_world_object.translation() = p_mug;
   rig.start(ActionKind::receive);
   rig.run_until("approach");

@@ -1,0 +1,356 @@
+// The offer detector beside ground truth: labelled sequences of what people do with an object, seen
+// by emulated sensors, followed by SPARK on a LocalBus.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+#include "common/bus/local_bus.hpp"
+#include "common/messages/perception.hpp"
+#include "common/messages/robot.hpp"
+#include "components/manipulation_planner/handover/offer_detector.hpp"
+#include "components/spark/node.hpp"
+#include "sim/sensing/sensors.hpp"
+#include "tests/support/acts/acted_sequence.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Act;
+using test::ActedSequence;
+
+// Limits of the figures, not yet the target of 0.98 each: they fall by some errors of 200
+// sequences.
+constexpr double kMinPrecision = 0.90, kMinRecall = 0.94;
+constexpr double kStep = 0.01;         // of the ground truth [s]
+constexpr double kPlannerStep = 0.02;  // [s]
+constexpr double kLongWait = 8.0;      // as the action receive has it [s]
+constexpr double kMaxDelay = 0.3;      // [s]
+constexpr double kEarly = 0.3;         // before the rest, in which a detection counts as right [s]
+constexpr double kRestSpeed = 0.02;    // of an object at rest [m/s]
+constexpr double kRestTime = 0.3;      // for which an offer must be at rest to begin [s]
+constexpr double kMaxOutlast = 1.0;    // by which a detection may outlast its offer [s]
+
+fs::path deploy() { return fs::path(HANDSEL_SOURCE_DIR) / "deploy"; }
+
+OfferBounds shipped_bounds() {
+  return offer_bounds(
+      settings::read_manipulation_planner_settings(deploy() / "config/manipulation_planner.txtpb"));
+}
+
+struct World {
+  std::shared_ptr<const RobotModel> robot =
+      std::make_shared<const RobotModel>(RobotModel::load(deploy() / "robots/jido/jido.txtpb"));
+  ObjectModel mug = ObjectModel::load(deploy() / "objects/mug/mug.txtpb");
+  Vector3 p_hand = robot->link_pose(robot->rest_configuration(), robot->tool_link()).translation();
+};
+
+const World& world() {
+  static const World one;
+  return one;
+}
+
+/// A span of time [s]; of an offer from when the object was at rest first.
+struct Span {
+  double begin{}, end{};
+  bool unclear{};
+};
+
+/// What became of one sequence.
+struct Result {
+  int right{}, wrong{}, offers{}, in_time{}, unclear{};
+  std::vector<double> delays;               // [s]
+  std::map<std::string, int> wrong_during;  // act -> count
+  std::string story;                        // what went wrong, a line each
+  void add(const Result& other) {
+    right += other.right, wrong += other.wrong, offers += other.offers;
+    in_time += other.in_time, unclear += other.unclear;
+    delays.insert(delays.end(), other.delays.begin(), other.delays.end());
+    for (const auto& [act, count] : other.wrong_during) wrong_during[act] += count;
+  }
+  double precision() const { return right + wrong > 0 ? double(right) / (right + wrong) : 1; }
+  double recall() const { return offers > 0 ? double(in_time) / offers : 1; }
+};
+
+/// Sensors of a sequence: as in the scenarios, every fourth as in give_mug_rough.
+struct Tracking {
+  sim::SensorSettings people, objects;
+  explicit Tracking(std::uint64_t seed) {
+    const bool rough = seed % 4 == 3;
+    people.source = "kinect";
+    people.latency = rough ? 0.06 : 0.04;
+    people.noise = rough ? 0.01 : 0.004;
+    objects.source = "object_tracker";
+    objects.latency = rough ? 0.05 : 0.04;
+    objects.noise = 0.001;
+    if (rough) {
+      people.jitter = 0.01;
+      people.dropout = objects.dropout = 0.05;
+      people.joint_dropout = 0.02;
+      people.burst_rate = 0.05;
+      people.burst_length = 0.1;
+    }
+    people.coverage = objects.coverage = {{-5, -5, -0.1}, {5, 5, 2.5}};
+  }
+};
+
+/// Runs one sequence through sensors, SPARK and the detector.
+class Watched {
+ public:
+  Watched(ActedSequence& acts, std::uint64_t seed, bool is_asked, const std::string& model)
+      : acts_(acts),
+        tracking_(seed),
+        people_(tracking_.people, seed),
+        objects_(tracking_.objects, seed + 1),
+        network_(seed),
+        model_(model) {
+    if (is_asked) detector_.set_asked({"thing", "anna"});
+    NodeContext context;
+    context.robot = world().robot;
+    context.objects = [](const std::string& name) {
+      return name == "mug" ? &world().mug : nullptr;
+    };
+    context.settings = folder_.path();
+    fs::copy(deploy() / "config/spark.txtpb", folder_.path());
+    context.scenario = folder_.path() / "place.txtpb";
+    const test::Counter counter = test::counter_of(seed);
+    std::ofstream(context.scenario)
+        << "boxes { id: \"counter\" supports: true pose { xyz { x: " << counter.centre.x()
+        << " y: " << counter.centre.y() << " z: " << counter.centre.z()
+        << " } } size { x: " << counter.size.x() << " y: " << counter.size.y()
+        << " z: " << counter.size.z() << " } }\n";
+    spark_ = std::make_unique<spark::Node>(network_.add("spark"), context);
+    Bus& sim = network_.add("sim");
+    bus_ = &sim;
+    people_out_ = sim.advertise<HumanObservation>();
+    objects_out_ = sim.advertise<ObjectObservation>();
+    robot_out_ = sim.advertise<RobotState>();
+    Bus& planner = network_.add("manipulation_planner");
+    planner.subscribe<Scene>([this](const Scene& scene, const Receipt&) { now_.on(scene); });
+    planner.subscribe<HumanState>(
+        [this](const HumanState& people, const Receipt&) { now_.on(people); });
+    planner.subscribe<Facts>([this](const Facts& facts, const Receipt&) { now_.on(facts); });
+  }
+
+  Result run() {
+    double next = 0;
+    for (clock_ = 0; clock_ < acts_.duration(); clock_ += kStep) {
+      acts_.step(kStep);
+      label();
+      sense();
+      network_.run_until(TimePoint(from_seconds(clock_)));
+      if (clock_ + 1e-9 < next) continue;
+      next += kPlannerStep;
+      detect();
+    }
+    return score();
+  }
+
+ private:
+  void label() {
+    const Vector3 p = acts_.T_world_object().translation();
+    const double speed = clock_ > 0 ? (p - p_before_).norm() / kStep : 0;
+    p_before_ = p;
+    if (acts_.is_offer()) {
+      if (!was_offer_) rest_since_ = clock_;
+      if (!was_offer_) offers_.push_back({-1, clock_, acts_.is_unclear()});
+      if (speed > kRestSpeed) rest_since_ = clock_;
+      if (offers_.back().begin < 0 && clock_ - rest_since_ > kRestTime)
+        offers_.back().begin = rest_since_;
+      offers_.back().end = clock_;
+    }
+    was_offer_ = acts_.is_offer();
+    if (history_.empty() || history_.back().second != acts_.act())
+      history_.emplace_back(clock_, acts_.act());
+  }
+
+  void sense() {
+    sim::Sight sight;
+    sight.people = acts_.people();
+    sight.objects.push_back({"thing", model_, acts_.T_world_object()});
+    if (people_.due(clock_)) people_.observe(clock_, sight);
+    if (objects_.due(clock_)) {
+      objects_.observe(clock_, sight);
+      grips_.emplace_back(clock_, acts_.grips());
+    }
+    const auto stamp_of = [&](double seen) {
+      return bus_->stamp_now() - from_seconds(clock_ - seen).count();
+    };
+    std::vector<sim::Delivery<HumanObservation>> people;
+    people_.collect(clock_, people);
+    for (auto& delivery : people) {
+      delivery.message.stamp = stamp_of(delivery.seen);
+      people_out_->publish(delivery.message);
+    }
+    std::vector<sim::Delivery<ObjectObservation>> objects;
+    objects_.collect(clock_, objects);
+    for (auto& delivery : objects) {
+      delivery.message.stamp = stamp_of(delivery.seen);
+      for (auto& observed : delivery.message.objects) complete(observed, delivery.seen);
+      objects_out_->publish(delivery.message);
+    }
+    if (clock_ + 1e-9 < next_state_) return;
+    next_state_ += 0.1;
+    RobotState state;
+    state.robot = world().robot->name();
+    state.sequence = ++sequence_;
+    state.position = world().robot->rest_configuration();
+    state.velocity = state.effort = state.external_torque = Vector::Zero(state.position.size());
+    robot_out_->publish(state);
+  }
+  /// Adds what an object with force sensors feels, and the shape of one without a model.
+  void complete(ObservedObject& observed, double seen) {
+    if (model_.empty()) observed.primitive = {PrimitiveKind::box, {0.45, 0.03, 0.03}};
+    for (const auto& [at, grips] : grips_)
+      if (at == seen) observed.grips = grips;
+    if (grips_.size() > 20) grips_.pop_front();
+  }
+
+  /// As the action receive does.
+  void detect() {
+    now_.set_time(TimePoint(from_seconds(clock_)));
+    detector_.update(world().p_hand);
+    if (detector_.has_accepted()) {
+      if (detector_.is_still_offered()) found_.back().end = clock_;
+      if (!detector_.is_withdrawn()) return;
+      detector_.await();
+      began_ = clock_;
+      return;
+    }
+    if (const auto offer = detector_.made()) {
+      detector_.accept(*offer);
+      found_.push_back({clock_, clock_});
+      return;
+    }
+    detector_.set_waited_long(clock_ - began_ > kLongWait);
+  }
+
+  Result score() {
+    Result out;
+    std::erase_if(offers_, [&](const Span& s) { return s.begin < 0 || s.end - s.begin < 0.5; });
+    for (const Span& offer : offers_) {
+      if (offer.unclear) {
+        ++out.unclear;
+        continue;
+      }
+      ++out.offers;
+      bool in_time = false;
+      double delay = 1e9;
+      for (const Span& found : found_) {
+        if (found.end < offer.begin || found.begin > offer.end) continue;
+        delay = std::min(delay, found.begin - offer.begin);
+        in_time = in_time || found.begin <= offer.begin + kMaxDelay;
+      }
+      out.in_time += in_time;
+      if (delay < 1e8) out.delays.push_back(delay);
+      if (!in_time) out.story += line("missed", offer, delay);
+    }
+    for (const Span& found : found_) {
+      bool right = false, unclear = false;
+      for (const Span& offer : offers_) {
+        unclear = unclear || (offer.unclear && found.begin < offer.end && found.end > offer.begin);
+        right = right || (found.begin >= offer.begin - kEarly && found.begin <= offer.end &&
+                          found.end <= offer.end + kMaxOutlast);
+      }
+      if (unclear) continue;
+      right ? ++out.right : ++out.wrong;
+      if (right) continue;
+      out.wrong_during[name(act_at(found.begin))] += 1;
+      out.story += line("wrong", found, 0);
+    }
+    return out;
+  }
+  Act act_at(double t) const {
+    Act act{};
+    for (const auto& [at, what] : history_)
+      if (at <= t) act = what;
+    return act;
+  }
+  std::string line(const char* what, const Span& span, double delay) const {
+    char text[160];
+    std::snprintf(text, sizeof text, "  %s %.2f to %.2f s (%s), delay %.2f s\n", what, span.begin,
+                  span.end, name(act_at(span.begin)), delay > 1e8 ? -1 : delay);
+    return text;
+  }
+
+  ActedSequence& acts_;
+  Tracking tracking_;
+  sim::HumanSensor people_;
+  sim::ObjectSensor objects_;
+  test::TemporaryFolder folder_;
+  LocalNetwork network_;
+  std::string model_;
+  std::unique_ptr<spark::Node> spark_;
+  Bus* bus_{};
+  std::unique_ptr<Publisher<HumanObservation>> people_out_;
+  std::unique_ptr<Publisher<ObjectObservation>> objects_out_;
+  std::unique_ptr<Publisher<RobotState>> robot_out_;
+  Snapshot now_{ObjectLibrary{}};
+  OfferDetector detector_{now_, shipped_bounds()};
+  bool was_offer_{};
+  double clock_{}, next_state_{}, began_{}, rest_since_{};
+  std::uint64_t sequence_{};
+  Vector3 p_before_{Vector3::Zero()};
+  std::deque<std::pair<double, std::vector<ObservedGrip>>> grips_;
+  std::vector<std::pair<double, Act>> history_;
+  std::vector<Span> offers_, found_;
+};
+
+int count_of(int usual) {
+  const char* runs = std::getenv("HANDSEL_RUNS");
+  return runs != nullptr ? usual * std::atoi(runs) : usual;
+}
+std::uint64_t first_seed() {
+  const char* first = std::getenv("HANDSEL_FIRST_SEED");
+  return first != nullptr ? std::strtoull(first, nullptr, 10) : 1;
+}
+
+void print(const char* title, const Result& all) {
+  std::vector<double> delays = all.delays;
+  std::sort(delays.begin(), delays.end());
+  const auto at = [&](double share) {
+    return delays.empty() ? 0 : delays[static_cast<std::size_t>(share * double(delays.size() - 1))];
+  };
+  std::printf(
+      "%s: precision %.4f (%d of %d), recall %.4f (%d of %d within %.1f s), delay median "
+      "%.2f, 95 of 100 %.2f, max %.2f s; %d offers that nobody could tell left out\n",
+      title, all.precision(), all.right, all.right + all.wrong, all.recall(), all.in_time,
+      all.offers, kMaxDelay, at(0.5), at(0.95), at(1), all.unclear);
+  for (const auto& [act, count] : all.wrong_during)
+    std::printf("  wrong during %s: %d\n", act.c_str(), count);
+}
+
+TEST(OfferDetection, finds_what_people_offer_and_nothing_else) {
+  setenv("HANDSEL_HOME", deploy().c_str(), 1);
+  const int count = count_of(200);
+  std::printf("seeds %llu to %llu\n", static_cast<unsigned long long>(first_seed()),
+              static_cast<unsigned long long>(first_seed() + count - 1));
+  const test::ActStage stage{Vector3::Zero(), world().p_hand, &world().mug};
+  Result scripted, simulated;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t seed = first_seed() + i;
+    const bool is_simulated = (seed - 1) % 5 < 2;
+    const auto acts =
+        is_simulated ? test::simulated_sequence(stage, seed) : test::scripted_sequence(stage, seed);
+    const Result one = Watched(*acts, seed, seed % 2 == 0, "mug").run();
+    if (!one.story.empty() && std::getenv("HANDSEL_STORY") != nullptr)
+      std::printf("seed %llu %s %s\n%s", static_cast<unsigned long long>(seed),
+                  is_simulated ? "simulated" : "scripted", seed % 2 == 0 ? "asked" : "",
+                  one.story.c_str());
+    (is_simulated ? simulated : scripted).add(one);
+  }
+  Result all = scripted;
+  all.add(simulated);
+  print("scripted", scripted);
+  print("simulated", simulated);
+  print("all", all);
+  EXPECT_GE(all.precision(), kMinPrecision);
+  EXPECT_GE(all.recall(), kMinRecall);
+}
+
+}  // namespace
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,59 @@
+// Labelled sequences of what people do with an object before a robot: the simulator's own giver, a
+// scripted person, and a recorded handover. Pure, seeded.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "common/messages/perception.hpp"
+#include "common/model/object_model.hpp"
+#include "tests/support/acts/acted_person.hpp"
+
+namespace handsel::test {
+
+/// What is before the people. World frame.
+struct ActStage {
+  Vector3 p_robot{Vector3::Zero()};    ///< base of the robot [m]
+  Vector3 p_hand{Vector3::Zero()};     ///< hand of the robot [m]
+  const ObjectModel* object{nullptr};  ///< model of the object
+};
+
+/// A box on which objects stand.
+struct Counter {
+  Vector3 centre{Vector3::Zero()};  ///< world [m]
+  Vector3 size{Vector3::Zero()};    ///< full extents [m]
+};
+
+/// A sequence with its ground truth. The object is "thing", its first holder "anna".
+class ActedSequence {
+ public:
+  virtual ~ActedSequence() = default;
+  /// Advances by `dt` [s].
+  virtual void step(double dt) = 0;
+  /// Returns the duration [s].
+  virtual double duration() const = 0;
+  /// Returns the people as they are, without velocities.
+  virtual std::vector<const Person*> people() const = 0;
+  /// Returns the pose of the object, world.
+  virtual Pose T_world_object() const = 0;
+  /// Returns what the holder does.
+  virtual Act act() const = 0;
+  /// Returns whether the object is held out for the robot, relative to the body of its holder.
+  bool is_offer() const { return act() == Act::offers; }
+  /// Returns whether nobody could tell an offer from keeping the object: it is held out hardly
+  /// farther than it was kept, because the robot's hand is so near.
+  virtual bool is_unclear() const { return false; }
+  /// Returns the forces at the sensors of the object; empty: it has none.
+  virtual std::vector<ObservedGrip> grips() const { return {}; }
+};
+
+/// Returns where the counter of a scripted sequence stands, as of `seed`.
+Counter counter_of(std::uint64_t seed);
+/// Returns a person that acts by a random script: offers among everything else.
+std::unique_ptr<ActedSequence> scripted_sequence(const ActStage& stage, std::uint64_t seed);
+/// Returns the simulator's giver, who varies as in the scenario trial_receive.
+std::unique_ptr<ActedSequence> simulated_sequence(const ActStage& stage, std::uint64_t seed);
+
+}  // namespace handsel::test
