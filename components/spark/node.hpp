@@ -29,9 +29,11 @@ class Node {
   void publish_people(TimePoint now);
   std::string trouble(TimePoint now) const;
   void publish(const Scene& scene, TimePoint now);
-  // the scene, when it has changed in a way that matters to a planner
-  void publish_news(TimePoint now);
-  void interpret(TimePoint now);  // facts and scene, each when it is due
+  // whether the scene has changed in a way that matters to a planner, or what a person holds, and
+  // may offer, was observed anew
+  bool has_news(const Scene& scene, TimePoint now) const;
+  void publish_news(TimePoint now);  // the scene, when it has news
+  void interpret(TimePoint now);     // facts and scene, each when it is due
 
   Bus& bus_;
   settings::SparkSettings settings_;
@@ -49,6 +51,7 @@ class Node {
   // the safety state was received: the people lost before the start are known
   bool knows_lost_{false};
   std::uint64_t revision_published_{0};
+  TimePoint held_seen_published_{};  // when the objects in people's hands had been observed
 };
 
 }  // namespace handsel::spark

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kRevisionMove = 0.005;  // [m] an object that moved this far makes a new revision
 constexpr double kRevisionDoubt = 0.02;  // [m] so does one whose place is more or less sure by this
-constexpr double kHeldMove = 0.002;  // [m] so does one in a person's hand, which may be an offer
-constexpr double kRefusalTime = 5;   // [s] a refusal is reported for so long
+constexpr double kRefusalTime = 5;       // [s] a refusal is reported for so long
 
 bool differs(const Scene& a, const Scene& b) {
   if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() ||
@@ -27,9 +26,8 @@ bool differs(const Scene& a, const Scene& b) {
     if (x.primitive.kind != y.primitive.kind || x.primitive.size != y.primitive.size) return true;
     if (std::abs(x.uncertainty - y.uncertainty) > kRevisionDoubt) return true;
     const bool carried = x.holder == Holder::robot;  // it moves with the hand that everybody knows
-    const double max_move = x.holder == Holder::human ? kHeldMove : kRevisionMove;
     if (!carried &&
-        (x.T_world_object.translation() - y.T_world_object.translation()).norm() > max_move)
+        (x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove)
       return true;
   }
   return false;

@@ -18,8 +18,8 @@ constexpr double kLeap = 0.1;             // [m] beyond that a thing has jumped
 constexpr double kTrust = 0.2;            // [s] a source silent for longer is not believed
 constexpr double kAgree = 0.01;           // [m] two sources may differ by this
 
-/// Averages the place of an object at rest over several noisy samples; a moving object is where it
-/// was seen.
+/// Averages the place of an object at rest over several noisy samples. A moving object is where it
+/// was seen, as is one in a person's hand, of which the average would hide slow motions.
 Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
   const Eigen::AngleAxisd turn(estimate.linear().transpose() * seen.linear());
   if ((seen.translation() - estimate.translation()).norm() > kSameMove ||
@@ -114,6 +114,7 @@ void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint se
   track.object.id = observed.id;
   track.object.model = observed.model;
   track.object.primitive = observed.primitive;
+  if (track.object.holder == Holder::human) track.samples = 0;
   track.object.T_world_object = track.samples > 0 ? averaged(track.object.T_world_object,
                                                              observed.T_world_object, track.samples)
                                                   : observed.T_world_object;

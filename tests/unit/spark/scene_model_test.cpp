@@ -136,6 +136,27 @@ TEST_F(SceneObjects, in_a_hand_out_of_sight_it_moves_with_the_hand_and_leaves_wi
   EXPECT_TRUE(find(wait(3, 3), "mug"));
 }
 
+TEST_F(SceneObjects, in_a_hand_it_is_where_it_was_seen_and_on_a_table_the_average_counts) {
+  people_.people = {person_at({1.5, 0, 0})};
+  Vector3 p_hand;
+  for (const BodyJoint& joint : people_.people[0].joints)
+    if (joint.name == "r_hand") p_hand = joint.position;
+  const auto moved = [&](const Vector3& from) {
+    for (double t = 0; t < 1; t += 0.05) {
+      see(t, {mug("mug", from)});
+      wait(t, t);
+    }
+    see(1, {mug("mug", from + Vector3(0.003, 0, 0))});
+    return find(wait(1, 1), "mug")->T_world_object.translation().x() - from.x();
+  };
+  EXPECT_NEAR(moved(p_hand), 0.003, 1e-6);
+  model_.emplace(
+      settings_, std::make_shared<const RobotModel>(),
+      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+      std::vector<SceneBox>{{"table", make_pose({0.7, 0, 0.35}), {1, 1, 0.7}, true}});
+  EXPECT_LT(moved({0.7, 0.3, 0.74}), 0.001);
+}
+
 TEST_F(SceneObjects, of_two_sources_one_is_believed_and_the_other_takes_over) {
   for (int i = 0; i < 60; ++i) {
     see(i / 30.0, {mug("mug", {0.70, 0, 0.74})}, "left");
