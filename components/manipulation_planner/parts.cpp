@@ -14,7 +14,7 @@ Parts::Parts(const settings::ManipulationPlannerSettings& s,
       link(arm, now, waiting, outbox, clients.ids, settings),
       hand(arm, link, now, waiting, action, settings),
       retreat(arm.robot(), arm.group()),
-      offers(now, offer_bounds(settings)),
+      offers(now, settings),
       area(arm, retreat, now),
       monitor(arm, held, offers, area, now, settings),
       replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost)) {}

@@ -1,6 +1,7 @@
 // The newest state of the world, as the messages that came in report it. Pure.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -19,7 +20,10 @@ class Snapshot {
   explicit Snapshot(ObjectLibrary objects) : objects_(std::move(objects)) {}
 
   /// Takes the newest scene; objects, boxes and base of the robot in the world frame.
-  void on(const Scene& scene) { scene_ = scene; }
+  void on(const Scene& scene) {
+    scene_ = scene;
+    ++scene_count_;
+  }
   /// Takes the newest people, joints in the world frame.
   void on(const HumanState& people) { people_ = people; }
   /// Takes the facts that hold now; they replace all before.
@@ -37,6 +41,8 @@ class Snapshot {
   TimePoint time() const { return time_; }
   /// Returns the newest scene.
   const Scene& scene() const { return scene_; }
+  /// Returns how many scenes have come.
+  std::uint64_t scene_count() const { return scene_count_; }
   /// Returns the pose of the robot's base in the world.
   const Pose& T_world_base() const { return scene_.T_world_base; }
   /// Returns the newest people.
@@ -71,6 +77,7 @@ class Snapshot {
   TimePoint time_{};
   ObjectLibrary objects_;
   Scene scene_;
+  std::uint64_t scene_count_{};
   HumanState people_;
   Facts facts_;
   CostLayers layers_;

@@ -2,6 +2,7 @@
 // by emulated sensors, followed by SPARK on a LocalBus.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "sim/sensing/sensors.hpp"
 #include "tests/support/acts/acted_sequence.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
+#include "tests/support/recorded_handover.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -23,23 +25,22 @@ namespace fs = std::filesystem;
 using test::Act;
 using test::ActedSequence;
 
-// Limits of the figures, not yet the target of 0.98 each: they fall by some errors of 200
-// sequences.
-constexpr double kMinPrecision = 0.90, kMinRecall = 0.94;
-constexpr double kStep = 0.01;         // of the ground truth [s]
-constexpr double kPlannerStep = 0.02;  // [s]
-constexpr double kLongWait = 8.0;      // as the action receive has it [s]
-constexpr double kMaxDelay = 0.3;      // [s]
-constexpr double kEarly = 0.3;         // before the rest, in which a detection counts as right [s]
-constexpr double kRestSpeed = 0.02;    // of an object at rest [m/s]
-constexpr double kRestTime = 0.3;      // for which an offer must be at rest to begin [s]
-constexpr double kMaxOutlast = 1.0;    // by which a detection may outlast its offer [s]
+// Limits of the figures: of 1000 fresh sequences the precision was 0.978 and the recall 0.992.
+constexpr double kMinPrecision = 0.97, kMinRecall = 0.98;
+constexpr double kObjectNoise = 0.001;  // of the tracker in the scenarios [m]
+constexpr double kStep = 0.01;          // of the ground truth [s]
+constexpr double kPlannerStep = 0.02;   // [s]
+constexpr double kMaxDelay = 0.3;       // [s]
+constexpr double kEarly = 0.3;          // before the rest, in which a detection counts as right [s]
+constexpr double kRestTime = 0.3;       // for which an offer must be at rest to begin [s]
+constexpr double kMaxOutlast = 1.0;     // by which a detection may outlast its offer [s]
 
 fs::path deploy() { return fs::path(HANDSEL_SOURCE_DIR) / "deploy"; }
 
-OfferBounds shipped_bounds() {
-  return offer_bounds(
-      settings::read_manipulation_planner_settings(deploy() / "config/manipulation_planner.txtpb"));
+const settings::ManipulationPlannerSettings& shipped() {
+  static const settings::ManipulationPlannerSettings one =
+      settings::read_manipulation_planner_settings(deploy() / "config/manipulation_planner.txtpb");
+  return one;
 }
 
 struct World {
@@ -62,13 +63,14 @@ struct Span {
 
 /// What became of one sequence.
 struct Result {
-  int right{}, wrong{}, offers{}, in_time{}, unclear{};
+  int right{}, wrong{}, offers{}, in_time{}, unclear{}, unclear_found{};
   std::vector<double> delays;               // [s]
   std::map<std::string, int> wrong_during;  // act -> count
   std::string story;                        // what went wrong, a line each
   void add(const Result& other) {
     right += other.right, wrong += other.wrong, offers += other.offers;
     in_time += other.in_time, unclear += other.unclear;
+    unclear_found += other.unclear_found;
     delays.insert(delays.end(), other.delays.begin(), other.delays.end());
     for (const auto& [act, count] : other.wrong_during) wrong_during[act] += count;
   }
@@ -79,14 +81,14 @@ struct Result {
 /// Sensors of a sequence: as in the scenarios, every fourth as in give_mug_rough.
 struct Tracking {
   sim::SensorSettings people, objects;
-  explicit Tracking(std::uint64_t seed) {
+  Tracking(std::uint64_t seed, double object_noise) {
     const bool rough = seed % 4 == 3;
     people.source = "kinect";
     people.latency = rough ? 0.06 : 0.04;
     people.noise = rough ? 0.01 : 0.004;
     objects.source = "object_tracker";
     objects.latency = rough ? 0.05 : 0.04;
-    objects.noise = 0.001;
+    objects.noise = object_noise;
     if (rough) {
       people.jitter = 0.01;
       people.dropout = objects.dropout = 0.05;
@@ -101,9 +103,10 @@ struct Tracking {
 /// Runs one sequence through sensors, SPARK and the detector.
 class Watched {
  public:
-  Watched(ActedSequence& acts, std::uint64_t seed, bool is_asked, const std::string& model)
+  Watched(ActedSequence& acts, std::uint64_t seed, bool is_asked, const std::string& model,
+          double object_noise = kObjectNoise)
       : acts_(acts),
-        tracking_(seed),
+        tracking_(seed, object_noise),
         people_(tracking_.people, seed),
         objects_(tracking_.objects, seed + 1),
         network_(seed),
@@ -158,7 +161,7 @@ class Watched {
     if (acts_.is_offer()) {
       if (!was_offer_) rest_since_ = clock_;
       if (!was_offer_) offers_.push_back({-1, clock_, acts_.is_unclear()});
-      if (speed > kRestSpeed) rest_since_ = clock_;
+      if (speed > acts_.label().max_speed) rest_since_ = clock_;
       if (offers_.back().begin < 0 && clock_ - rest_since_ > kRestTime)
         offers_.back().begin = rest_since_;
       offers_.back().end = clock_;
@@ -218,23 +221,25 @@ class Watched {
       if (detector_.is_still_offered()) found_.back().end = clock_;
       if (!detector_.is_withdrawn()) return;
       detector_.await();
-      began_ = clock_;
       return;
     }
     if (const auto offer = detector_.made()) {
       detector_.accept(*offer);
       found_.push_back({clock_, clock_});
-      return;
     }
-    detector_.set_waited_long(clock_ - began_ > kLongWait);
   }
 
   Result score() {
     Result out;
-    std::erase_if(offers_, [&](const Span& s) { return s.begin < 0 || s.end - s.begin < 0.5; });
+    std::erase_if(offers_, [&](const Span& s) {
+      return s.begin < 0 || s.end - s.begin < acts_.label().min_duration;
+    });
     for (const Span& offer : offers_) {
       if (offer.unclear) {
         ++out.unclear;
+        out.unclear_found += std::any_of(found_.begin(), found_.end(), [&](const Span& found) {
+          return found.begin < offer.end && found.end > offer.begin;
+        });
         continue;
       }
       ++out.offers;
@@ -290,9 +295,9 @@ class Watched {
   std::unique_ptr<Publisher<ObjectObservation>> objects_out_;
   std::unique_ptr<Publisher<RobotState>> robot_out_;
   Snapshot now_{ObjectLibrary{}};
-  OfferDetector detector_{now_, shipped_bounds()};
+  OfferDetector detector_{now_, shipped()};
   bool was_offer_{};
-  double clock_{}, next_state_{}, began_{}, rest_since_{};
+  double clock_{}, next_state_{}, rest_since_{};
   std::uint64_t sequence_{};
   Vector3 p_before_{Vector3::Zero()};
   std::deque<std::pair<double, std::vector<ObservedGrip>>> grips_;
@@ -317,16 +322,16 @@ void print(const char* title, const Result& all) {
   };
   std::printf(
       "%s: precision %.4f (%d of %d), recall %.4f (%d of %d within %.1f s), delay median "
-      "%.2f, 95 of 100 %.2f, max %.2f s; %d offers that nobody could tell left out\n",
+      "%.2f, 95 of 100 %.2f, max %.2f s; %d offers that nobody could tell left out, %d found\n",
       title, all.precision(), all.right, all.right + all.wrong, all.recall(), all.in_time,
-      all.offers, kMaxDelay, at(0.5), at(0.95), at(1), all.unclear);
+      all.offers, kMaxDelay, at(0.5), at(0.95), at(1), all.unclear, all.unclear_found);
   for (const auto& [act, count] : all.wrong_during)
     std::printf("  wrong during %s: %d\n", act.c_str(), count);
 }
 
-TEST(OfferDetection, finds_what_people_offer_and_nothing_else) {
+/// Runs sequences of the simulator and of the script, and prints what was found.
+Result run_sequences(int count, double object_noise) {
   setenv("HANDSEL_HOME", deploy().c_str(), 1);
-  const int count = count_of(200);
   std::printf("seeds %llu to %llu\n", static_cast<unsigned long long>(first_seed()),
               static_cast<unsigned long long>(first_seed() + count - 1));
   const test::ActStage stage{Vector3::Zero(), world().p_hand, &world().mug};
@@ -336,7 +341,7 @@ TEST(OfferDetection, finds_what_people_offer_and_nothing_else) {
     const bool is_simulated = (seed - 1) % 5 < 2;
     const auto acts =
         is_simulated ? test::simulated_sequence(stage, seed) : test::scripted_sequence(stage, seed);
-    const Result one = Watched(*acts, seed, seed % 2 == 0, "mug").run();
+    const Result one = Watched(*acts, seed, seed % 2 == 0, "mug", object_noise).run();
     if (!one.story.empty() && std::getenv("HANDSEL_STORY") != nullptr)
       std::printf("seed %llu %s %s\n%s", static_cast<unsigned long long>(seed),
                   is_simulated ? "simulated" : "scripted", seed % 2 == 0 ? "asked" : "",
@@ -348,8 +353,47 @@ TEST(OfferDetection, finds_what_people_offer_and_nothing_else) {
   print("scripted", scripted);
   print("simulated", simulated);
   print("all", all);
+  return all;
+}
+
+TEST(OfferDetection, finds_what_people_offer_and_nothing_else) {
+  const Result all = run_sequences(count_of(200), kObjectNoise);
   EXPECT_GE(all.precision(), kMinPrecision);
   EXPECT_GE(all.recall(), kMinRecall);
+}
+
+TEST(OfferDetection, a_noisier_tracker_delays_offers_and_hides_none) {
+  const Result all = run_sequences(count_of(60), 0.003);
+  EXPECT_GE(all.precision(), 0.85);
+  EXPECT_GE(static_cast<double>(all.delays.size()), 0.95 * all.offers) << "found at all";
+}
+
+/// Runs one view of the recorded handover, and prints what was found.
+Result run_recorded(const test::RecordedHandover& recording, test::RecordedView view,
+                    const char* title) {
+  const auto acts = test::recorded_sequence(recording, view);
+  Result result = Watched(*acts, 1, false, "").run();
+  print(title, result);
+  std::printf("%s", result.story.c_str());
+  return result;
+}
+
+TEST(OfferDetection, of_a_recorded_handover_only_the_giver_offers) {
+  setenv("HANDSEL_HOME", deploy().c_str(), 1);
+  const auto recording = test::recorded_handover();
+  if (!recording) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
+  using test::RecordedView;
+  const Result waits =
+      run_recorded(*recording, RecordedView::giver_waits, "recorded giver who waits");
+  EXPECT_EQ(waits.offers, 1);
+  EXPECT_EQ(waits.right, 1);
+  EXPECT_EQ(waits.wrong, 0);
+  EXPECT_EQ(waits.in_time, 1);
+  const Result giver = run_recorded(*recording, RecordedView::giver, "recorded giver");
+  EXPECT_EQ(giver.offers, 1);
+  EXPECT_EQ(giver.wrong, 0);
+  EXPECT_EQ(run_recorded(*recording, RecordedView::taker, "recorded taker").wrong, 0);
+  EXPECT_EQ(run_recorded(*recording, RecordedView::aside, "recorded from aside").wrong, 0);
 }
 
 }  // namespace

@@ -13,8 +13,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kClearAfter = 2.0;     // without an offer, before the offer area is cleared [s]
-constexpr double kLongWait = 8.0;       // without an offer, before weaker signs count [s]
 constexpr double kObserveAgain = 0.02;  // [s]
 constexpr double kMaxShift = 0.03;      // of an object, after which its grasps are outdated [m]
 constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
@@ -38,8 +36,7 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver
     const std::optional<Offer> offer = parts.offers.made();
     if (offer) co_return offer;
     const double waited = to_seconds(parts.now.time() - began);
-    parts.offers.set_waited_long(waited > kLongWait);
-    if (!has_cleared && !parts.offers.is_seen() && waited > kClearAfter &&
+    if (!has_cleared && !parts.offers.is_seen() && waited > parts.settings.offer_clear_after &&
         parts.area.is_occupied(giver)) {
       has_cleared = true;
       Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);

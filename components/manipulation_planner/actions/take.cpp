@@ -162,7 +162,6 @@ Routine<Step> approach_offer(Parts& parts, const TakeAttempt& take, std::optiona
   Outcome moved = co_await move(parts, approach);
   if (is_put_into_hand(parts, take)) co_return Step{Progress::in_hand, moved};
   if (!moved.good && !moved.target_moved()) co_return Step{Progress::failed, moved};
-  if (moved.target_moved()) parts.offers.set_waited_long(false);
   if (moved.end == MotionEnd::giver_approached) co_await step_back(parts, take.offer);
   const auto is_decided = [&] {
     return is_offered(parts, take.offer) || is_put_into_hand(parts, take) ||

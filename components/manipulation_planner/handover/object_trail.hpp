@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/time.hpp"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/geometry/pose.hpp"
 
 namespace handsel::manipulation_planner {
@@ -15,24 +16,39 @@ namespace handsel::manipulation_planner {
 /// that is left. Own method.
 class ObjectTrail {
  public:
-  /// Adds the position of the object at `now`, world [m].
-  void add(TimePoint now, const Vector3& p_world);
+  /// `settings` must outlive what is made.
+  explicit ObjectTrail(const settings::ManipulationPlannerSettings& settings)
+      : settings_(settings) {}
+
+  /// Adds the position of the object as observed at `seen`, world [m]. What is not newer than the
+  /// last position is left out.
+  void add(TimePoint seen, const Vector3& p_world);
 
   /// Returns for how long the object has been within the noise of its newest position [s].
   double rest() const;
   /// Returns the rest after which an object that turns back would have moved away again [s].
   double turning_time() const;
-  /// Returns how far the object has moved back, against the last part of its path, since it came
-  /// to rest [m].
+  /// Returns how far the object has moved back, against the last part of its path, within the last
+  /// moments of the rest [m].
   double retreat() const;
+  /// Returns the standard deviation of the observed positions from noise, as far as measured [m].
+  double noise() const { return noise_; }
+  /// Returns the direction of the last part of the path, world; zero: the object was at rest all
+  /// the time.
+  Vector3 arrival() const;
   /// Returns how much longer the path was than the straight one, within the second before the
   /// rest [m].
   double detour() const;
 
  private:
   std::size_t last_beyond(double radius) const;
+  std::size_t before_arrival() const;
+  void measure_noise();
+  double tremor() const;
 
+  const settings::ManipulationPlannerSettings& settings_;
   std::deque<std::pair<TimePoint, Vector3>> places_;  // oldest first
+  double noise_{};
 };
 
 }  // namespace handsel::manipulation_planner

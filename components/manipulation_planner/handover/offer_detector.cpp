@@ -3,34 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kNoise = 0.010;             // of the extension of an offer seen before
-constexpr double kMinWithdrawn = 0.02;       // by which it falls at least when withdrawn
-constexpr double kMaxWithdrawn = 0.05;       // by which it falls at most when not
-constexpr double kAcceptedAngle = 0.3;       // likewise of its direction [rad]
-constexpr double kNearRange = 0.06;          // beyond near_hand: min_extension applies [m]
-constexpr double kLongWaitExtension = 0.10;  // after a long wait, near the robot's hand
-constexpr double kLongWaitRest = 1.0;        // for which the object must then be at rest [s]
 constexpr double kAnySpeed = std::numeric_limits<double>::infinity();  // [m/s]
-constexpr double kMinStature = 0.5;                                    // [m]
-constexpr double kMaxRetreat = 0.003;       // of an object at rest, noise [m]
-constexpr double kMaxTurningTime = 0.29;    // of a slow motion [s]
-constexpr double kMaxDetour = 0.12;         // of that motion, beyond its straight length [m]
-constexpr double kRestAfterDetour = 0.4;    // of what was moved about before [s]
-constexpr double kMaxAboveSupport = 0.25;   // origin of what is being put down or taken there [m]
-constexpr double kRestAboveSupport = 0.5;   // of what is offered there [s]
-constexpr double kOtherRange = 1.5;         // people nearer to the object may be meant [m]
-constexpr double kMaxOfferGap = 0.2;        // an accepted offer may seem withdrawn so long [s]
-constexpr double kWithdrawalTime = 0.6;     // after which it is withdrawn [s]
-constexpr double kMaxApproachSpeed = 0.35;  // of giver or object toward the hand [m/s]
-constexpr double kMaxGiverDistance = 0.5;   // palm to object while a step of the giver counts [m]
-constexpr double kMaxObjectDistance = 0.4;  // palm to object while its own motion counts [m]
+constexpr double kRetreatNoise = 2.0;  // times the noise: an object at rest is hardly farther back
+constexpr double kMinStature = 0.5;    // [m]
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
@@ -43,6 +24,12 @@ const Vector3& joint_of(const Person& person, const char* name) {
 }
 
 double stature_of(const Person& person) { return std::max(kMinStature, person.stature); }
+
+/// Returns the distance of the object from the nearer hand [m].
+double hand_distance(const Person& person, const Vector3& p_object) {
+  return std::min((joint_of(person, "l_hand") - p_object).norm(),
+                  (joint_of(person, "r_hand") - p_object).norm());
+}
 
 /// Returns the shoulder of the hand that is nearer to the object.
 const Vector3& holding_shoulder(const Person& person, const Vector3& p_object) {
@@ -58,27 +45,19 @@ double extension(const Person& person, const Vector3& p_object) {
 
 }  // namespace
 
-OfferBounds offer_bounds(const settings::ManipulationPlannerSettings& s) {
-  return {.min_extension = s.offer_extension,
-          .near_extension = s.offer_near_extension,
-          .near_hand = s.offer_near_hand,
-          .max_height = s.offer_max_height,
-          .max_angle = s.offer_max_angle,
-          .max_speed = s.offer_still,
-          .rest_time = s.offer_rest};
-}
-
 double OfferDetector::min_extension(const Person& person, const SceneObject& object,
                                     const Vector3& p_hand) const {
   const double away = (object.T_world_object.translation() - p_hand).norm();
-  const double far = std::clamp((away - bounds_.near_hand) / kNearRange, 0.0, 1.0);
-  const bool is_expected = waited_long_ && asked_.giver == person.id;
-  const double near = is_expected ? kLongWaitExtension : bounds_.near_extension;
-  const double min = near + far * (bounds_.min_extension - near);
+  const double far =
+      std::clamp((away - settings_.offer_near_hand) / settings_.offer_near_range, 0.0, 1.0);
+  const double min = settings_.offer_near_extension +
+                     far * (settings_.offer_extension - settings_.offer_near_extension);
   const Offer offer{object.id, person.id};
   if (offer == accepted_)
-    return std::max(std::min(min - kNoise, extension_ - kMinWithdrawn), extension_ - kMaxWithdrawn);
-  return offer == seen_ ? min - kNoise : min;
+    return std::max(
+        std::min(min - settings_.offer_noise, extension_ - settings_.offer_min_withdrawal),
+        extension_ - settings_.offer_max_withdrawal);
+  return offer == seen_ ? min - settings_.offer_noise : min;
 }
 
 bool OfferDetector::is_for_robot(const Person& person, const Vector3& p_shoulder,
@@ -88,14 +67,16 @@ bool OfferDetector::is_for_robot(const Person& person, const Vector3& p_shoulder
     return out.dot(level(p - p_shoulder).stableNormalized());
   };
   const double aim_robot = std::max(aim(now_.T_world_base().translation()), aim(p_hand));
-  const double max_angle =
-      bounds_.max_angle + (accepted_.giver == person.id ? kAcceptedAngle : 0.0);
+  const double max_angle = settings_.offer_max_angle +
+                           (accepted_.giver == person.id ? settings_.offer_accepted_angle : 0.0);
   if (aim_robot < std::cos(max_angle)) return false;
   const auto& people = now_.people().people;
   return std::none_of(people.begin(), people.end(), [&](const Person& other) {
+    if (other.id == person.id) return false;
     const Vector3& p_other = torso_of(other).position;
-    return other.id != person.id && level(p_other - p_object).norm() < kOtherRange &&
-           aim(p_other) > aim_robot;
+    return hand_distance(other, p_object) < settings_.offer_taking_range ||
+           (level(p_other - p_object).norm() < settings_.offer_other_range &&
+            aim(p_other) > aim_robot);
   });
 }
 
@@ -104,7 +85,8 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
   if (object.holder != Holder::human || object.holder_id != person.id) return false;
   const Vector3 p_object = object.T_world_object.translation();
   const Vector3 p_shoulder = holding_shoulder(person, p_object);
-  if ((p_object - p_shoulder).z() > bounds_.max_height * stature_of(person)) return false;
+  const double height = (p_object - p_shoulder).z() / stature_of(person);
+  if (height > settings_.offer_max_height || height < settings_.offer_min_height) return false;
   return is_for_robot(person, p_shoulder, p_object, p_hand) &&
          extension(person, p_object) >= min_extension(person, object, p_hand);
 }
@@ -124,7 +106,7 @@ std::optional<Offer> OfferDetector::find(const std::string& object, const std::s
 
 std::optional<Offer> OfferDetector::find(const std::string& object, const std::string& giver,
                                          const Vector3& p_hand) const {
-  return find(object, giver, p_hand, bounds_.max_speed);
+  return find(object, giver, p_hand, settings_.offer_still);
 }
 
 void OfferDetector::accept(const Offer& offer) {
@@ -133,24 +115,19 @@ void OfferDetector::accept(const Offer& offer) {
   const SceneObject* object = now_.object(offer.object);
   const Person* person = now_.person(offer.giver);
   const bool is_known = object != nullptr && person != nullptr;
-  extension_ =
-      is_known ? extension(*person, object->T_world_object.translation()) : bounds_.min_extension;
+  extension_ = is_known ? extension(*person, object->T_world_object.translation())
+                        : settings_.offer_extension;
 }
 
 void OfferDetector::await() {
   accepted_ = {};
-  waited_long_ = false;
   seen_.reset();
 }
 
 void OfferDetector::update(const Vector3& p_hand) {
   follow_objects();
   if (!has_accepted()) {
-    const bool waited_long = std::exchange(waited_long_, false);
-    std::optional<Offer> seen = find(asked_.object, asked_.giver, p_hand, kAnySpeed);
-    waited_long_ = waited_long;
-    is_seen_weakly_ = !seen && waited_long;
-    if (is_seen_weakly_) seen = find(asked_.object, asked_.giver, p_hand, kAnySpeed);
+    const std::optional<Offer> seen = find(asked_.object, asked_.giver, p_hand, kAnySpeed);
     if (!seen || seen != seen_) seen_since_ = now_.time();
     seen_ = seen;
     return;
@@ -161,32 +138,36 @@ void OfferDetector::update(const Vector3& p_hand) {
 }
 
 void OfferDetector::follow_objects() {
-  const auto& objects = now_.scene().objects;
-  for (const SceneObject& object : objects)
-    if (object.holder == Holder::human)
-      trails_[object.id].add(now_.time(), object.T_world_object.translation());
-  std::erase_if(trails_, [&](const auto& entry) {
-    const SceneObject* object = now_.object(entry.first);
-    return object == nullptr || object->holder != Holder::human;
-  });
+  if (followed_ == now_.scene_count()) return;
+  followed_ = now_.scene_count();
+  for (const SceneObject& object : now_.scene().objects)
+    trails_.try_emplace(object.id, settings_)
+        .first->second.add(now_.time() - from_seconds(object.age),
+                           object.T_world_object.translation());
+  std::erase_if(trails_, [&](const auto& entry) { return now_.object(entry.first) == nullptr; });
 }
 
 std::optional<Offer> OfferDetector::made() const {
   const auto found = seen_ ? trails_.find(seen_->object) : trails_.end();
   if (found == trails_.end()) return std::nullopt;
   const ObjectTrail& trail = found->second;
-  double rest_time = is_seen_weakly_ ? kLongWaitRest : bounds_.rest_time;
-  if (is_above_support(*seen_)) rest_time = std::max(rest_time, kRestAboveSupport);
-  if (trail.detour() > kMaxDetour) rest_time = std::max(rest_time, kRestAfterDetour);
-  const double turning_time = std::min(trail.turning_time(), kMaxTurningTime);
+  double rest_time = settings_.offer_rest;
+  if (is_put_down(*seen_, trail)) rest_time = std::max(rest_time, settings_.offer_support_rest);
+  if (trail.detour() > settings_.offer_max_detour)
+    rest_time = std::max(rest_time, settings_.offer_detour_rest);
+  const double turning_time = std::min(trail.turning_time(), settings_.offer_max_turn_time);
   const double rest = std::min(trail.rest(), to_seconds(now_.time() - seen_since_));
-  if (rest < std::max(rest_time, turning_time) || trail.retreat() > kMaxRetreat)
+  if (rest < std::max(rest_time, turning_time) ||
+      trail.retreat() > std::max(settings_.offer_max_retreat, kRetreatNoise * trail.noise()))
     return std::nullopt;
   return seen_;
 }
 
-/// Returns whether the object may be about to stand on a support.
-bool OfferDetector::is_above_support(const Offer& offer) const {
+/// Returns whether the object may be about to stand on a support: above one, it came down or has
+/// been there all the time.
+bool OfferDetector::is_put_down(const Offer& offer, const ObjectTrail& trail) const {
+  const Vector3 arrival = trail.arrival();
+  if (!arrival.isZero() && arrival.z() > -settings_.offer_descent) return false;
   const SceneObject* object = now_.object(offer.object);
   if (object == nullptr) return false;
   const auto& boxes = now_.scene().boxes;
@@ -194,16 +175,16 @@ bool OfferDetector::is_above_support(const Offer& offer) const {
     const Vector3 p = box.T_world_box.inverse() * object->T_world_object.translation();
     const Vector3 half = box.size / 2;
     return box.supports && std::abs(p.x()) < half.x() && std::abs(p.y()) < half.y() &&
-           p.z() > half.z() && p.z() < half.z() + kMaxAboveSupport;
+           p.z() > half.z() && p.z() < half.z() + settings_.offer_support_height;
   });
 }
 
 bool OfferDetector::is_still_offered() const {
-  return to_seconds(now_.time() - offered_at_) < kMaxOfferGap;
+  return to_seconds(now_.time() - offered_at_) < settings_.offer_gap;
 }
 
 bool OfferDetector::is_withdrawn() const {
-  return to_seconds(now_.time() - offered_at_) > kWithdrawalTime;
+  return to_seconds(now_.time() - offered_at_) > settings_.offer_withdrawal_time;
 }
 
 bool OfferDetector::is_giver_approaching(const Vector3& p_hand) const {
@@ -211,13 +192,13 @@ bool OfferDetector::is_giver_approaching(const Vector3& p_hand) const {
   const SceneObject* object = now_.object(accepted_.object);
   if (person == nullptr || object == nullptr) return false;
   const Vector3 p_object = object->T_world_object.translation();
-  const auto is_fast = [&p_hand](const Vector3& p, const Vector3& v) {
-    return v.dot((p_hand - p).stableNormalized()) > kMaxApproachSpeed;
+  const auto is_fast = [&](const Vector3& p, const Vector3& v) {
+    return v.dot((p_hand - p).stableNormalized()) > settings_.giver_speed;
   };
   const BodyJoint& torso = torso_of(*person);
   const double distance = (p_object - p_hand).norm();
-  return (distance < kMaxGiverDistance && is_fast(torso.position, torso.velocity)) ||
-         (distance < kMaxObjectDistance && is_fast(p_object, object->velocity));
+  return (distance < settings_.giver_step_range && is_fast(torso.position, torso.velocity)) ||
+         (distance < settings_.giver_object_range && is_fast(p_object, object->velocity));
 }
 
 }  // namespace handsel::manipulation_planner

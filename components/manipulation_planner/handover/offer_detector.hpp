@@ -18,35 +18,20 @@ struct Offer {
   bool operator==(const Offer&) const = default;
 };
 
-/// Bounds of an offer. Extension: level distance of the object from the shoulder of the hand that
-/// holds the object, over the stature of its holder. Own method.
-struct OfferBounds {
-  double min_extension{};   ///< of an object that is far from the robot's hand
-  double near_extension{};  ///< of one within `near_hand`: people hold back before a hand
-  double near_hand{};       ///< distance of the object from the robot's hand [m]
-  double max_height{};  ///< of the object above that shoulder, over the stature; may be negative
-  double max_angle{};   ///< between the directions to the object and to the robot [rad]
-  double max_speed{};   ///< of an offered object [m/s]
-  double rest_time{};   ///< for which it must be at rest at least [s]
-};
-
-/// Returns the bounds of the settings.
-OfferBounds offer_bounds(const settings::ManipulationPlannerSettings& settings);
-
+/// Finds what people hold out for the robot by the extension of their arm, the direction, the rest
+/// of the object and what happens around (settings `offer_*`). Extension: level distance of the
+/// object from the shoulder of the hand that holds the object, over the stature of its holder. Own
+/// method.
 class OfferDetector {
  public:
-  /// `now` must outlive what is made.
-  OfferDetector(const Snapshot& now, const OfferBounds& bounds) : now_(now), bounds_(bounds) {}
+  /// `now` and `settings` must outlive what is made.
+  OfferDetector(const Snapshot& now, const settings::ManipulationPlannerSettings& settings)
+      : now_(now), settings_(settings) {}
 
-  /// Sets which object was asked for, and from whom; empty: any. Their offers are recognised by
-  /// weaker signs.
+  /// Sets which object was asked for, and from whom; empty: any. No other offer is awaited.
   void set_asked(const Offer& asked) { asked_ = asked; }
   /// Returns the object that was asked for; empty: any.
   const std::string& asked_object() const { return asked_.object; }
-  /// Sets whether nothing was offered for so long that an object before the body counts as offered.
-  void set_waited_long(bool waited_long) { waited_long_ = waited_long; }
-  /// Returns whether set_waited_long() is in force.
-  bool waited_long() const { return waited_long_; }
 
   /// Returns whether the person offers the object, at rest or not. `p_hand`: the robot's hand,
   /// world [m].
@@ -91,20 +76,20 @@ class OfferDetector {
   void follow_objects();
   std::optional<Offer> find(const std::string& object, const std::string& giver,
                             const Vector3& p_hand, double max_speed) const;
-  bool is_above_support(const Offer& offer) const;
+  bool is_put_down(const Offer& offer, const ObjectTrail& trail) const;
   bool is_for_robot(const Person& person, const Vector3& p_shoulder, const Vector3& p_object,
                     const Vector3& p_hand) const;
 
   const Snapshot& now_;
-  OfferBounds bounds_;
+  const settings::ManipulationPlannerSettings& settings_;
   Offer asked_, accepted_;
-  bool waited_long_{}, is_seen_weakly_{};
   bool hand_at_offer_{};
   double extension_{};  // when the offer was accepted
   TimePoint offered_at_{};
   std::optional<Offer> seen_;  // at rest or not, not accepted yet
   TimePoint seen_since_{};
-  std::map<std::string, ObjectTrail> trails_;  // of the objects in people's hands, by id
+  std::map<std::string, ObjectTrail> trails_;  // of the objects, by id
+  std::uint64_t followed_{};                   // scenes from which they were extended
 };
 
 }  // namespace handsel::manipulation_planner

@@ -13,6 +13,8 @@
 
 namespace handsel::test {
 
+struct RecordedHandover;
+
 /// What is before the people. World frame.
 struct ActStage {
   Vector3 p_robot{Vector3::Zero()};    ///< base of the robot [m]
@@ -24,6 +26,12 @@ struct ActStage {
 struct Counter {
   Vector3 centre{Vector3::Zero()};  ///< world [m]
   Vector3 size{Vector3::Zero()};    ///< full extents [m]
+};
+
+/// What counts as an offer in a sequence.
+struct OfferLabel {
+  double max_speed{0.02};    ///< of the object at the begin of an offer [m/s]
+  double min_duration{0.5};  ///< [s]
 };
 
 /// A sequence with its ground truth. The object is "thing", its first holder "anna".
@@ -45,14 +53,29 @@ class ActedSequence {
   /// Returns whether nobody could tell an offer from keeping the object: it is held out hardly
   /// farther than it was kept, because the robot's hand is so near.
   virtual bool is_unclear() const { return false; }
+  /// Returns what counts as an offer here.
+  virtual OfferLabel label() const { return {}; }
   /// Returns the forces at the sensors of the object; empty: it has none.
   virtual std::vector<ObservedGrip> grips() const { return {}; }
+};
+
+/// Where the robot is in the recorded handover.
+enum class RecordedView {
+  giver,        ///< in the place of the taker, who is left out, before the giver
+  giver_waits,  ///< the same; the giver stops where the offer begins
+  taker,  ///< in the place of the giver, before the taker, who has the object and lays it down
+  aside,  ///< beside both people
 };
 
 /// Returns where the counter of a scripted sequence stands, as of `seed`.
 Counter counter_of(std::uint64_t seed);
 /// Returns a person that acts by a random script: offers among everything else.
 std::unique_ptr<ActedSequence> scripted_sequence(const ActStage& stage, std::uint64_t seed);
+/// Returns the recorded handover, which must outlive the sequence. The giver is "anna", the taker
+/// "ben". An offer begins where the object is slower than a third of the max speed of the reach,
+/// and ends as the giver releases the object.
+std::unique_ptr<ActedSequence> recorded_sequence(const RecordedHandover& recording,
+                                                 RecordedView view);
 /// Returns the simulator's giver, who varies as in the scenario trial_receive.
 std::unique_ptr<ActedSequence> simulated_sequence(const ActStage& stage, std::uint64_t seed);
 
