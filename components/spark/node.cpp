@@ -8,19 +8,6 @@
 #include "components/spark/place.hpp"
 
 namespace handsel::spark {
-namespace {
-
-constexpr double kSameSample = 1e-3;  // [s]
-
-/// Returns when an object in a person's hand was observed last; the epoch: no person holds one.
-TimePoint held_seen(const Scene& scene, TimePoint now) {
-  TimePoint newest{};
-  for (const SceneObject& object : scene.objects)
-    if (object.holder == Holder::human) newest = std::max(newest, now - from_seconds(object.age));
-  return newest;
-}
-
-}  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
     : Node(bus, context, read_scenario(context.scenario, context.seed)) {}
@@ -125,20 +112,14 @@ void Node::publish(const Scene& scene, TimePoint now) {
   left_out_.add_scene(scene_);
   scene_out_->publish(scene);
   scene_period_.done(now);
-  revision_published_ = scene.revision;
-  held_seen_published_ = held_seen(scene, now);
-}
-
-bool Node::has_news(const Scene& scene, TimePoint now) const {
-  return scene.revision != revision_published_ ||
-         to_seconds(held_seen(scene, now) - held_seen_published_) > kSameSample;
+  news_.published(scene, now);
 }
 
 void Node::publish_news(TimePoint now) {
   if (!news_period_.due(now)) return;
   news_period_.done(now);
   const Scene scene = scene_.scene(now, people(now));
-  if (has_news(scene, now)) publish(scene, now);
+  if (news_.has_news(scene, now)) publish(scene, now);
 }
 
 std::string Node::trouble(TimePoint now) const {
@@ -161,7 +142,7 @@ void Node::interpret(TimePoint now) {
     facts_out_->publish(facts);
     facts_period_.done(now);
   }
-  if (scene_due || scene.revision != revision_published_) publish(scene, now);
+  if (scene_due || news_.has_news(scene, now)) publish(scene, now);
 }
 
 }  // namespace handsel::spark

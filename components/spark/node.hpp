@@ -14,6 +14,7 @@
 #include "components/spark/facts/fact_finder.hpp"
 #include "components/spark/left_out_report.hpp"
 #include "components/spark/people/people_tracker.hpp"
+#include "components/spark/scene/scene_news.hpp"
 #include "components/spark/scene_model.hpp"
 
 namespace handsel::spark {
@@ -29,9 +30,6 @@ class Node {
   void publish_people(TimePoint now);
   std::string trouble(TimePoint now) const;
   void publish(const Scene& scene, TimePoint now);
-  // whether the scene has changed in a way that matters to a planner, or what a person holds, and
-  // may offer, was observed anew
-  bool has_news(const Scene& scene, TimePoint now) const;
   void publish_news(TimePoint now);  // the scene, when it has news
   void interpret(TimePoint now);     // facts and scene, each when it is due
 
@@ -50,8 +48,7 @@ class Node {
   TimePoint started_, people_published_{};
   // the safety state was received: the people lost before the start are known
   bool knows_lost_{false};
-  std::uint64_t revision_published_{0};
-  TimePoint held_seen_published_{};  // when the objects in people's hands had been observed
+  SceneNews news_;
 };
 
 }  // namespace handsel::spark

@@ -18,7 +18,7 @@ struct Offer {
   bool operator==(const Offer&) const = default;
 };
 
-/// Finds what people hold out for the robot by the extension of their arm, the direction, the rest
+/// Finds what people offer to the robot by the extension of their arm, the direction, the rest
 /// of the object and what happens around (settings `offer_*`). Extension: level distance of the
 /// object from the shoulder of the hand that holds the object, over the stature of its holder. Own
 /// method.
