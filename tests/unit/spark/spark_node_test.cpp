@@ -159,29 +159,6 @@ TEST_F(SparkNode, does_not_start_with_a_calibration_that_is_wrong) {
   EXPECT_THROW(start(), ConfigError);
 }
 
-TEST_F(SparkNode, each_observation_of_what_a_person_holds_makes_a_scene) {
-  start();
-  const Vector3 p_hand = [] {
-    for (const BodyJoint& joint : standing_body({0.8, 0, 1e-4}, 0, 1.7))
-      if (joint.name == "r_hand") return joint.position;
-    return Vector3(Vector3::Zero());
-  }();
-  const auto scenes_of = [&](const Vector3& p_crate) {
-    for (int i = 0; i < 30; ++i) {
-      if (i == 15) scenes_ = 0;  // the holder is known
-      ObjectObservation things;
-      things.source = "tracker";
-      things.objects = {
-          {"crate", "", make_pose(p_crate), 0.9, {}, {PrimitiveKind::box, {0.05, 0.05, 0.05}}}};
-      things_out_->publish(things);
-      see_person({0.8, 0, 0}, 1);
-    }
-    return scenes_;
-  };
-  EXPECT_LE(scenes_of(p_hand + Vector3(0.5, 0.5, 0)), 6) << "at the period of scenes";
-  EXPECT_GE(scenes_of(p_hand), 14);
-}
-
 TEST_F(SparkNode, news_of_things_come_at_once_and_refusals_are_told) {
   start();
   const int now = scenes_;
