@@ -1,5 +1,6 @@
 #include "common/grasp/grip_force.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -79,6 +80,8 @@ bool holds_all_ways(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) {
   return svd.singularValues()[5] > 1e-6 * svd.singularValues()[0];
 }
 
+constexpr double kUnbounded = 1e6;  // no margin reaches this [N]
+
 // The squeeze of one hand. `free`: 3m x n, forces that cancel out; `bear`: 3m x 3, forces on the
 // object that bear a force at its centre.
 GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::MatrixXd& free,
@@ -87,8 +90,9 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
   const auto m = static_cast<Eigen::Index>(contacts.size());
   GripForces out;
   const Eigen::Index n = free.cols() + 1, per = settings.edges + 1;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(m * per, n);
-  Eigen::VectorXd b(m * per), c = Eigen::VectorXd::Zero(n);
+  const Eigen::Index cones = m * per;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(cones + 1, n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(cones + 1), c = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < m; ++i) {
     const PointContact& contact = contacts[static_cast<std::size_t>(i)];
     const Vector3& normal = contact.inward_normal;
@@ -111,10 +115,12 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
   }
   c[n - 1] = 1;
   double least = std::numeric_limits<double>::infinity();  // the margin without a squeeze
-  for (Eigen::Index i = 0; i < b.size(); ++i)
+  for (Eigen::Index i = 0; i < cones; ++i)
     if (i % per != settings.edges) least = std::min(least, b[i]);
-  for (Eigen::Index i = 0; i < b.size(); ++i)
+  for (Eigen::Index i = 0; i < cones; ++i)
     if (i % per != settings.edges) b[i] -= least;
+  A(cones, n - 1) = 1;
+  b[cones] = std::clamp(settings.enough - least, 0.0, kUnbounded);
   const Eigen::VectorXd x = maximise(c, A, b);
   const Eigen::VectorXd f = free * x.head(n - 1);
   for (Eigen::Index i = 0; i < m; ++i) out.forces.push_back(f.segment<3>(3 * i));

@@ -3,6 +3,7 @@
 // load may pull in any direction.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "common/grasp/force_closure.hpp"
@@ -15,7 +16,9 @@ struct GripForceSettings {
   /// they were planned.
   double friction_fraction{0.8};
   double acceleration{13.0};  ///< of the load, gravity included, in the worst direction [m/s^2]
-  int edges{12};              ///< of a cone, linearised from outside
+  /// Margin from which on the fingers press no harder than needed [N].
+  double enough{std::numeric_limits<double>::infinity()};
+  int edges{12};  ///< of a cone, linearised from outside
 };
 
 /// What the fingers do at their contacts, frame of the contacts.
@@ -34,9 +37,9 @@ struct GripLoad {
   double shake{};                   ///< besides, in the worst direction [N]
 };
 
-/// Maximises the margin by linear programming. The load of `mass` [kg] acts at `com` and is borne
-/// by all contacts as equal springs. Without three contacts, or with all on one line, nothing can
-/// be borne: no forces, margin 0.
+/// Maximises the margin, up to `enough`, by linear programming; of equal margins the gentlest. The
+/// load of `mass` [kg] acts at `com` and is borne by all contacts as equal springs. Without three
+/// contacts, or with all on one line, nothing can be borne: no forces, margin 0.
 GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass,
                        const GripForceSettings& settings = {});
 

@@ -98,6 +98,11 @@ GraspListSettings list_settings(const settings::GraspPlannerSettings& t, std::ui
   s.grip.max_normal = t.grip_force;
   s.grip.friction_fraction = t.grip_friction;
   s.grip.acceleration = t.grip_acceleration;
+  s.grip.enough = t.enough_margin;
+  s.creep = t.grip_creep;
+  s.weight_grip = t.weight_grip;
+  s.sturdy_margin = t.sturdy_margin;
+  s.min_margin = t.min_margin;
   s.seed = seed;
   return s;
 }

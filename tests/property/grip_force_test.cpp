@@ -120,6 +120,30 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
               load);
 }
 
+TEST_P(GripForce, presses_no_harder_than_enough) {
+  const GripForceSettings hard;
+  GripForceSettings gentle;
+  gentle.enough = 1.0;
+  const auto pressure = [](const std::vector<PointContact>& contacts, const GripForces& grip) {
+    double sum = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      sum += grip.forces[i].dot(contacts[i].inward_normal);
+    return sum;
+  };
+  int limited = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto contacts = random_contacts(random_, 3 + trial % 3);
+    const GripForces full = grip_forces(contacts, Vector3::Zero(), 0.3, hard);
+    const GripForces less = grip_forces(contacts, Vector3::Zero(), 0.3, gentle);
+    EXPECT_NEAR(less.margin, std::min(full.margin, gentle.enough), 1e-6)
+        << "seed " << GetParam() << " trial " << trial;
+    if (full.margin < 1.1 * gentle.enough) continue;
+    ++limited;
+    EXPECT_LT(pressure(contacts, less), pressure(contacts, full));
+  }
+  EXPECT_GT(limited, 0);
+}
+
 TEST_P(GripForce, without_load_there_is_a_squeeze_exactly_when_the_grasp_is_force_closed) {
   const GripForceSettings settings;
   int closed = 0, open = 0;

@@ -46,6 +46,8 @@ const char* reason_text(ChoiceReason reason) {
   switch (reason) {
     case ChoiceReason::chosen:
       return "chosen";
+    case ChoiceReason::too_weak:
+      return "the fingers would not bear the object";
     case ChoiceReason::below_support:
       return "the hand would be in or under what the object stands on";
     case ChoiceReason::out_of_reach:
@@ -110,7 +112,7 @@ std::string Choice::why_none(const GraspList& list) const {
                end = reasons.begin() + static_cast<std::ptrdiff_t>(last) + 1;
     return std::max_element(begin, end) - reasons.begin();
   };
-  const auto first = most(ChoiceReason::below_support, ChoiceReason::not_considered);
+  const auto first = most(ChoiceReason::too_weak, ChoiceReason::not_considered);
   std::string why = "none of " + std::to_string(list.grasps.size()) +
                     " stable grasps serves here; mostly " +
                     reason_text(static_cast<ChoiceReason>(first));
@@ -156,8 +158,12 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   const TransferTable* pairs = inputs.pairs;
   Search search(*this, inputs);
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < list.grasps.size(); ++i)
-    order.emplace_back(search.rank(list.grasps[i], i), i);
+  for (std::size_t i = 0; i < list.grasps.size(); ++i) {
+    if (list.bears(list.grasps[i].grasp))
+      order.emplace_back(search.rank(list.grasps[i], i), i);
+    else
+      ++search.out.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)];
+  }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Found> found;

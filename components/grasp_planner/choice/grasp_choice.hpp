@@ -47,6 +47,7 @@ struct ChoiceSettings {
 /// Why a listed grasp does not serve now.
 enum class ChoiceReason : std::uint8_t {
   chosen,
+  too_weak,       ///< the fingers of one hand would not bear the object
   below_support,  ///< some part of the hand would be in or under what the object stands on
   out_of_reach,   ///< no arm configuration reaches it
   collision,      ///< arm or hand collides there

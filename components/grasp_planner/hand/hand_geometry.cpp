@@ -41,4 +41,10 @@ double HandGeometry::tip_radius() const {
   return radius;
 }
 
+GripForceSettings limits_of(const HandModel& hand, const GripForceSettings& settings) {
+  GripForceSettings limits = settings;
+  if (hand.grip_force() > 0) limits.max_normal = hand.grip_force();
+  return limits;
+}
+
 }  // namespace handsel::grasp_planner

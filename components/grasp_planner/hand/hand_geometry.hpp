@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "common/grasp/grip_force.hpp"
 #include "components/grasp_planner/hand/finger_chain.hpp"
 #include "components/grasp_planner/hand/finger_workspace.hpp"
 #include "components/grasp_planner/hand/hand_shape.hpp"
@@ -30,5 +31,9 @@ using FingerWorkspaces = std::vector<FingerWorkspace>;
 /// Samples the workspace of each finger of the hand.
 FingerWorkspaces make_workspaces(const HandGeometry& hand_geometry,
                                  const WorkspaceSettings& settings = {});
+
+/// Returns the settings with the max force of a finger that the description of the hand gives,
+/// where there is one.
+GripForceSettings limits_of(const HandModel& hand, const GripForceSettings& settings);
 
 }  // namespace handsel::grasp_planner

@@ -1,7 +1,6 @@
 #include "components/grasp_planner/list/grasp_list.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -16,8 +15,7 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr std::size_t kLeastContacts = 3;
-constexpr std::size_t kScoredCombinations = 8;
-constexpr double kMostPositions = 2000;
+constexpr std::size_t kScoredCombinations = 64;
 
 /// Which contact each finger uses; -1: none, the finger rests.
 using Combination = std::vector<int>;
@@ -62,45 +60,6 @@ Refusals GraspList::refusals() const {
   return out;
 }
 
-std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count) {
-  const Vector3 size = box.sizes().cwiseMax(1e-6);
-  Eigen::Array3i n(1, 1, 1);
-  // A side much shorter than a step has one position; the others share the rest.
-  std::array<bool, 3> thin{};
-  for (bool again = true; again;) {
-    double product = 1.0 / std::max(1U, count);
-    int sides = 0;
-    for (int i = 0; i < 3; ++i) {
-      if (thin[static_cast<std::size_t>(i)]) continue;
-      product *= size[i];
-      ++sides;
-    }
-    again = false;
-    const double step = std::pow(product, 1.0 / std::max(1, sides));
-    for (int i = 0; i < 3; ++i) {
-      if (thin[static_cast<std::size_t>(i)]) continue;
-      n[i] = std::max(1, static_cast<int>(std::lround(size[i] / step)));
-      if (size[i] < 0.75 * step) again = thin[static_cast<std::size_t>(i)] = true;
-    }
-  }
-  std::vector<Vector3> out;
-  for (int z = 0; z < n.z(); ++z) {
-    for (int y = 0; y < n.y(); ++y) {
-      for (int x = 0; x < n.x(); ++x)
-        out.push_back(box.min() + size.cwiseProduct(Vector3((x + 0.5) / n.x(), (y + 0.5) / n.y(),
-                                                            (z + 0.5) / n.z())));
-    }
-  }
-  return out;
-}
-
-std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings) {
-  if (!(settings.spacing > 0)) return settings.positions;
-  const double dense =
-      std::ceil(box.sizes().cwiseMax(settings.spacing).prod() / std::pow(settings.spacing, 3));
-  return static_cast<std::uint32_t>(std::clamp<double>(dense, settings.positions, kMostPositions));
-}
-
 struct GraspLister::Impl {
   Impl(std::shared_ptr<const HandGeometry> k, std::shared_ptr<const FingerWorkspaces> w,
        std::shared_ptr<const Graspable> o, const GraspListSettings& s)
@@ -113,6 +72,7 @@ struct GraspLister::Impl {
     orientations = so3_sequence(settings.orientations);
     out.hand = hand_geometry->hand.name();
     out.object = object->name();
+    out.min_margin = settings.min_margin;
     if (hand_geometry->hand.pinches()) pinch.emplace(*hand_geometry, *object, settings);
     hand_geometry->forward(hand_geometry->hand.rest(), T_rest);
     hand_geometry->forward(hand_geometry->hand.pregrasp(), T_pregrasp);
@@ -311,9 +271,8 @@ struct GraspLister::Impl {
     std::stable_sort(rated.begin(), rated.end(),
                      [](const Rated& a, const Rated& b) { return a.rank > b.rank; });
     const double scale = 1 / object->radius();
-    double best = -1;
+    double best = -std::numeric_limits<double>::infinity(), winner_epsilon = 0;
     Rated winner{};
-    double winner_epsilon = 0;
     std::size_t closed = 0;
     for (Rated& r : rated) {
       if (closed >= kScoredCombinations) break;
@@ -325,14 +284,15 @@ struct GraspLister::Impl {
       if (!(e > 0)) continue;
       ++closed;
       r.scores.stability = std::clamp(e / settings.full_epsilon, 0.0, 1.0);
-      const double q = quality(r.scores);
-      if (q <= best) continue;
-      best = q;
+      const double value = quality(r.scores) + settings.weight_grip * sturdiness(found[r.index]);
+      if (value <= best) continue;
+      best = value;
       winner = r;
       winner_epsilon = e;
     }
-    if (best < 0) return FrameReason::not_closed;
-    const Grasp grasp = make_grasp(id, T_object_hand, found[winner.index], winner_epsilon, best);
+    if (closed == 0) return FrameReason::not_closed;
+    const Grasp grasp =
+        make_grasp(id, T_object_hand, found[winner.index], winner_epsilon, quality(winner.scores));
     out.grasps.push_back({grasp, winner.scores, room(grasp)});
     return FrameReason::grasped;
   }
@@ -383,9 +343,29 @@ struct GraspLister::Impl {
     return g;
   }
 
+  /// Returns the grip of a combination, the friction cones narrowed by the angle that the normal
+  /// turns within the creep of the fingertip (own method).
+  GripForces grip_of(const Combination& c) const {
+    std::vector<PointContact> narrowed = point_contacts(c);
+    std::size_t k = 0;
+    for (std::size_t f = 0; f < c.size(); ++f) {
+      if (c[f] < 0) continue;
+      const double curvature = contacts[f][static_cast<std::size_t>(c[f])].place.curvature;
+      const double turn = settings.creep * curvature / hand_geometry->chains[f].tip_radius();
+      narrowed[k++].friction = std::tan(std::max(0.0, std::atan(friction()) - turn));
+    }
+    return grip_forces(narrowed, object->com(), object->mass(),
+                       limits_of(hand_geometry->hand, settings.grip));
+  }
+
+  /// Grip margin / sturdy_margin, -2 to 1; 0 where it has no weight.
+  double sturdiness(const Combination& c) const {
+    if (!(settings.weight_grip > 0)) return 0;
+    return std::clamp(grip_of(c).margin / settings.sturdy_margin, -2.0, 1.0);
+  }
+
   void grip(const Combination& c, Grasp& g) const {
-    const GripForces grip =
-        grip_forces(point_contacts(c), object->com(), object->mass(), settings.grip);
+    const GripForces grip = grip_of(c);
     g.margin = grip.margin;
     g.hand_effort = Vector::Zero(g.hand_joints.size());
     const Pose T_hand_object = g.T_object_hand.inverse();
@@ -461,7 +441,9 @@ GraspList merged(std::vector<GraspList> parts) {
     out.touch_tests += parts[i].touch_tests;
     out.closure_tests += parts[i].closure_tests;
   }
-  std::sort(out.grasps.begin(), out.grasps.end(), [](const ListedGrasp& a, const ListedGrasp& b) {
+  std::sort(out.grasps.begin(), out.grasps.end(), [&](const ListedGrasp& a, const ListedGrasp& b) {
+    const bool a_bears = out.bears(a.grasp), b_bears = out.bears(b.grasp);
+    if (a_bears != b_bears) return a_bears;
     return a.grasp.quality != b.grasp.quality ? a.grasp.quality > b.grasp.quality
                                               : a.grasp.id < b.grasp.id;
   });

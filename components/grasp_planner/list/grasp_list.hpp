@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +40,15 @@ struct GraspListSettings {
   double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
   double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
   GripForceSettings grip;        ///< how hard it is held, and what it must bear
+  /// Distance that a fingertip may creep over the surface, which turns the normal where the surface
+  /// is curved: the grip does not use that part of the friction cone [m].
+  double creep{0};
+  /// Weight of the grip margin / sturdy_margin, -2 to 1, beside the quality in the choice among the
+  /// contacts of a frame.
+  double weight_grip{0};
+  double sturdy_margin{2.0};  ///< a grip margin that counts as 1 [N]
+  /// Min grip margin of a grasp by which one hand alone bears the object [N].
+  double min_margin{-std::numeric_limits<double>::infinity()};
   /// Surface this far from the hand counts as room for another hand [m].
   double free_distance{0.03};
   std::uint64_t seed{1};  ///< of the contact points; the same gives the same list
@@ -72,13 +82,17 @@ struct ListedGrasp {
 };
 
 struct GraspList {
-  std::string hand, object;         ///< names of the hand and of the object model
-  std::vector<ListedGrasp> grasps;  ///< best quality first; ties by id
-  std::uint64_t frames{};           ///< tested
+  std::string hand, object;  ///< names of the hand and of the object model
+  /// Those that bear the object first, of these best quality first; ties by id.
+  std::vector<ListedGrasp> grasps;
+  double min_margin{-std::numeric_limits<double>::infinity()};  ///< as in the settings [N]
+  std::uint64_t frames{};                                       ///< tested
   /// Frames tested, by FrameReason; `grasped` those with a grasp.
   std::array<std::uint64_t, static_cast<std::size_t>(FrameReason::count)> reasons{};
   std::uint64_t finger_solutions{}, touch_tests{}, closure_tests{};  ///< work done
 
+  /// Returns whether one hand alone bears the object by this grasp.
+  bool bears(const Grasp& grasp) const { return grasp.margin >= min_margin; }
   /// Counts per reason of the frames without a grasp, e.g. {"113 frames", "..."}.
   Refusals refusals() const;
 };

@@ -15,7 +15,7 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr std::uint32_t kVersion =
-    4;  // of the form on disk and of the method: raise it when either changes
+    5;  // of the form on disk and of the method: raise it when either changes
 
 /// FNV-1a, 64 bit.
 class Hash {
@@ -190,6 +190,11 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object,
                          s.grip.max_normal,
                          s.grip.friction_fraction,
                          s.grip.acceleration,
+                         s.grip.enough,
+                         s.creep,
+                         s.weight_grip,
+                         s.sturdy_margin,
+                         s.min_margin,
                          static_cast<double>(s.grip.edges)}) {
     h.add(v);
   }

@@ -190,8 +190,7 @@ bool PinchSearch::fingers_touch(const std::vector<std::vector<Pose>>& T_hand_ste
 
 void PinchSearch::grip(Found& found, std::size_t max_on_a_pad) const {
   Grasp& g = found.grasp;
-  GripForceSettings limits = settings_.grip;
-  if (hand_geometry_.hand.grip_force() > 0) limits.max_normal = hand_geometry_.hand.grip_force();
+  GripForceSettings limits = limits_of(hand_geometry_.hand, settings_.grip);
   limits.max_normal /= static_cast<double>(max_on_a_pad);
   const GripForces grip = grip_forces(found.contacts, object_.com(), object_.mass(), limits);
   g.margin = grip.margin;

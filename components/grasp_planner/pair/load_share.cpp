@@ -23,7 +23,12 @@ std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const V
   for (std::size_t h = 0; h < hands.size(); ++h)
     for (const Contact& c : hands[h].grasp->contacts)
       contacts[h].push_back({c.position, -c.normal, c.friction});
-  const std::vector<GripForces> grips = shared_grip_forces(contacts, centre, load, settings);
+  // All press with no more than the weakest hand can.
+  GripForceSettings limits = limits_of(hands.front().hand_geometry->hand, settings);
+  for (const BearingHand& h : hands)
+    limits.max_normal =
+        std::min(limits.max_normal, limits_of(h.hand_geometry->hand, settings).max_normal);
+  const std::vector<GripForces> grips = shared_grip_forces(contacts, centre, load, limits);
   std::vector<LoadShare> out(hands.size());
   for (std::size_t h = 0; h < hands.size(); ++h) {
     const auto& [hand_geometry, grasp] = hands[h];

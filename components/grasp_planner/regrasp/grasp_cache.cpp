@@ -19,6 +19,7 @@ std::shared_ptr<const CachedGrasps> GraspCache::page(const ObjectModel& object,
   if (auto stored = store_.load(hand_geometry_->hand.name(), object.name, key, frames);
       stored && fits(*stored, hand_geometry_->hand, object))
     page->list = std::move(*stored);
+  page->list.min_margin = settings_.min_margin;
   if (page->list.frames < frames) {
     if (!workspaces_)
       workspaces_ = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry_));

@@ -78,6 +78,25 @@ GraspListSettings GraspChoice::settings;
 std::unique_ptr<GraspCache> GraspChoice::cache;
 std::shared_ptr<const CachedGrasps> GraspChoice::page;
 
+TEST_F(GraspChoice, refuses_grasps_that_would_not_bear_the_object_and_says_so) {
+  const GraspChooser chooser(robot, hand_geometry, library, {});
+  const Scene scene = scene_with_mug(0.68, -0.42);
+  GraspList firm = page->list;
+  firm.min_margin = 0;
+  const auto weak = std::count_if(firm.grasps.begin(), firm.grasps.end(),
+                                  [](const ListedGrasp& g) { return g.grasp.margin < 0; });
+  ASSERT_GT(weak, 0);
+  const Choice choice = chooser.choose({request(), firm, *page->object, scene, {}});
+  ASSERT_FALSE(choice.grasps.empty());
+  for (const Grasp& g : choice.grasps) EXPECT_GE(g.margin, 0);
+  EXPECT_EQ(choice.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)],
+            static_cast<std::uint64_t>(weak));
+  firm.min_margin = 1000;
+  const Choice none = chooser.choose({request(), firm, *page->object, scene, {}});
+  EXPECT_TRUE(none.grasps.empty());
+  EXPECT_NE(none.why_none(firm).find("would not bear"), std::string::npos) << none.why_none(firm);
+}
+
 TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
   const GraspChooser chooser(robot, hand_geometry, library, {});
   const Scene scene = scene_with_mug(0.68, -0.42);

@@ -2,6 +2,7 @@
 // checked from the outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -29,8 +30,7 @@ ObjectModel object(const std::string& name) {
 }
 
 GraspList list_of(const std::string& name, std::uint32_t positions = 24,
-                  std::uint32_t orientations = 48) {
-  GraspListSettings settings;
+                  std::uint32_t orientations = 48, GraspListSettings settings = {}) {
   settings.positions = positions;
   settings.orientations = orientations;
   return list_grasps(sah(), workspaces(),
@@ -54,7 +54,7 @@ double depth(const Shape& shape, const Vector3& p) {
 void expect_efforts_do_the_work_of_the_squeeze(const ObjectModel& o,
                                                const std::vector<PointContact>& contacts,
                                                const Grasp& g) {
-  const GripForces grip = grip_forces(contacts, o.com, o.mass);
+  const GripForces grip = grip_forces(contacts, o.com, o.mass, limits_of(sah()->hand, {}));
   EXPECT_NEAR(grip.margin, g.margin, 1e-9);
   ASSERT_EQ(g.hand_effort.size(), g.hand_joints.size());
   const HandModel& hand = sah()->hand;
@@ -167,6 +167,63 @@ TEST(GraspList, is_the_same_every_time_and_longer_lists_contain_shorter_ones) {
     EXPECT_EQ(same->grasp.margin, a.grasps[i].grasp.margin);
   }
   EXPECT_GT(longer.grasps.size(), a.grasps.size());
+}
+
+const ListedGrasp* with_id(const GraspList& list, std::uint64_t id) {
+  const auto found = std::find_if(list.grasps.begin(), list.grasps.end(),
+                                  [id](const ListedGrasp& g) { return g.grasp.id == id; });
+  return found != list.grasps.end() ? &*found : nullptr;
+}
+
+TEST(GraspList, takes_the_firmer_contacts_of_a_frame_where_the_grip_has_a_weight) {
+  GraspListSettings settings;
+  settings.weight_grip = 1;
+  const GraspList plain = list_of("box"), firm = list_of("box", 24, 48, settings);
+  ASSERT_EQ(plain.grasps.size(), firm.grasps.size());
+  const auto value = [&](const ListedGrasp& g) {
+    return g.grasp.quality + std::clamp(g.grasp.margin / settings.sturdy_margin, -2.0, 1.0);
+  };
+  int firmer = 0;
+  for (const ListedGrasp& g : plain.grasps) {
+    const ListedGrasp* other = with_id(firm, g.grasp.id);
+    ASSERT_NE(other, nullptr);
+    EXPECT_GE(value(*other), value(g) - 1e-9) << "frame " << g.grasp.id;
+    firmer += other->grasp.margin > g.grasp.margin + 0.1;
+  }
+  EXPECT_GE(firmer, 5);
+}
+
+TEST(GraspList, grasps_that_bear_the_object_come_first) {
+  GraspListSettings settings;
+  settings.min_margin = 0;
+  const GraspList list = list_of("mug", 24, 48, settings);
+  std::size_t bearing = 0;
+  while (bearing < list.grasps.size() && list.bears(list.grasps[bearing].grasp)) ++bearing;
+  EXPECT_GT(bearing, 0U);
+  EXPECT_LT(bearing, list.grasps.size());
+  for (std::size_t i = bearing; i < list.grasps.size(); ++i)
+    EXPECT_LT(list.grasps[i].grasp.margin, 0);
+}
+
+TEST(GraspList, a_creeping_fingertip_costs_margin_where_the_surface_is_curved_only) {
+  GraspListSettings settings;
+  settings.creep = 0.003;
+  const GraspList steady = list_of("mug"), creeping = list_of("mug", 24, 48, settings);
+  ASSERT_EQ(steady.grasps.size(), creeping.grasps.size());
+  int curved = 0;
+  for (const ListedGrasp& g : steady.grasps) {
+    const ListedGrasp* other = with_id(creeping, g.grasp.id);
+    ASSERT_NE(other, nullptr);
+    bool is_flat = true;
+    for (const Contact& c : g.grasp.contacts) is_flat = is_flat && c.curvature < 1e-6;
+    if (is_flat) {
+      EXPECT_NEAR(other->grasp.margin, g.grasp.margin, 1e-9);
+    } else if (g.grasp.margin > 0) {
+      EXPECT_LT(other->grasp.margin, g.grasp.margin + 1e-9);
+    }
+    curved += other->grasp.margin < g.grasp.margin - 0.05;
+  }
+  EXPECT_GE(curved, 20);
 }
 
 TEST(GraspList, says_why_a_frame_gives_none) {
