@@ -18,10 +18,6 @@ constexpr double kMaxShift = 0.03;      // of an object, after which its grasps 
 constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
 constexpr double kSameDistance =
     0.5;  // distances of the arm's farthest axis that count as equal [rad]
-constexpr double kMinEpsilon = 0.03;  // of a grasp that does not slip as the object is carried
-constexpr double kWeakPenalty = 1.5;  // distance that avoids a grasp below kMinEpsilon [rad]
-constexpr double kSlipPenalty = 6.0;  // distance that avoids a grip short of kMaxLack [rad]
-constexpr double kMaxLack = 2.0;      // of the margin of a grip below 0, worst that counts [N]
 constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the giver waits
 
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
@@ -69,8 +65,7 @@ Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& o
                               " as it is held serves for putting it down: " + later.objections);
   const auto rank = [&parts](const Grasp& g) {
     const bool serves = parts.destinations.has(g.id);
-    const double penalty = (g.epsilon < kMinEpsilon ? kWeakPenalty : 0.0) +
-                           kSlipPenalty * std::clamp(-g.margin / kMaxLack, 0.0, 1.0) +
+    const double penalty = parts.settings.weak_grip_detour * std::max(0.0, -g.margin) +
                            (serves ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
     return std::floor((distance + penalty) / kSameDistance);

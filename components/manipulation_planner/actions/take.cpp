@@ -14,7 +14,6 @@ namespace {
 constexpr double kOfferCheckPeriod = 0.02;  // [s]
 constexpr double kMaxStandoffError = 0.02;  // of the hand, where the straight motion in begins [m]
 constexpr double kReleaseTime = 0.2;      // with the load, before what was taken is drawn away [s]
-constexpr double kUnsureTime = 1.5;       // for the giver's hand to go where the grip is unsure [s]
 constexpr double kMaxInHandError = 0.05;  // of an object that was put into the hand [m]
 constexpr double kNear = 0.5;             // to giver or object: the arm retreats straight first [m]
 constexpr double kMaxDetour = 1.3;        // length of a path over that of the straight one
@@ -297,7 +296,8 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   if (closed.unsure) {
     // A giver who feels the robot hold the object releases it at once: a hand that opened then
     // would drop it. One who still holds it keeps their hand there.
-    const Outcome released = co_await await_release(parts, take.offer, kUnsureTime);
+    const Outcome released =
+        co_await await_release(parts, take.offer, parts.settings.unsure_grip_time);
     if (released.good) taken = released;
   }
   if (!taken.good) {
