@@ -27,7 +27,7 @@ struct ChoiceSettings {
   double rank_partner{0.3};  ///< the person's best grasp beside it; then too, as the next two
   /// The arm can offer the object upright, the hand behind it, the person's wrist at ease.
   double rank_handover{0.3};
-  double rank_transfer{0.3};  ///< a place was found where the person can take it so
+  double rank_transfer{1.0};  ///< a place was found where the person can take it so
   double rank_tilt{1.0};      ///< taken off for each radian the object must be tilted there
   /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last.
   double rank_sturdy{1.0};

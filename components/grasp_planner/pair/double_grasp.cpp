@@ -113,7 +113,12 @@ std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, 
   const std::vector<Eigen::Quaterniond> cells = so3_sequence(so3_grid_size(0));
   std::map<std::pair<std::size_t, int>, std::size_t>
       seen;  // how many came before from the same cell and octant
-  std::vector<std::pair<std::size_t, std::size_t>> order;  // that number, index
+  struct Entry {
+    bool is_weak;
+    std::size_t before, index;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::vector<Entry> order;  // what one hand cannot bear comes last
   for (std::size_t i = 0; i < list.grasps.size(); ++i) {
     const Pose& T = list.grasps[i].grasp.T_object_hand;
     const Eigen::Quaterniond q(T.linear());
@@ -123,10 +128,10 @@ std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, 
     }
     const Vector3 off = T.translation() - p_object_middle;
     const int octant = (off.x() > 0 ? 1 : 0) + (off.y() > 0 ? 2 : 0) + (off.z() > 0 ? 4 : 0);
-    order.emplace_back(seen[{cell, octant}]++, i);
+    order.push_back({!list.bears(list.grasps[i].grasp), seen[{cell, octant}]++, i});
   }
   std::sort(order.begin(), order.end());
-  for (std::size_t i = 0; i < std::min(count, order.size()); ++i) out.push_back(order[i].second);
+  for (std::size_t i = 0; i < std::min(count, order.size()); ++i) out.push_back(order[i].index);
   for (const std::size_t i : also) add(i);
   return out;
 }
