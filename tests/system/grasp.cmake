@@ -1,6 +1,6 @@
 if(TARGET handsel_sim_core AND TARGET handsel_trajectory_controller_core)
   handsel_test(grasp_holds SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasps/grasp_holds_test.cpp
-    LINK handsel_grasp_planner_core handsel_trajectory_controller_core handsel_sim_core LABEL system)
+    LINK handsel_grasp_planner handsel_grasp_planner_core handsel_trajectory_controller_core handsel_sim_core LABEL system)
   set_tests_properties(grasp_holds PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=0")
   add_test(NAME grasp_holds_more COMMAND test_grasp_holds)
   set_tests_properties(grasp_holds_more PROPERTIES LABELS system TIMEOUT 300 ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=1")

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "components/grasp_planner/load.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/system/grasps/grasp_execution.hpp"
 
@@ -72,7 +73,8 @@ class Grasping : public testing::Test {
       std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
   std::shared_ptr<const HandGeometry> kit_ =
       std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  GraspCache book_{kit_, {}, GraspStore("")};
+  GraspCache book_{kit_, list_settings(grasp_planner::load_settings(kDeploy / "config"), 1),
+                   GraspStore("")};
 };
 
 struct Case {
