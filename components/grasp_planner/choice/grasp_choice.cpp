@@ -17,6 +17,7 @@ constexpr double kSameDistance = 0.02;  // [m] grasps nearer than this ...
 constexpr double kSameAngle = 0.35;     // [rad] ... and less turned count as one variant
 constexpr std::size_t kShortList =
     40;  // grasps, clearly different ones, tried at each place of the platform
+constexpr std::size_t kReasonsGiven = 3;  // the most frequent ones, where no grasp serves
 constexpr std::size_t kPlacesServed =
     3;  // places of the platform with grasps, then the search ends
 
@@ -107,20 +108,26 @@ std::string Choice::why_none(const GraspList& list) const {
            std::to_string(list.frames) + " frames; mostly " +
            reason_text(static_cast<FrameReason>(most - list.reasons.begin()));
   }
-  const auto most = [&](ChoiceReason first, ChoiceReason last) {
-    const auto begin = reasons.begin() + static_cast<std::ptrdiff_t>(first),
-               end = reasons.begin() + static_cast<std::ptrdiff_t>(last) + 1;
-    return std::max_element(begin, end) - reasons.begin();
-  };
-  const auto first = most(ChoiceReason::too_weak, ChoiceReason::not_considered);
-  std::string why = "none of " + std::to_string(list.grasps.size()) +
-                    " stable grasps serves here; mostly " +
-                    reason_text(static_cast<ChoiceReason>(first));
-  const auto later = most(ChoiceReason::goal_support, ChoiceReason::hidden);
-  const auto count = reasons[static_cast<std::size_t>(later)];
-  if (count > 0 && later != first)
-    why += "; and with " + std::to_string(count) + ", " +
-           reason_text(static_cast<ChoiceReason>(later));
+  std::vector<std::pair<std::uint64_t, ChoiceReason>> often;
+  for (std::size_t r = 1; r < reasons.size(); ++r) {
+    const auto reason = static_cast<ChoiceReason>(r);
+    if (reasons[r] > 0 && reason != ChoiceReason::not_considered)
+      often.emplace_back(reasons[r], reason);
+  }
+  std::stable_sort(often.begin(), often.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  // What failed on the last of the checks came nearest to serving.
+  const auto last = std::max_element(
+      often.begin(), often.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (std::distance(often.begin(), last) >= static_cast<std::ptrdiff_t>(kReasonsGiven))
+    std::iter_swap(last, often.begin() + kReasonsGiven - 1);
+  std::string why = "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here";
+  for (std::size_t i = 0; i < std::min(often.size(), kReasonsGiven); ++i)
+    why += (i == 0 ? ": for " : ", for ") + std::to_string(often[i].first) + " " +
+           reason_text(often[i].second);
+  if (often.size() > kReasonsGiven) why += ", ...";
+  if (const auto untried = reasons[static_cast<std::size_t>(ChoiceReason::not_considered)])
+    why += "; " + std::to_string(untried) + " were not tried, the budget was used up";
   if (platform.none)
     why += "; the robot's description tells of no platform that could drive elsewhere";
   if (platform.places > 0)

@@ -97,7 +97,8 @@ struct Choice {
 
   /// Returns the counts per reason of the grasps and places of the platform that do not serve.
   Refusals refusals() const;
-  /// One sentence when there are no grasps: how many the list had, and what most of them failed on.
+  /// Returns one sentence for when there are no grasps: how many the list had, on what most of them
+  /// failed, with counts, and how many were not tried.
   std::string why_none(const GraspList& list) const;
 };
 
