@@ -52,9 +52,22 @@ Routine<GraspList> ask_clear_grasps(Parts& parts, const Offer& offer) {
   co_return list;
 }
 
+/// Returns by how much the arm would come nearer to the giver's body than giver_clearance, at the
+/// grasp or where the straight motion in begins [m].
+double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& grasp) {
+  double lack = 0;
+  for (const Vector& joints : {grasp.approach_joints, grasp.arm_joints}) {
+    const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), joints);
+    const double distance =
+        parts.retreat.separation(q, parts.now.T_world_base(), parts.now.people(), offer.giver);
+    lack = std::max(lack, parts.settings.giver_clearance - distance);
+  }
+  return lack;
+}
+
 /// Sorts grasps: the arm's shortest motion first, since a giver does not wait long, unless the
-/// grasp is weak or the object cannot be put down by it. Leaves the best. Returns false where the
-/// object can be put down by none.
+/// grasp is weak, the arm would come near to the giver's body, or the object cannot be put down by
+/// that grasp. Leaves the best. Returns false where the object can be put down by none.
 Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
                           std::vector<Grasp>& grasps) {
   const DestinationLimits limits{grasps.size(), kMaxPlacesTried};
@@ -63,15 +76,18 @@ Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& o
   if (later.at.empty() && !later.objections.empty())
     parts.refuse("place", "no grasp of " + offer.object +
                               " as it is held serves for putting it down: " + later.objections);
-  const auto rank = [&parts](const Grasp& g) {
-    const bool serves = parts.destinations.has(g.id);
+  std::vector<std::pair<double, Grasp>> ranked;
+  for (Grasp& g : grasps) {
     const double penalty = parts.settings.weak_grip_detour * std::max(0.0, -g.margin) +
-                           (serves ? 0.0 : parts.settings.place_detour);
+                           parts.settings.giver_detour * lacking_clearance(parts, offer, g) +
+                           (parts.destinations.has(g.id) ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
-    return std::floor((distance + penalty) / kSameDistance);
-  };
-  std::stable_sort(grasps.begin(), grasps.end(),
-                   [&rank](const Grasp& a, const Grasp& b) { return rank(a) < rank(b); });
+    ranked.emplace_back(std::floor((distance + penalty) / kSameDistance), std::move(g));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  grasps.clear();
+  for (auto& [rank, grasp] : ranked) grasps.push_back(std::move(grasp));
   grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps));
   co_return !later.outcome.good || !later.at.empty();
 }

@@ -83,6 +83,13 @@ double RetreatPlanner::distance(const Vector& q, const Pose& T_world_base,
   return min;
 }
 
+double RetreatPlanner::separation(const Vector& q, const Pose& T_world_base,
+                                  const HumanState& people, const std::string& partner) const {
+  SeparationExemption exempt;
+  exempt.person = partner;
+  return handsel::separation(capsules_, links(q), T_world_base, people, exempt).distance;
+}
+
 std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T_world_base,
                                                const HumanState& people,
                                                double max_distance) const {

@@ -2,6 +2,7 @@
 // only when every link near a person moves clearly away from the person.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/messages/world.hpp"
@@ -26,6 +27,10 @@ class RetreatPlanner {
                                  const HumanState& people, double max_distance) const;
   /// Returns the distance between the robot in a configuration and a point of the world [m].
   double distance(const Vector& q, const Pose& T_world_base, const Vector3& p_world) const;
+  /// Returns the distance between the robot in a configuration and the nearest person, without
+  /// the forearms and hands of the person `partner` [m]; infinity: nobody is there.
+  double separation(const Vector& q, const Pose& T_world_base, const HumanState& people,
+                    const std::string& partner) const;
 
  private:
   bool within_limits(const Vector& q) const;
