@@ -24,7 +24,7 @@ ComplianceSettings compliance_settings(const ControllerSettings& s) {
 }
 
 LookaheadSettings lookahead_settings(const ControllerSettings& s) {
-  return {s.guard, s.walls, s.look_ahead, s.look_far_ahead};
+  return {s.guard, s.walls, s.look_ahead, s.look_far_ahead, s.rise};
 }
 
 OutputCheckSettings output_settings(const ControllerSettings& s) {
@@ -153,7 +153,7 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   commands_.accept(command.id);
   if (!joins) supervisor_.begin_motion(now);
   // A path is evaluated before its first step; from rest it begins with no more than may be.
-  lookahead_.evaluate_all(lookahead_inputs(now));
+  lookahead_.evaluate_all(lookahead_inputs(now), !joins);
   arm_.begin_with(std::max(0.0, wanted_factor(now)));
   return {};
 }
@@ -265,9 +265,12 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   inputs_.robot.mark_used();
   head_.step(mode < Mode::hold, set_points_.next());
 
+  const std::uint64_t unproven = output_check_.unproven();
+  const double factor = arm_.speed_factor();
   output_check_.step({people.capsules(), robot.T_world_base, age, hands_.held_payload(), follows,
                       follower_.moves_nothing(), compliance_.complying(), cycles_},
                      {arm_, hands_, head_.movers()}, set_points_);
+  if (output_check_.unproven() != unproven) lookahead_.lower(factor);
   set_points_.end_cycle(robot_->guard_limits(), settings_.period);
   return true;
 }

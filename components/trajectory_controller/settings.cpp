@@ -190,6 +190,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.head_dead_band = in.head_dead_band;
   s.look_ahead = in.look_ahead;
   s.look_far_ahead = in.look_far_ahead;
+  s.rise = {in.period, in.rise_rate, in.stop_proof.unproven_ratio, in.stop_proof.unproven_rate};
   s.hand_rejoin = in.hand_rejoin;
   s.late_limit = in.late_limit;
   read_timeouts(in, s);

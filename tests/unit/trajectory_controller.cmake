@@ -5,7 +5,7 @@ handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/contact_watch_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/hand_executor_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_overload_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_blind_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/observed_space_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/path_runner_test.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/mode_machine_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
+  ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/mode_machine_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/speed_rise_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
 # Each part of the controller alone.
 handsel_test(controller_parts SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_inputs_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_arm_test.cpp LINK handsel_trajectory_controller_core LABEL unit)

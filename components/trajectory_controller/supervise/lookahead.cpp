@@ -26,6 +26,7 @@ Lookahead::Lookahead(const LookaheadSettings& settings, const RobotModel& robot,
       finger_axes_(finger_axes),
       capsules_(robot_capsules(robot)),
       reach_limit_(proof),
+      rise_(settings.rise),
       motion_(rest_state(Vector::Zero(robot.dof()))),
       finger_speeds_(motion_.position) {
   robot_.forward(motion_.position, links_);
@@ -37,6 +38,7 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
   const bool running = in.arm.running();
   if (!running || in.arm.path().finished()) {
     now_ = near_ = far_ = {};
+    rise_.rest();
     now_.uncovered = in.uncovered;
     // At rest only the distance, the end of a handover and a possible retreat are of interest.
     if (cycle % (in.retreat != nullptr ? kEveryRetreat : kEvery) != 0) {
@@ -61,21 +63,25 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
   if (here) nearest_ = now_;
   new_people_ = false;
   merge();
+  if (running) limit_rise();
   retreat_factor_ = verdict_.forward;
   return here;
 }
 
-void Lookahead::evaluate_all(const LookaheadInputs& in) noexcept {
+void Lookahead::evaluate_all(const LookaheadInputs& in, bool from_rest) noexcept {
+  if (from_rest) rise_.restart();
   evaluate(0.0, in, now_);
   evaluate(settings_.look_ahead, in, near_);
   evaluate(settings_.look_far_ahead, in, far_);
   merge();
+  rise_.note(verdict_.forward);
 }
 
 void Lookahead::forbid_all() noexcept {
   now_ = near_ = far_ = {};
   now_.forward = near_.forward = far_.forward = 0.0;
   merge();
+  rise_.forbid();
 }
 
 void Lookahead::set_finger_speeds(const MotionState3& set_point) noexcept {
@@ -94,6 +100,13 @@ void Lookahead::merge() noexcept {
     verdict_.wall = verdict_.wall || ahead->wall;
     verdict_.view = std::min(verdict_.view, ahead->view);
   }
+}
+
+void Lookahead::limit_rise() noexcept {
+  const SpeedLimit limit = rise_.next({verdict_.forward, verdict_.separation, verdict_.wall});
+  verdict_.forward = limit.factor;
+  verdict_.separation = limit.people;
+  verdict_.wall = limit.wall;
 }
 
 /// The motion along the path `ahead` [s] of where it is; at rest, that which was set before.

@@ -10,6 +10,7 @@
 #include "components/trajectory_controller/axis_groups.hpp"
 #include "components/trajectory_controller/supervise/guard.hpp"
 #include "components/trajectory_controller/supervise/reach_limit.hpp"
+#include "components/trajectory_controller/supervise/speed_rise.hpp"
 #include "components/trajectory_controller/supervise/stop/stop_space.hpp"
 
 namespace handsel::trajectory_controller {
@@ -20,6 +21,7 @@ struct LookaheadSettings {
   std::vector<Wall> walls;      ///< never passed
   double look_ahead{0.15};      ///< the path is also evaluated this much later [s]
   double look_far_ahead{0.45};  ///< and this much later: about the time of a stop [s]
+  SpeedRiseSettings rise;       ///< of the speed factor
 };
 
 /// Inputs of one evaluation.
@@ -48,11 +50,13 @@ class Lookahead {
   /// Evaluates one of the three, at rest now and then only. Returns whether the evaluation was of
   /// where the arm is, so that nearest() is new.
   bool step(const LookaheadInputs& in, std::uint64_t cycle) noexcept;
-  /// Evaluates all three: of a new path before its first step.
-  void evaluate_all(const LookaheadInputs& in) noexcept;
+  /// Evaluates all three: of a new path before its first step. `from_rest`: no path runs.
+  void evaluate_all(const LookaheadInputs& in, bool from_rest) noexcept;
   /// Nothing is allowed until the next evaluations have shown what is: all at once would make a
   /// late cycle.
   void forbid_all() noexcept;
+  /// Lowers what is allowed: at the speed factor `factor` a set-point had no checked stop.
+  void lower(double factor) noexcept { rise_.lower(factor); }
   /// Computes where the links are at `position`, all axes.
   void place_links(const Vector& position) noexcept { robot_.forward(position, links_); }
 
@@ -74,6 +78,7 @@ class Lookahead {
   void set_motion(double ahead, const LookaheadInputs& in) noexcept;
   void set_finger_speeds(const MotionState3& set_point) noexcept;
   void merge() noexcept;
+  void limit_rise() noexcept;
 
   LookaheadSettings settings_;
   const RobotModel& robot_;
@@ -83,6 +88,7 @@ class Lookahead {
   std::vector<LinkCapsule> capsules_;
   ReachLimit reach_limit_;
   GuardVerdict verdict_, now_, near_, far_, nearest_;
+  SpeedRise rise_;
   double retreat_factor_{};
   int turn_{};  // of the evaluations
   bool new_people_{};

@@ -93,6 +93,10 @@ class FingersBesideSomebody {
                        .trajectory;
     return core_.accept(c, Duration(0), now_);
   }
+  /// Moves the person along x [m].
+  void shift_person(double x) {
+    for (BodyJoint& joint : people_.people[0].joints) joint.position.x() += x;
+  }
   const Controller& core() const { return core_; }
 
  private:
@@ -127,6 +131,33 @@ TEST(FingerLimit, the_arm_leaves_its_path_for_no_finger) {
     EXPECT_EQ(b.core().unproven_set_points(), 0u) << "somebody at " << distance << " m";
     EXPECT_EQ(b.core().status().motion, MotionState::finished)
         << "somebody at " << distance << " m";
+  }
+}
+
+// What people allow depends on the arm's acceleration: an arm that gathered speed at once after
+// somebody stopped it would be stopped again.
+TEST(SpeedRise, after_a_person_has_stopped_the_arm_the_path_gathers_speed_slowly) {
+  for (const double distance : {0.55, 0.6, 0.65}) {
+    FingersBesideSomebody b(distance);
+    ASSERT_EQ(b.draw_back(), "");
+    b.run(0.3);
+    b.shift_person(-0.15);
+    b.run(0.1);
+    b.shift_person(0.15);
+    double last = b.core().speed_factor(), max_rise = 0.0, max_factor = 0.0;
+    bool has_stopped = false;
+    for (int k = 0; k < 20000 && b.core().status().motion == MotionState::running; ++k) {
+      b.run(0.001);
+      const double factor = b.core().speed_factor();
+      has_stopped = has_stopped || factor < 0.01;
+      if (has_stopped) max_rise = std::max(max_rise, factor - last);
+      if (has_stopped) max_factor = std::max(max_factor, factor);
+      last = factor;
+    }
+    EXPECT_TRUE(has_stopped);
+    EXPECT_GT(max_factor, 0.5);
+    EXPECT_LT(max_rise, 0.004) << "with somebody at " << distance << " m";
+    EXPECT_EQ(b.core().status().motion, MotionState::finished);
   }
 }
 
