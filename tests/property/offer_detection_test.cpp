@@ -55,10 +55,17 @@ const World& world() {
   return one;
 }
 
-/// A span of time [s]; of an offer from when the object was at rest first.
-struct Span {
+/// A span of time in which an offer was found [s].
+struct Found {
   double begin{}, end{};
-  bool unclear{};
+};
+
+/// A span of time in which somebody offers [s].
+struct Offered {
+  double begin{};     ///< the object is held out
+  double rest{-1};    ///< it is at rest for long enough, from here on; negative: never
+  double end{};       ///< it is withdrawn
+  bool is_unclear{};  ///< nobody could tell the offer
 };
 
 /// What became of one sequence.
@@ -160,10 +167,10 @@ class Watched {
     p_before_ = p;
     if (acts_.is_offer()) {
       if (!was_offer_) rest_since_ = clock_;
-      if (!was_offer_) offers_.push_back({-1, clock_, acts_.is_unclear()});
+      if (!was_offer_) offers_.push_back({.begin = clock_, .is_unclear = acts_.is_unclear()});
       if (speed > acts_.label().max_speed) rest_since_ = clock_;
-      if (offers_.back().begin < 0 && clock_ - rest_since_ > kRestTime)
-        offers_.back().begin = rest_since_;
+      if (offers_.back().rest < 0 && clock_ - rest_since_ > kRestTime)
+        offers_.back().rest = rest_since_;
       offers_.back().end = clock_;
     }
     was_offer_ = acts_.is_offer();
@@ -229,45 +236,58 @@ class Watched {
     }
   }
 
+  /// An offer that ends before it has been at rest for long enough need not be found, but whoever
+  /// finds it is right.
+  bool must_be_found(const Offered& offer) const {
+    return offer.rest >= 0 && offer.end - offer.rest >= acts_.label().min_duration;
+  }
+  static bool overlap(const Found& found, const Offered& offer) {
+    return found.begin < offer.end && found.end > offer.rest;
+  }
+  static bool is_right(const Found& found, const Offered& offer) {
+    const bool is_early =
+        found.begin < offer.begin && (offer.rest < 0 || found.begin < offer.rest - kEarly);
+    return !is_early && found.begin <= offer.end && found.end <= offer.end + kMaxOutlast;
+  }
+
   Result score() {
     Result out;
-    std::erase_if(offers_, [&](const Span& s) {
-      return s.begin < 0 || s.end - s.begin < acts_.label().min_duration;
-    });
-    for (const Span& offer : offers_) {
-      if (offer.unclear) {
-        ++out.unclear;
-        out.unclear_found += std::any_of(found_.begin(), found_.end(), [&](const Span& found) {
-          return found.begin < offer.end && found.end > offer.begin;
-        });
-        continue;
-      }
-      ++out.offers;
-      bool in_time = false;
-      double delay = 1e9;
-      for (const Span& found : found_) {
-        if (found.end < offer.begin || found.begin > offer.end) continue;
-        delay = std::min(delay, found.begin - offer.begin);
-        in_time = in_time || found.begin <= offer.begin + kMaxDelay;
-      }
-      out.in_time += in_time;
-      if (delay < 1e8) out.delays.push_back(delay);
-      if (!in_time) out.story += line("missed", offer, delay);
-    }
-    for (const Span& found : found_) {
-      bool right = false, unclear = false;
-      for (const Span& offer : offers_) {
-        unclear = unclear || (offer.unclear && found.begin < offer.end && found.end > offer.begin);
-        right = right || (found.begin >= offer.begin - kEarly && found.begin <= offer.end &&
-                          found.end <= offer.end + kMaxOutlast);
-      }
-      if (unclear) continue;
-      right ? ++out.right : ++out.wrong;
-      if (right) continue;
-      out.wrong_during[name(act_at(found.begin))] += 1;
-      out.story += line("wrong", found, 0);
-    }
+    for (const Offered& offer : offers_)
+      if (must_be_found(offer)) look_for(offer, out);
+    for (const Found& found : found_) judge(found, out);
     return out;
+  }
+  /// Counts an offer and how it was found.
+  void look_for(const Offered& offer, Result& out) const {
+    if (offer.is_unclear) {
+      ++out.unclear;
+      out.unclear_found += std::any_of(found_.begin(), found_.end(),
+                                       [&](const Found& found) { return overlap(found, offer); });
+      return;
+    }
+    ++out.offers;
+    bool in_time = false;
+    double delay = 1e9;
+    for (const Found& found : found_) {
+      if (found.end < offer.rest || found.begin > offer.end) continue;
+      delay = std::min(delay, found.begin - offer.rest);
+      in_time = in_time || found.begin <= offer.rest + kMaxDelay;
+    }
+    out.in_time += in_time;
+    if (delay < 1e8) out.delays.push_back(delay);
+    if (!in_time) out.story += line("missed", offer.rest, offer.end, delay);
+  }
+  /// Counts what was found as right or wrong.
+  void judge(const Found& found, Result& out) const {
+    bool right = false;
+    for (const Offered& offer : offers_) {
+      if (offer.is_unclear && must_be_found(offer) && overlap(found, offer)) return;
+      right = right || is_right(found, offer);
+    }
+    ++(right ? out.right : out.wrong);
+    if (right) return;
+    out.wrong_during[name(act_at(found.begin))] += 1;
+    out.story += line("wrong", found.begin, found.end, 0);
   }
   Act act_at(double t) const {
     Act act{};
@@ -275,10 +295,10 @@ class Watched {
       if (at <= t) act = what;
     return act;
   }
-  std::string line(const char* what, const Span& span, double delay) const {
+  std::string line(const char* what, double begin, double end, double delay) const {
     char text[160];
-    std::snprintf(text, sizeof text, "  %s %.2f to %.2f s (%s), delay %.2f s\n", what, span.begin,
-                  span.end, name(act_at(span.begin)), delay > 1e8 ? -1 : delay);
+    std::snprintf(text, sizeof text, "  %s %.2f to %.2f s (%s), delay %.2f s\n", what, begin, end,
+                  name(act_at(begin)), delay > 1e8 ? -1 : delay);
     return text;
   }
 
@@ -302,7 +322,8 @@ class Watched {
   Vector3 p_before_{Vector3::Zero()};
   std::deque<std::pair<double, std::vector<ObservedGrip>>> grips_;
   std::vector<std::pair<double, Act>> history_;
-  std::vector<Span> offers_, found_;
+  std::vector<Offered> offers_;
+  std::vector<Found> found_;
 };
 
 int count_of(int usual) {
