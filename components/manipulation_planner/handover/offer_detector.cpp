@@ -12,6 +12,7 @@ namespace {
 constexpr double kAnySpeed = std::numeric_limits<double>::infinity();  // [m/s]
 constexpr double kRetreatNoise = 2.0;  // times the noise: an object at rest is hardly farther back
 constexpr double kMinStature = 0.5;    // [m]
+constexpr double kExtensionShare = 0.2;  // of one observation in the mean extension
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
@@ -55,8 +56,8 @@ double OfferDetector::min_extension(const Person& person, const SceneObject& obj
   const Offer offer{object.id, person.id};
   if (offer == accepted_)
     return std::max(
-        std::min(min - settings_.offer_noise, extension_ - settings_.offer_min_withdrawal),
-        extension_ - settings_.offer_max_withdrawal);
+        std::min(min - settings_.offer_noise, max_extension_ - settings_.offer_min_withdrawal),
+        max_extension_ - settings_.offer_max_withdrawal);
   return offer == seen_ ? min - settings_.offer_noise : min;
 }
 
@@ -115,8 +116,9 @@ void OfferDetector::accept(const Offer& offer) {
   const SceneObject* object = now_.object(offer.object);
   const Person* person = now_.person(offer.giver);
   const bool is_known = object != nullptr && person != nullptr;
-  extension_ = is_known ? extension(*person, object->T_world_object.translation())
-                        : settings_.offer_extension;
+  mean_extension_ = is_known ? extension(*person, object->T_world_object.translation())
+                             : settings_.offer_extension;
+  max_extension_ = mean_extension_;
 }
 
 void OfferDetector::await() {
@@ -125,7 +127,11 @@ void OfferDetector::await() {
 }
 
 void OfferDetector::update(const Vector3& p_hand) {
-  follow_objects();
+  if (followed_ != now_.scene_count()) {
+    followed_ = now_.scene_count();
+    follow_objects();
+    follow_extension();
+  }
   if (!has_accepted()) {
     const std::optional<Offer> seen = find(asked_.object, asked_.giver, p_hand, kAnySpeed);
     if (!seen || seen != seen_) seen_since_ = now_.time();
@@ -138,13 +144,21 @@ void OfferDetector::update(const Vector3& p_hand) {
 }
 
 void OfferDetector::follow_objects() {
-  if (followed_ == now_.scene_count()) return;
-  followed_ = now_.scene_count();
   for (const SceneObject& object : now_.scene().objects)
     trails_.try_emplace(object.id, settings_)
         .first->second.add(now_.time() - from_seconds(object.age),
                            object.T_world_object.translation());
   std::erase_if(trails_, [&](const auto& entry) { return now_.object(entry.first) == nullptr; });
+}
+
+/// Extends the max extension of the accepted offer by a mean, which noise hardly exceeds.
+void OfferDetector::follow_extension() {
+  const SceneObject* object = has_accepted() ? now_.object(accepted_.object) : nullptr;
+  const Person* person = object == nullptr ? nullptr : now_.person(accepted_.giver);
+  if (person == nullptr) return;
+  const double observed = extension(*person, object->T_world_object.translation());
+  mean_extension_ += kExtensionShare * (observed - mean_extension_);
+  max_extension_ = std::max(max_extension_, mean_extension_);
 }
 
 std::optional<Offer> OfferDetector::made() const {

@@ -74,6 +74,7 @@ class OfferDetector {
   double min_extension(const Person& person, const SceneObject& object,
                        const Vector3& p_hand) const;
   void follow_objects();
+  void follow_extension();
   std::optional<Offer> find(const std::string& object, const std::string& giver,
                             const Vector3& p_hand, double max_speed) const;
   bool is_put_down(const Offer& offer, const ObjectTrail& trail) const;
@@ -84,7 +85,7 @@ class OfferDetector {
   const settings::ManipulationPlannerSettings& settings_;
   Offer asked_, accepted_;
   bool hand_at_offer_{};
-  double extension_{};  // when the offer was accepted
+  double mean_extension_{}, max_extension_{};  // of the accepted offer, since it was accepted
   TimePoint offered_at_{};
   std::optional<Offer> seen_;  // at rest or not, not accepted yet
   TimePoint seen_since_{};

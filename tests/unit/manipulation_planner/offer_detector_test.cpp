@@ -52,14 +52,13 @@ class OfferDetectorTest : public testing::Test {
   /// `rest` [s] later, the height of the mug over the stature from `up_from`. Returns when it was
   /// found, since the end of the motion [s]; negative: never.
   double bring(double from, double to, double rest, double up_from = -0.15) {
-    constexpr double kDuration = 0.9;
     const double begin = clock_;
-    for (; clock_ < begin + kDuration + rest; clock_ += 0.02) {
-      const double s = std::min(1.0, (clock_ - begin) / kDuration);
+    for (; clock_ < begin + duration_ + rest; clock_ += 0.02) {
+      const double s = std::min(1.0, (clock_ - begin) / duration_);
       const double along = s * s * s * (10 - 15 * s + 6 * s * s);
       hold_at(from + along * (to - from), 0, up_from + along * (-0.15 - up_from));
       at(clock_);
-      if (detector_.made()) return clock_ - begin - kDuration + 1;
+      if (detector_.made()) return clock_ - begin - duration_ + 1;
     }
     return -1;
   }
@@ -76,6 +75,7 @@ class OfferDetectorTest : public testing::Test {
   OfferDetector detector_{now_, settings_};
   Vector3 p_hand_{0.35, 0, 1.1};
   double clock_{1.0};
+  double duration_{0.9};  // of a motion [s]
 };
 
 TEST_F(OfferDetectorTest, finds_who_offers_what_and_only_that) {
@@ -116,6 +116,9 @@ TEST_F(OfferDetectorTest, what_is_held_out_to_another_person_is_no_offer) {
   people_.people.push_back(ben);
   hold_at(0.30, 0.1);
   EXPECT_FALSE(is_offered());
+  people_.people[1].joints = standing_body({-0.9, 0.45, 0}, 0, 1.75);
+  hold_at(0.30, 0.1);
+  EXPECT_TRUE(is_offered()) << "ben is too far away";
   people_.people.pop_back();
   hold_at(0.30, 0.1);
   EXPECT_TRUE(is_offered());
@@ -137,6 +140,59 @@ TEST_F(OfferDetectorTest, an_accepted_offer_holds_nearer_to_the_body) {
   detector_.clear();
   hold_at(0.265);
   EXPECT_FALSE(is_offered());
+  hold_at(0.276);
+  detector_.accept({"mug", "anna"});
+  hold_at(0.26);
+  EXPECT_TRUE(is_offered()) << "hardly nearer than when it was accepted";
+}
+
+TEST_F(OfferDetectorTest, an_accepted_offer_holds_farther_aside) {
+  hold_at(0.30, 0.8);
+  EXPECT_FALSE(is_offered());
+  detector_.accept({"mug", "anna"});
+  EXPECT_TRUE(is_offered());
+  hold_at(0.30, 1.2);
+  EXPECT_FALSE(is_offered());
+}
+
+TEST_F(OfferDetectorTest, an_offer_seen_before_may_be_nearer_by_the_noise) {
+  const auto is_seen_at = [&](double extension) {
+    hold_at(extension);
+    at(clock_ += 0.02);
+    return detector_.is_seen();
+  };
+  EXPECT_FALSE(is_seen_at(0.268));
+  EXPECT_TRUE(is_seen_at(0.28));
+  EXPECT_TRUE(is_seen_at(0.268));
+  EXPECT_FALSE(is_seen_at(0.26));
+}
+
+TEST_F(OfferDetectorTest, only_what_was_asked_for_is_awaited) {
+  detector_.set_asked({"box", ""});
+  EXPECT_LT(bring(0.15, 0.30, 1.0), 0);
+  detector_.set_asked({"mug", "anna"});
+  EXPECT_GT(bring(0.30, 0.30, 0.0), 0);
+  detector_.await();
+  EXPECT_FALSE(detector_.made()) << "not observed since";
+}
+
+TEST_F(OfferDetectorTest, an_accepted_offer_held_out_farther_ends_sooner_on_its_way_back) {
+  hold_at(0.28);
+  detector_.accept({"mug", "anna"});
+  hold_at(0.27);
+  EXPECT_TRUE(is_offered());
+  for (; clock_ < 2; clock_ += 0.05) {
+    hold_at(0.33);
+    at(clock_);
+  }
+  hold_at(0.27);
+  EXPECT_FALSE(is_offered());
+  hold_at(0.29);
+  EXPECT_TRUE(is_offered());
+  hold_at(0.40);
+  at(clock_);
+  hold_at(0.32);
+  EXPECT_TRUE(is_offered()) << "one observation farther out may be noise";
 }
 
 TEST_F(OfferDetectorTest, an_offer_is_made_soon_after_the_object_has_come_to_rest) {
@@ -151,14 +207,12 @@ TEST_F(OfferDetectorTest, a_motion_out_and_back_at_once_is_no_offer) {
 }
 
 TEST_F(OfferDetectorTest, what_was_moved_about_must_rest_longer) {
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_LT(bring(0.15, 0.30, 0.0), 0);
-    if (i < 2) {
-      EXPECT_LT(bring(0.30, 0.15, 0.0), 0);
-    }
-  }
-  const double found = bring(0.30, 0.30, 0.0);
-  EXPECT_GT(found, 0) << "found at last";
+  duration_ = 0.35;
+  EXPECT_LT(bring(0.15, 0.30, 0.0), 0);
+  EXPECT_LT(bring(0.30, 0.15, 0.0), 0);
+  const double found = bring(0.15, 0.30, 1.0);
+  EXPECT_GT(found, 1.25);
+  EXPECT_LT(found, 1.5);
 }
 
 TEST_F(OfferDetectorTest, what_comes_down_above_a_support_must_rest_longer) {
@@ -172,6 +226,8 @@ TEST_F(OfferDetectorTest, what_comes_down_above_a_support_must_rest_longer) {
   EXPECT_GE(bring(0.30, 0.30, 0.5), 0);
   bring(0.15, 0.15, 0.0);
   EXPECT_GE(bring(0.15, 0.30, 0.3), 0) << "level";
+  scene_.boxes[0].supports = false;
+  EXPECT_GE(bring(0.28, 0.30, 0.3, 0.1), 0) << "above what is no support";
 }
 
 TEST_F(OfferDetectorTest, what_another_persons_hand_is_at_is_no_offer) {
@@ -205,7 +261,16 @@ TEST_F(OfferDetectorTest, the_path_counts_from_before_the_person_was_seen_to_hol
   scene_.objects[0].holder = Holder::nobody;
   EXPECT_LT(bring(0.15, 0.30, 0.0), 0);
   scene_.objects[0].holder = Holder::human;
-  EXPECT_LT(bring(0.30, 0.15, 0.1), 0) << "out and back at once";
+  EXPECT_LT(bring(0.30, 0.27, 0.0), 0) << "out and slowly back at once";
+}
+
+TEST_F(OfferDetectorTest, the_rest_counts_from_when_the_person_was_seen_to_hold_the_object) {
+  scene_.objects[0].holder = Holder::nobody;
+  EXPECT_LT(bring(0.30, 0.30, 0.1), 0);
+  scene_.objects[0].holder = Holder::human;
+  const double begin = clock_;
+  EXPECT_GT(bring(0.30, 0.30, 0.1), 0);
+  EXPECT_GT(clock_, begin + 0.15);
 }
 
 TEST_F(OfferDetectorTest, an_offer_hidden_by_noise_holds_and_a_longer_gap_ends_it) {
