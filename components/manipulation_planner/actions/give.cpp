@@ -60,6 +60,13 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
   co_return last;
 }
 
+/// Returns whether a person has drawn the object out of the hand, as from a hand that could not feel
+/// the pull.
+bool is_drawn_out(const Parts& parts, const std::string& object) {
+  const SceneObject* seen = parts.now.object(object);
+  return seen != nullptr && seen->holder == Holder::human && !parts.held.is_in_hand(*seen);
+}
+
 /// Offers the object until the receiver takes it; else the hand keeps it.
 Routine<Outcome> offer(Parts& parts, const std::string& object, const std::string& receiver) {
   parts.action.phase = ActionPhase::offer;
@@ -67,8 +74,13 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
   parts.action.exchange_engaged = true;
   const Vector open = opening(parts);
   const double timeout = parts.settings.offer_timeout;
-  HandResult released = co_await parts.hand.run(HandAction::release_on_pull, open, timeout);
+  const std::function<bool()> is_over = [&] { return is_drawn_out(parts, object); };
+  HandResult released = co_await parts.hand.release_on_pull(open, timeout, is_over);
   if (released.outcome.good && released.state == HandState::released) co_return Outcome{};
+  if (released.outcome.good && is_over()) {
+    released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
+    co_return released.outcome;
+  }
   parts.action.exchange_engaged = false;
   const Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
   HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout);

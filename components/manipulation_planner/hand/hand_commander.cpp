@@ -52,12 +52,23 @@ Routine<HandResult> HandCommander::run(HandAction action, const Vector& position
   const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };
   const bool ended = co_await waiting_.until(
       [&] { return is_lost() || arm_.hand_state() != HandState::moving; }, timeout);
-  const bool waits_for_pull = action == HandAction::release_on_pull;
-  if (ended && waits_for_pull)
-    co_await waiting_.until([&] { return is_lost() || arm_.hand_state() == HandState::released; },
-                            timeout);
   if (is_lost()) result.outcome = Outcome::failure("the controller lost the hand command");
   if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
+  result.state = arm_.hand_state();
+  co_return result;
+}
+
+Routine<HandResult> HandCommander::release_on_pull(const Vector& position, double timeout,
+                                                   const std::function<bool()>& is_over) {
+  HandResult result = co_await run(HandAction::release_on_pull, position, timeout);
+  if (!result.outcome.good) co_return result;
+  const std::uint64_t id = now_.execution()->hand_command;
+  const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };
+  const auto has_ended = [&] {
+    return is_lost() || arm_.hand_state() == HandState::released || is_over();
+  };
+  co_await waiting_.until(has_ended, timeout);
+  if (is_lost()) result.outcome = Outcome::failure("the controller lost the hand command");
   result.state = arm_.hand_state();
   co_return result;
 }

@@ -1,6 +1,8 @@
 // Commands to the hand in use, and how they end.
 #pragma once
 
+#include <functional>
+
 #include "components/manipulation_planner/motion/controller_link.hpp"
 
 namespace handsel::manipulation_planner {
@@ -31,6 +33,9 @@ class HandCommander {
   /// Sends a command as send() does and waits for its end, `timeout` [s] at most.
   Routine<HandResult> run(HandAction action, const Vector& position, double timeout,
                           const Vector* effort = nullptr, double mass_ratio = 1.0);
+  /// Waits for a pull that opens the hand, `timeout` [s] at most, or until `is_over`.
+  Routine<HandResult> release_on_pull(const Vector& position, double timeout,
+                                      const std::function<bool()>& is_over);
   /// Waits until the fingers have ended a motion that was sent.
   Routine<Outcome> await_open();
 

@@ -102,6 +102,22 @@ TEST(ManipulationPlanner, an_offer_nobody_takes_fails_with_their_name) {
   EXPECT_TRUE(rig.planner.status().holding);
 }
 
+TEST(ManipulationPlanner, what_a_person_has_drawn_out_of_the_closed_hand_is_given) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.person_takes = false;  // no pull is felt, as by a hand that may not move
+  rig.start(ActionKind::give);
+  rig.run_until("offer");
+  SceneObject& mug = rig.scene.objects[0];
+  mug.holder = Holder::human;
+  mug.holder_id = "anna";
+  mug.T_world_object.translation() += Vector3(0.3, 0, 0);
+  rig.run(5);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_FALSE(rig.planner.status().holding);
+}
+
 TEST(ManipulationPlanner, a_motion_that_is_stopped_is_planned_again) {
   Rig rig;
   rig.stops = 2;
