@@ -60,8 +60,8 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
   co_return last;
 }
 
-/// Returns whether a person has drawn the object out of the hand, as from a hand that could not feel
-/// the pull.
+/// Returns whether a person has drawn the object out of the hand, as from a hand that could not
+/// feel the pull.
 bool is_drawn_out(const Parts& parts, const std::string& object) {
   const SceneObject* seen = parts.now.object(object);
   return seen != nullptr && seen->holder == Holder::human && !parts.held.is_in_hand(*seen);
