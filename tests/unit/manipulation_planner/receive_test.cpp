@@ -1,7 +1,6 @@
 // Receiving: what is held out is taken, what is drawn back is not gone after.
 #include <numbers>
 
-#include "common/model/robot_capsules.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
 namespace handsel::manipulation_planner {
@@ -304,47 +303,6 @@ TEST(ManipulationPlanner, a_grip_that_bears_the_load_is_worth_a_longer_motion) {
     const bool from_above =
         rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
     EXPECT_EQ(from_above, margin < 0) << "the hand below it is nearer";
-  }
-}
-
-TEST(ManipulationPlanner, a_grasp_away_from_people_is_worth_a_longer_motion) {
-  for (const bool child_is_near : {false, true}) {
-    Rig rig;
-    rig.hold_out();
-    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
-    rig.grasped_as_it_stands = true;
-    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
-    const Group& arm = rig.robot->require_group("arm");
-    const Vector below = RobotModel::with(rig.q, arm, rig.grasps[0].arm_joints),
-                 above = RobotModel::with(rig.q, arm, rig.grasps[1].arm_joints);
-    rig.q = RobotModel::with(
-        rig.q, arm,
-        rig.grasps[0].approach_joints +
-            0.35 * (rig.grasps[1].approach_joints - rig.grasps[0].approach_joints));
-    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, false};
-    if (child_is_near) {  // no taller than where the hand above the object is
-      const std::vector<LinkCapsule> capsules = robot_capsules(*rig.robot);
-      HumanState child;
-      const auto distance = [&](const Vector& q) {
-        std::vector<Pose> T_root_link;
-        rig.robot->forward(q, T_root_link);
-        return separation(capsules, T_root_link, Pose::Identity(), child).distance;
-      };
-      child.people.resize(1);
-      child.people[0].id = "ben";
-      for (double x = 2.0; x > 0.7; x -= 0.01) {
-        child.people[0].joints = standing_body({x, -0.2, 0}, M_PI, 0.9);
-        if (distance(below) < 0.1) break;
-      }
-      ASSERT_GT(distance(above), distance(below) + 0.05);
-      rig.people.people.push_back(child.people[0]);
-    }
-    rig.start(ActionKind::receive);
-    rig.run_until("reaching the object");
-    rig.cycle();
-    const bool from_above =
-        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
-    EXPECT_EQ(from_above, child_is_near) << "the hand below it is nearer";
   }
 }
 

@@ -50,6 +50,17 @@ TEST_F(RetreatPlannerTest, every_step_leads_away_from_whoever_stands_near) {
   }
 }
 
+TEST_F(RetreatPlannerTest, the_hands_of_the_partner_do_not_count_as_near) {
+  stand(0.4, 0.0);
+  Person& person = people.people[0];
+  const Vector3 p_hand = robot.link_pose(rest, arm.tip).translation();
+  person.joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position = p_hand;
+  const double near = retreat.separation(rest, Pose::Identity(), people, "somebody else");
+  EXPECT_NEAR(near, distance(rest), 1e-9);
+  EXPECT_LT(near, 0.05);
+  EXPECT_GT(retreat.separation(rest, Pose::Identity(), people, person.id), 0.2);
+}
+
 TEST_F(RetreatPlannerTest, toward_and_past_a_person_is_not_away) {
   stand(0.07, 0.0);
   const std::vector<Vector> steps = retreat.steps_away(rest, Pose::Identity(), people, 0.05);
