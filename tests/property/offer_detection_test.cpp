@@ -62,7 +62,7 @@ struct Found {
 
 /// A span of time in which somebody offers [s].
 struct Offered {
-  double begin{};     ///< the object is held out
+  double begin{};     ///< the object is offered
   double rest{-1};    ///< it is at rest for long enough, from here on; negative: never
   double end{};       ///< it is withdrawn
   bool is_unclear{};  ///< nobody could tell the offer

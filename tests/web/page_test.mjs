@@ -62,15 +62,15 @@ const drawnNow = () => page.evaluate(() => ({ stamp: window.handsel.stamp, angle
 // Begins to note in the page every stamp drawn and every text of these elements; the function returned ends that and returns both.
 async function record(ids) {
   await page.evaluate((noted) => {
-    const told = Object.fromEntries(noted.map((id) => [id, []])), drawn = [];
+    const texts = Object.fromEntries(noted.map((id) => [id, []])), drawn = [];
     const note = () => {
       const { stamp, angles } = window.handsel;
       if (drawn.at(-1)?.stamp !== stamp) drawn.push({ stamp, angles });
       for (const id of noted) {
         const text = document.getElementById(id).textContent;
-        if (!told[id].includes(text)) told[id].push(text);
+        if (!texts[id].includes(text)) texts[id].push(text);
       }
-      window.recorder = { told, drawn, frame: requestAnimationFrame(note) };
+      window.recorder = { texts, drawn, frame: requestAnimationFrame(note) };
     };
     note();
   }, ids);
@@ -90,7 +90,7 @@ test("while it hands over, the angles drawn are those on DDS at the same stamp, 
     await page.screenshot({ path: process.env.HANDSEL_PICTURE });
   }
   assert.equal(await task.ended, 0);
-  const { drawn, told } = await recorded();
+  const { drawn, texts } = await recorded();
   await page.setViewportSize(kFull);
   const seen = drawn.map(compare).filter(Boolean);
   const moved = Math.max(...seen[0].shown.map((_, i) => Math.max(...seen.map(({ shown }) => shown[i])) - Math.min(...seen.map(({ shown }) => shown[i]))));
@@ -98,10 +98,10 @@ test("while it hands over, the angles drawn are those on DDS at the same stamp, 
   console.log(`moving: ${drawn.length} stamps drawn, ${seen.length} of them heard on DDS, the axes moved up to ${moved.toFixed(2)} rad, largest difference ${worst.toExponential(1)} rad`);
   assert.ok(seen.length >= 8 && moved >= 0.3, "too few matching stamps, or the arm did not move");
   assert.ok(worst <= kAngle);
-  assert.ok(told.phase.filter(Boolean).length >= 3, `phases told: ${told.phase}`);
-  assert.ok(told.speed.some((text) => /^\d+ %$/.test(text)), `speeds told: ${told.speed}`);
-  assert.ok(told.separation.some((text) => /^\d\.\d\d m$/.test(text)), `distances told: ${told.separation}`);
-  assert.ok(told["separation-limit"].filter((text) => /^limit \d\.\d\d m$/.test(text)).length >= 2, `what the rule asks for, told: ${told["separation-limit"]}`);
+  assert.ok(texts.phase.filter(Boolean).length >= 3, `phases shown: ${texts.phase}`);
+  assert.ok(texts.speed.some((text) => /^\d+ %$/.test(text)), `speeds shown: ${texts.speed}`);
+  assert.ok(texts.separation.some((text) => /^\d\.\d\d m$/.test(text)), `distances shown: ${texts.separation}`);
+  assert.ok(texts["separation-limit"].filter((text) => /^limit \d\.\d\d m$/.test(text)).length >= 2, `what the rule asks for, shown: ${texts["separation-limit"]}`);
 });
 
 test("at rest the angles drawn and written are those on DDS", async () => {

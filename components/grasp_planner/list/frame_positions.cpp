@@ -9,7 +9,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kMostPositions = 2000;
+constexpr double kMaxPositions = 2000;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSett
   if (!(settings.spacing > 0)) return settings.positions;
   const double dense =
       std::ceil(box.sizes().cwiseMax(settings.spacing).prod() / std::pow(settings.spacing, 3));
-  return static_cast<std::uint32_t>(std::clamp<double>(dense, settings.positions, kMostPositions));
+  return static_cast<std::uint32_t>(std::clamp<double>(dense, settings.positions, kMaxPositions));
 }
 
 }  // namespace handsel::grasp_planner

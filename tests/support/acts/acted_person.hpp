@@ -23,7 +23,7 @@ enum class Act {
   puts_down,   ///< places the object on the counter, or picks it up there
   passes,      ///< holds the object out for another person
   points,      ///< points aside with the object in the hand
-  receives,    ///< reaches for what another person holds out
+  receives,    ///< reaches for what another person offers
 };
 const char* name(Act act);  ///< as in the enumeration
 

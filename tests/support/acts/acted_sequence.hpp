@@ -48,9 +48,9 @@ class ActedSequence {
   virtual Pose T_world_object() const = 0;
   /// Returns what the holder does.
   virtual Act act() const = 0;
-  /// Returns whether the object is held out for the robot, relative to the body of its holder.
+  /// Returns whether the object is offered to the robot, relative to the body of its holder.
   bool is_offer() const { return act() == Act::offers; }
-  /// Returns whether nobody could tell an offer from keeping the object: it is held out hardly
+  /// Returns whether nobody could tell an offer from keeping the object: it is offered hardly
   /// farther than it was kept, because the robot's hand is so near.
   virtual bool is_unclear() const { return false; }
   /// Returns what counts as an offer here.

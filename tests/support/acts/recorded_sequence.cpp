@@ -12,9 +12,9 @@ namespace {
 constexpr double kRate = 120;        // of the recording [Hz]
 constexpr double kTaken = 3.28;      // the taker holds the baton, as published [s]
 constexpr double kReleased = 3.51;   // the giver has released the baton, as published [s]
-constexpr double kApart = 1.55;      // from the robot to the person, so that its hand has room [m]
+constexpr double kApart = 1.55;      // from the robot to the person, so that its hand has space [m]
 constexpr double kAside = 1.2;       // from the robot to a handover that it only observes [m]
-constexpr double kSlow = 1.0 / 3;    // of the max speed of the reach: held out, as people do
+constexpr double kSlow = 1.0 / 3;    // of the max speed of the reach: offered, as people do
 constexpr double kHeld = 1.5;        // duration for which the giver is made to wait [s]
 constexpr double kWristPart = 0.75;  // from elbow to hand
 constexpr double kSpeedOver = 0.05;  // the speed of the baton is measured over this time [s]

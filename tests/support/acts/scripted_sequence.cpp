@@ -152,7 +152,7 @@ class Scripted final : public ActedSequence {
   Vector3 beside_leg() {
     return shoulder_ + Vector3(draw_.within(0.02, 0.08), side_ * 0.05, -0.93 * reach_);
   }
-  /// Where the hand is when the object is held out in the direction `yaw` from the facing.
+  /// Where the hand is when the object is offered in the direction `yaw` from the facing.
   Vector3 held_out(double yaw) {
     const double far = draw_.within(0.25, 0.31) * stature_, up = draw_.within(-0.19, -0.08);
     Vector3 arm = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Vector3(far, 0, 0) +
@@ -318,7 +318,7 @@ class Scripted final : public ActedSequence {
     ben_->begin(piece);
     ben_begun_ = clock_;
   }
-  /// Ben is at the side, within reach of what anna holds out to him.
+  /// Ben is at the side, within reach of what anna offers to him.
   ActedPerson::Settings ben() {
     ActedPerson::Settings settings;
     settings.id = "ben";
