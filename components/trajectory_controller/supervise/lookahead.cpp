@@ -43,7 +43,7 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
     // At rest only the distance, the end of a handover and a possible retreat are of interest.
     if (cycle % (in.retreat != nullptr ? kEveryRetreat : kEvery) != 0) {
       verdict_ = now_;
-      if (in.retreat != nullptr) verdict_.forward = retreat_factor_;
+      if (in.retreat != nullptr) keep_retreat();
       return false;
     }
     motion_.velocity.setZero();
@@ -64,8 +64,15 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
   new_people_ = false;
   merge();
   if (running) limit_rise();
-  retreat_factor_ = verdict_.forward;
+  retreat_ = {verdict_.forward, verdict_.separation, verdict_.wall};
   return here;
+}
+
+/// Between two evaluations the limit of a retreat and its causes stay.
+void Lookahead::keep_retreat() noexcept {
+  verdict_.forward = retreat_.factor;
+  verdict_.separation = retreat_.people;
+  verdict_.wall = retreat_.wall;
 }
 
 void Lookahead::evaluate_all(const LookaheadInputs& in, bool from_rest) noexcept {

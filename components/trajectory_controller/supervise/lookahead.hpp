@@ -65,7 +65,7 @@ class Lookahead {
   /// Last verdict of where the arm is.
   const GuardVerdict& nearest() const noexcept { return nearest_; }
   /// Speed factor of a retreat that was allowed last, [0, 1].
-  double retreat_factor() const noexcept { return retreat_factor_; }
+  double retreat_factor() const noexcept { return retreat_.factor; }
   /// Returns whether the arm at a speed factor is faster than allowed here and shortly ahead, by
   /// more than time scaling lags behind a verdict that changes slowly. What is allowed farther
   /// ahead lowers the speed along the path in time.
@@ -79,6 +79,7 @@ class Lookahead {
   void set_finger_speeds(const MotionState3& set_point) noexcept;
   void merge() noexcept;
   void limit_rise() noexcept;
+  void keep_retreat() noexcept;
 
   LookaheadSettings settings_;
   const RobotModel& robot_;
@@ -89,8 +90,8 @@ class Lookahead {
   ReachLimit reach_limit_;
   GuardVerdict verdict_, now_, near_, far_, nearest_;
   SpeedRise rise_;
-  double retreat_factor_{};
-  int turn_{};  // of the evaluations
+  SpeedLimit retreat_{.factor = 0.0};  // of a retreat, evaluated last
+  int turn_{};                         // of the evaluations
   bool new_people_{};
   MotionState3 motion_;  // that is evaluated: all axes, at full speed
   // Of the fingers until a stop begins, all axes, >= 0; 0 of others [rad/s, m/s].

@@ -104,6 +104,25 @@ TEST(Controller, at_rest_it_draws_back_from_who_comes_too_near_as_far_as_it_may)
   expect_smooth(b);
 }
 
+TEST(Controller, the_causes_of_a_retreat_do_not_flicker) {
+  ControllerBench b;
+  b.start();
+  b.people.people = {b.standing(1.0, 0.5)};
+  b.advice.speed_factor = -0.5;
+  int changes = 0;
+  bool is_slowed = false;
+  std::uint32_t causes = b.core.status().causes;
+  for (int k = 0; k < 2000; ++k) {
+    b.tick();
+    const std::uint32_t now = b.core.status().causes;
+    changes += now != causes;
+    is_slowed = is_slowed || (now & bit(Cause::separation)) != 0;
+    causes = now;
+  }
+  EXPECT_TRUE(is_slowed);
+  EXPECT_LE(changes, 8);
+}
+
 TEST(Controller, it_does_not_draw_back_without_permission_nor_where_that_is_switched_off) {
   for (const bool allowed : {true, false}) {
     ControllerSettings s;
