@@ -15,7 +15,7 @@ Parts::Parts(const settings::ManipulationPlannerSettings& s,
       hand(arm, link, now, waiting, action, settings),
       retreat(arm.robot(), arm.group()),
       offers(now, settings),
-      area(arm, retreat, now),
+      area(settings, arm, retreat, now),
       monitor(arm, held, offers, area, now, settings),
       replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost)) {}
 

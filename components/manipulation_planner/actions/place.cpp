@@ -11,20 +11,18 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr std::size_t kMaxPlaces = 24;      // of a surface that are tried
-constexpr double kPersonTimeout = 3.0;      // with a person at the hand [s]
-constexpr double kMinPersonDistance = 0.3;  // of a joint from the palm [m]
-constexpr double kApproachTime = 0.8;       // of a person that is about to be nearer [s]
+constexpr std::size_t kMaxPlaces = 24;  // of a surface that are tried
 
 /// Returns whether a person is at the palm or about to be. Fingers that open move toward them, and
 /// no guard slows fingers.
 bool is_person_near_hand(const Parts& parts) {
   const Vector3 p = parts.arm.T_world_tool().translation();
-  const auto is_near = [&p](const BodyJoint& joint) {
+  const auto& s = parts.settings;
+  const auto is_near = [&](const BodyJoint& joint) {
     const Vector3 to_hand = p - joint.position;
-    const double left = to_hand.norm() - kMinPersonDistance,
+    const double left = to_hand.norm() - s.place_person_distance,
                  closing = joint.velocity.dot(to_hand.normalized());
-    return left < 0 || (closing > 0 && left < kApproachTime * closing);
+    return left < 0 || (closing > 0 && left < s.place_person_time * closing);
   };
   const auto& people = parts.now.people().people;
   return std::any_of(people.begin(), people.end(), [&](const Person& person) {
@@ -121,7 +119,8 @@ Routine<Outcome> put_on(Parts& parts, const std::string& object, const std::stri
   }
   if (!lowered.good) co_return lowered;
   parts.destinations.clear();
-  co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); }, kPersonTimeout);
+  co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); },
+                               parts.settings.place_person_timeout);
   HandResult released =
       co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
   if (!released.outcome.good) co_return released.outcome;

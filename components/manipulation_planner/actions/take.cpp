@@ -19,12 +19,8 @@ constexpr double kNear = 0.5;             // to giver or object: the arm retreat
 constexpr double kMaxDetour = 1.3;        // length of a path over that of the straight one
 constexpr double kDetourPerAttempt = 1.0;  // length that each attempt adds [rad, sum of max norms]
 constexpr std::uint32_t kMaxDirectAttempts = 2;  // after which a path may have any length
-constexpr double kApproachTimeout = 10;  // people leave so little space that the arm creeps [s]
-constexpr double kReachTimeout = 5;      // likewise on the straight motion in [s]
-constexpr int kMaxAims = 6;              // times the hand follows before the offer is awaited anew
-constexpr double kMinHandClearance = 0.01;  // to the giver's hand, closing included [m]
-constexpr int kClearanceSteps = 6;          // checks of the straight motion in, and of the closing
-constexpr double kStepBack = 0.15;          // before an approaching giver [m]
+constexpr int kMaxAims = 6;         // times the hand follows before the offer is awaited anew
+constexpr int kClearanceSteps = 6;  // checks of the straight motion in, and of the closing
 
 /// How far an attempt has come.
 enum class Progress : std::uint8_t {
@@ -79,7 +75,7 @@ MotionSpec approach_to(const Parts& parts, const TakeAttempt& take, const Grasp&
   approach.tolerated = {take.offer.giver};
   approach.object = ObjectTarget{object, parts.now.object(object)->T_world_object.translation(),
                                  parts.settings.approach_slack, grasp};
-  approach.timeout = kApproachTimeout;
+  approach.timeout = parts.settings.take_approach_timeout;
   if (take.attempt > kMaxDirectAttempts) return approach;
   const double straight = (grasp.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
   approach.max_length = kMaxDetour * straight + take.attempt * kDetourPerAttempt;
@@ -98,7 +94,7 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
   const std::vector<Vector3> directions = retreat_directions_from(parts, offer.giver);
   for (const Vector3& direction : directions) {
     Pose T = parts.arm.T_world_tool();
-    T.translation() += kStepBack * direction;
+    T.translation() += parts.settings.step_back * direction;
     const auto joints = parts.arm.reach(T);
     if (!joints) continue;
     const Vector q = RobotModel::with(start, parts.arm.group(), *joints);
@@ -198,7 +194,7 @@ Routine<Step> reach_offer(Parts& parts, const TakeAttempt& take, std::optional<G
   reach.is_straight = true;
   reach.allowed = {object, giver};
   reach.object = ObjectTarget{object, p_object, parts.settings.aim_slack, std::nullopt};
-  reach.timeout = kReachTimeout;
+  reach.timeout = parts.settings.take_reach_timeout;
   parts.offers.set_hand_at_offer(true);
   done = co_await move(parts, reach);
   if (done.good) co_return Step{Progress::in_hand, done};
@@ -326,7 +322,7 @@ Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
     if (person.id != offer.giver) continue;
     if (const SceneObject* held = parts.now.object(offer.object))
       person = with_fingers_bent(person, held->T_world_object.translation());
-    person.inflation += kMinHandClearance;
+    person.inflation += parts.settings.giver_hand_clearance;
   }
   const std::function<void()> job = [clear, around, grasps, object = offer.object,
                                      world =

@@ -7,15 +7,9 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kLength = 2.0;    // of the trail [s]
-constexpr double kMinStep = 1e-3;  // between two observations [s]
-// Times the tremor: there the last part of the path begins. With the cube of the time, that part
-// takes as long as the rest of the motion to its end.
-constexpr double kBeforeEnd = 8;
+constexpr double kLength = 2.0;           // of the trail [s]
+constexpr double kMinStep = 1e-3;         // between two observations [s]
 constexpr std::size_t kDifferences = 10;  // of positions, from which the noise is measured
-constexpr double kNoiseGrowth = 1e-3;     // of the measured noise at most [m/s]
-constexpr double kTremorNoise = 6;  // times the noise: positions at rest are hardly farther off
-constexpr double kTurns = 1.9;  // times that duration: to the end and back again, less the noise
 
 }  // namespace
 
@@ -39,11 +33,11 @@ void ObjectTrail::measure_noise() {
   std::nth_element(lengths.begin(), lengths.begin() + kDifferences / 2, lengths.end());
   const double measured = lengths[kDifferences / 2] / (1.54 * std::sqrt(70.0));
   const double dt = to_seconds(places_.back().first - places_[places_.size() - 2].first);
-  noise_ = std::min(measured, noise_ + kNoiseGrowth * dt);
+  noise_ = std::min(measured, noise_ + settings_.offer_noise_growth * dt);
 }
 
 double ObjectTrail::tremor() const {
-  return std::max(settings_.offer_tremor, kTremorNoise * noise_);
+  return std::max(settings_.offer_tremor, settings_.offer_tremor_noise * noise_);
 }
 
 /// Returns one more than the index of the last place farther than `radius` from the newest; 0: none
@@ -63,14 +57,15 @@ double ObjectTrail::rest() const {
 
 /// Returns the index of the last place before the last part of the path, or the first index.
 std::size_t ObjectTrail::before_arrival() const {
-  const std::size_t before = last_beyond(kBeforeEnd * tremor());
+  const std::size_t before = last_beyond(settings_.offer_arrival * tremor());
   return before == 0 ? 0 : before - 1;
 }
 
 double ObjectTrail::turning_time() const {
   const std::size_t arrival = last_beyond(tremor());
   if (arrival == 0) return 0;
-  return kTurns * to_seconds(places_[arrival].first - places_[before_arrival()].first);
+  return settings_.offer_turn_ratio *
+         to_seconds(places_[arrival].first - places_[before_arrival()].first);
 }
 
 Vector3 ObjectTrail::arrival() const {
@@ -80,7 +75,6 @@ Vector3 ObjectTrail::arrival() const {
 }
 
 double ObjectTrail::retreat() const {
-  if (rest() > settings_.offer_drift_after) return 0;
   const Vector3 along = arrival();
   double sum = 0;
   int count = 0;

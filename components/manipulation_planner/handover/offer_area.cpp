@@ -9,10 +9,7 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinHandDistance = 0.55;      // horizontal, from a comfortable point of offer [m]
-constexpr double kMinArmDistance = 0.35;       // likewise of the arm [m]
-constexpr double kMaxIntrusion = 0.05;         // less space than that by more: the arm retreats [m]
-constexpr std::size_t kMaxConfigurations = 6;  // to wait in
+constexpr std::size_t kMaxConfigurations = 6;     // to wait in
 constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};  // from rest, away from the person [m]
 constexpr double kOfferAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
 
@@ -25,15 +22,16 @@ double OfferArea::clearance(const Person& person, const Vector& q) const {
   const Vector3 p_hand = now_.T_world_base() * arm_.robot().link_pose(q, arm_.palm()).translation();
   for (const Side side : {Side::left, Side::right}) {
     const Vector3 p_offer = comfortable_reach(person, side);
-    const double hand = horizontal(p_hand - p_offer).norm() - kMinHandDistance;
-    room = std::min(
-        {room, hand, retreat_.distance(q, now_.T_world_base(), p_offer) - kMinArmDistance});
+    const double hand = horizontal(p_hand - p_offer).norm() - settings_.offer_area_hand;
+    const double arm =
+        retreat_.distance(q, now_.T_world_base(), p_offer) - settings_.offer_area_arm;
+    room = std::min({room, hand, arm});
   }
   return room;
 }
 
 bool OfferArea::is_occupied(const Person& person, const Vector& q) const {
-  return clearance(person, q) < -kMaxIntrusion;
+  return clearance(person, q) < -settings_.offer_area_intrusion;
 }
 
 bool OfferArea::is_occupied(const std::string& id) const {

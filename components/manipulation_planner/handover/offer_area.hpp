@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/settings/manipulation_planner.hpp"
 #include "components/manipulation_planner/active_arm.hpp"
 #include "components/manipulation_planner/motion/retreat_planner.hpp"
 
@@ -13,8 +14,9 @@ namespace handsel::manipulation_planner {
 class OfferArea {
  public:
   /// The references must outlive what is made.
-  OfferArea(const ActiveArm& arm, const RetreatPlanner& retreat, const Snapshot& now)
-      : arm_(arm), retreat_(retreat), now_(now) {}
+  OfferArea(const settings::ManipulationPlannerSettings& settings, const ActiveArm& arm,
+            const RetreatPlanner& retreat, const Snapshot& now)
+      : settings_(settings), arm_(arm), retreat_(retreat), now_(now) {}
 
   /// Returns by how much hand and arm, in a configuration of all axes, are farther than they must
   /// be from where the person would comfortably offer something [m].
@@ -29,6 +31,7 @@ class OfferArea {
   std::vector<Vector> clear_configurations(const Person& person) const;
 
  private:
+  const settings::ManipulationPlannerSettings& settings_;
   const ActiveArm& arm_;
   const RetreatPlanner& retreat_;
   const Snapshot& now_;

@@ -10,9 +10,7 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kAnySpeed = std::numeric_limits<double>::infinity();  // [m/s]
-constexpr double kRetreatNoise = 2.0;  // times the noise: an object at rest is hardly farther back
-constexpr double kMinStature = 0.5;    // [m]
-constexpr double kExtensionShare = 0.2;  // of one observation in the mean extension
+constexpr double kMinStature = 0.5;                                    // [m]
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
@@ -87,9 +85,13 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
   const Vector3 p_object = object.T_world_object.translation();
   const Vector3 p_shoulder = holding_shoulder(person, p_object);
   const double height = (p_object - p_shoulder).z() / stature_of(person);
-  if (height > settings_.offer_max_height || height < settings_.offer_min_height) return false;
-  return is_for_robot(person, p_shoulder, p_object, p_hand) &&
-         extension(person, p_object) >= min_extension(person, object, p_hand);
+  const double extended = extension(person, p_object);
+  const double max_height =
+      settings_.offer_max_height +
+      settings_.offer_height_gain * std::max(0.0, extended - settings_.offer_extension);
+  return height >= settings_.offer_min_height && height <= max_height &&
+         is_for_robot(person, p_shoulder, p_object, p_hand) &&
+         extended >= min_extension(person, object, p_hand);
 }
 
 std::optional<Offer> OfferDetector::find(const std::string& object, const std::string& giver,
@@ -157,7 +159,7 @@ void OfferDetector::follow_extension() {
   const Person* person = object == nullptr ? nullptr : now_.person(accepted_.giver);
   if (person == nullptr) return;
   const double observed = extension(*person, object->T_world_object.translation());
-  mean_extension_ += kExtensionShare * (observed - mean_extension_);
+  mean_extension_ += settings_.offer_extension_fraction * (observed - mean_extension_);
   max_extension_ = std::max(max_extension_, mean_extension_);
 }
 
@@ -166,31 +168,15 @@ std::optional<Offer> OfferDetector::made() const {
   if (found == trails_.end()) return std::nullopt;
   const ObjectTrail& trail = found->second;
   double rest_time = settings_.offer_rest;
-  if (is_put_down(*seen_, trail)) rest_time = std::max(rest_time, settings_.offer_support_rest);
   if (trail.detour() > settings_.offer_max_detour)
     rest_time = std::max(rest_time, settings_.offer_detour_rest);
   const double turning_time = std::min(trail.turning_time(), settings_.offer_max_turn_time);
   const double rest = std::min(trail.rest(), to_seconds(now_.time() - seen_since_));
   if (rest < std::max(rest_time, turning_time) ||
-      trail.retreat() > std::max(settings_.offer_max_retreat, kRetreatNoise * trail.noise()))
+      trail.retreat() >
+          std::max(settings_.offer_max_retreat, settings_.offer_retreat_noise * trail.noise()))
     return std::nullopt;
   return seen_;
-}
-
-/// Returns whether the object may be about to stand on a support: above one, it came down or has
-/// been there all the time.
-bool OfferDetector::is_put_down(const Offer& offer, const ObjectTrail& trail) const {
-  const Vector3 arrival = trail.arrival();
-  if (!arrival.isZero() && arrival.z() > -settings_.offer_descent) return false;
-  const SceneObject* object = now_.object(offer.object);
-  if (object == nullptr) return false;
-  const auto& boxes = now_.scene().boxes;
-  return std::any_of(boxes.begin(), boxes.end(), [&](const SceneBox& box) {
-    const Vector3 p = box.T_world_box.inverse() * object->T_world_object.translation();
-    const Vector3 half = box.size / 2;
-    return box.supports && std::abs(p.x()) < half.x() && std::abs(p.y()) < half.y() &&
-           p.z() > half.z() && p.z() < half.z() + settings_.offer_support_height;
-  });
 }
 
 bool OfferDetector::is_still_offered() const {

@@ -77,7 +77,6 @@ class OfferDetector {
   void follow_extension();
   std::optional<Offer> find(const std::string& object, const std::string& giver,
                             const Vector3& p_hand, double max_speed) const;
-  bool is_put_down(const Offer& offer, const ObjectTrail& trail) const;
   bool is_for_robot(const Person& person, const Vector3& p_shoulder, const Vector3& p_object,
                     const Vector3& p_hand) const;
 
