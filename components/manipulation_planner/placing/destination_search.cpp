@@ -1,5 +1,6 @@
 #include "components/manipulation_planner/placing/destination_search.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -8,7 +9,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr std::size_t kMaxPlaces = 24;         // of a surface that are tried
+constexpr std::size_t kMaxPlaces = 24;         // of a surface that are tried first
+constexpr std::size_t kMaxAllPlaces = 400;     // that are tried where none of those serves
 constexpr std::size_t kMaxConfigurations = 6;  // that motions are planned to
 
 /// What a job needs of arm and scene, as values.
@@ -19,7 +21,8 @@ struct PlacingJob {
   Scene scene;
   HumanState people;
   Group arm, fingers;
-  double lift_height;
+  PlacingMotion motion;
+  double margin;  // preferred
   Vector q;
   ArmReach reach;  // of the arm that is to reach the places well
 };
@@ -32,7 +35,8 @@ PlacingJob placing_job(Parts& parts) {
           parts.now.people(),
           parts.arm.group(),
           parts.arm.fingers(),
-          parts.settings.lift_height,
+          {.from_above = parts.settings.lift_height},
+          parts.settings.place_margin,
           parts.arm.configuration(),
           arm_reach(parts.arm.robot(), &parts.arm.group(), parts.arm.palm())};
 }
@@ -50,11 +54,28 @@ void set_world(const PlacingJob& job) {
 }
 
 std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
-                            const std::string& object, const Pose& T_now, std::size_t max_places) {
-  PlacingSettings placing;
+                            const std::string& object, const Pose& T_now, std::size_t max_places,
+                            PlacingSettings placing = {}) {
   placing.reach = job.reach;
   const PlacingScene in{*job.robot, job.scene, job.people, job.objects};
   return free_places(in, object, surface, T_now, max_places, placing);
+}
+
+/// Returns every free place of the surface, the nearest to `T_chosen` first where one was chosen.
+std::vector<Pose> all_places_on(const PlacingJob& job, const SceneBox& surface,
+                                const std::string& object, const Pose& T_now,
+                                const std::optional<Destination>& chosen) {
+  PlacingSettings every;
+  every.apart = 0;
+  std::vector<Pose> places = places_on(job, surface, object, T_now, kMaxAllPlaces, every);
+  if (!chosen) return places;
+  const auto distance = [&](const Pose& T) {
+    return (T.translation() - chosen->T_world_object.translation()).norm();
+  };
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const Pose& a, const Pose& b) { return distance(a) < distance(b); });
+  for (Pose& T : places) T.linear() = chosen->T_world_object.linear();
+  return places;
 }
 
 /// Places of one surface for one object.
@@ -63,12 +84,13 @@ struct SurfaceOffer {
   RestingPlaces places;
 };
 
-/// Adds the grasps that serve at these places; returns why others do not.
-std::string search(const PlacingJob& in, const SurfaceOffer& offer,
+/// Adds the grasps that serve at these places with a margin for the hand; returns why others do
+/// not.
+std::string search(const PlacingJob& in, const SurfaceOffer& offer, double margin,
                    const std::vector<Grasp>& grasps, const DestinationLimits& limits,
                    ServingGrasps& found) {
   Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, offer.places,
-                  in.lift_height);
+                  {in.motion.from_above, margin});
   for (std::size_t i = 0; i < grasps.size() && found.at.size() < limits.max_grasps; ++i) {
     if (found.at.count(i) > 0) continue;
     const Grasp& grasp = grasps[i];
@@ -100,16 +122,20 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
                                      T_now = thing->T_world_object] {
     set_world(in);
     std::vector<std::vector<Pose>> upright;
-    for (const SceneBox& box : surfaces) {
+    for (const SceneBox& box : surfaces)
       upright.push_back(places_on(in, box, object, T_now, limits.max_places));
-      found->objections = search(in, {object, box.id, {upright.back()}}, grasps, limits, *found);
+    for (const double margin : {in.margin, 0.0}) {
+      for (std::size_t s = 0; s < surfaces.size(); ++s)
+        found->objections =
+            search(in, {object, surfaces[s].id, {upright[s]}}, margin, grasps, limits, *found);
+      if (!found->at.empty()) return;
     }
     // Held upside down or from below, the object can only be laid on another side.
     for (std::size_t s = 0; s < surfaces.size() && found->at.empty() && model != nullptr; ++s)
       search(
           in,
           {object, surfaces[s].id, lying_places(upright[s], *model, PlacingSettings{}.min_tipping)},
-          grasps, limits, *found);
+          0.0, grasps, limits, *found);
   };
   found->outcome = co_await parts.worker.run(job);
   co_return *found;
@@ -127,19 +153,29 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
   auto found = std::make_shared<FoundPlaces>();
   const std::function<void()> job = [found, chosen, opening, held, box = surface,
                                      model = parts.now.model_of(held.object),
-                                     in = std::move(placing), T_now = parts.held.T_world_object()] {
+                                     in = std::move(placing), T_now = parts.held.T_world_object(),
+                                     place_drop = parts.settings.place_drop] {
     set_world(in);
     std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
     if (chosen) places.insert(places.begin(), chosen->T_world_object);
+    const std::vector<Pose> coarse = places;
     const Vector opened = RobotModel::with(in.q, in.fingers, opening);
-    Putting upright(*in.world, *in.robot, in.arm, in.scene.T_world_base, {places}, in.lift_height);
-    if (chosen) upright.search_near(chosen->arm_at);
-    found->configurations = upright.anywhere(in.q, opened, held, kMaxConfigurations);
-    found->objections = upright.objections();
-    if (!found->configurations.empty()) return;
+    const auto stand = [&](const std::vector<Pose>& at) {
+      Putting upright(*in.world, *in.robot, in.arm, in.scene.T_world_base, {at}, in.motion);
+      if (chosen) upright.search_near(chosen->arm_at);
+      found->configurations = upright.anywhere(in.q, opened, held, kMaxConfigurations);
+      found->objections = upright.objections();
+      return !found->configurations.empty();
+    };
+    // What has slipped in the hand may fit only beside the chosen place, or a little higher.
+    if (stand(places)) return;
+    places = all_places_on(in, box, held.object, T_now, chosen);
+    if (stand(places)) return;
+    for (Pose& T : places) T.translation().z() += place_drop;
+    if (stand(places)) return;
     // Taken from where the object lay, the hand may be below the object when that stands.
     Putting lying(*in.world, *in.robot, in.arm, in.scene.T_world_base,
-                  lying_places(places, *model, PlacingSettings{}.min_tipping), in.lift_height);
+                  lying_places(coarse, *model, PlacingSettings{}.min_tipping), in.motion);
     found->configurations = lying.anywhere(in.q, opened, held, kMaxConfigurations);
     found->is_lying = !found->configurations.empty();
   };

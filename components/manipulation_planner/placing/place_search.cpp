@@ -119,13 +119,13 @@ RestingPlaces lying_places(const std::vector<Pose>& upright_places, const Object
 }
 
 Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
-                 const Pose& T_world_base, RestingPlaces places, double from_above)
+                 const Pose& T_world_base, RestingPlaces places, const PlacingMotion& motion)
     : world_(world),
       robot_(robot),
       arm_(arm),
       T_base_world_(T_world_base.inverse()),
       places_(std::move(places)),
-      from_above_(from_above),
+      motion_(motion),
       seeds_{RobotModel::part(robot.rest_configuration(), arm)} {}
 
 /// Returns configurations near `q_seed` that reach the place, whether they are free or not.
@@ -137,7 +137,7 @@ std::optional<PlacingConfiguration> Putting::reach(const Pose& T_world_object, c
   const auto at =
       robot_.inverse(arm_, T_base_world_ * T_world_object * T_object_tool, q_seed, options);
   Pose T_above = T_world_object;
-  T_above.translation().z() += from_above_;
+  T_above.translation().z() += motion_.from_above;
   const auto above = at ? robot_.inverse(arm_, T_base_world_ * T_above * T_object_tool,
                                          RobotModel::with(q_seed, arm_, *at), options)
                         : std::optional<Vector>();
@@ -154,6 +154,21 @@ bool Putting::is_free(const Vector& q, const PlacingConfiguration& down) {
   return verdict.free;
 }
 
+/// Returns whether the hand can also be lower at the place, by the margin.
+bool Putting::has_margin(const Vector& q, const PlacingConfiguration& down,
+                         const Attachment& held) {
+  if (motion_.margin <= 0) return true;
+  Attachment lower = held;
+  const Vector3 up = down.T_world_object.linear().transpose() * Vector3::UnitZ();
+  lower.T_tool_object.translate(Vector3(motion_.margin * up));
+  const auto at = reach(down.T_world_object, RobotModel::with(q, arm_, down.arm_at), lower);
+  if (!at) return false;
+  world_.set_attachment(lower, {held.object});
+  const bool free = is_free(q, *at);
+  world_.set_attachment(held, {held.object});
+  return free;
+}
+
 std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector& q,
                                                 const Vector& opened, const Attachment& held) {
   std::optional<PlacingConfiguration> closed_only;
@@ -165,7 +180,7 @@ std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector&
     for (std::size_t seed = 0; seed <= seeds_.size(); ++seed) {
       const Vector q_seed = seed == 0 ? q : RobotModel::with(q, arm_, seeds_[seed - 1]);
       auto found = reach(T, q_seed, held);
-      if (!found || !is_free(q, *found)) continue;
+      if (!found || !is_free(q, *found) || !has_margin(q, *found, held)) continue;
       found->opens = world_.check(RobotModel::with(opened, arm_, found->arm_at)).free;
       if (found->opens) return found;
       if (!closed_only) closed_only = std::move(found);

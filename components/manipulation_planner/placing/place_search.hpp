@@ -28,6 +28,12 @@ struct PlacingSettings {
   std::optional<ArmReach> reach{};  ///< of the arm that puts it down; left out: of the group "arm"
 };
 
+/// How the hand moves at a place [m].
+struct PlacingMotion {
+  double from_above{};  ///< height from which the object is lowered
+  double margin{};      ///< by which the hand must be able to be lower at the place
+};
+
 /// What places are searched in; what is referred to must outlive the search.
 struct PlacingScene {
   const RobotModel& robot;       ///< that puts the object down
@@ -70,7 +76,7 @@ class Putting {
   /// The references must outlive what is made; `world` knows scene and people; its attachment is
   /// changed. `places` as from free_places() or lying_places().
   Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
-          const Pose& T_world_base, RestingPlaces places, double from_above);
+          const Pose& T_world_base, RestingPlaces places, const PlacingMotion& motion);
 
   /// Adds a configuration of the arm [rad] near which others are searched, beside the present one
   /// and the one at rest: an arm does not find every configuration from everywhere.
@@ -92,13 +98,14 @@ class Putting {
   std::optional<PlacingConfiguration> reach(const Pose& T_world_object, const Vector& q_seed,
                                             const Attachment& held);
   bool is_free(const Vector& q, const PlacingConfiguration& down);
+  bool has_margin(const Vector& q, const PlacingConfiguration& down, const Attachment& held);
 
   CollisionWorld& world_;
   const RobotModel& robot_;
   const Group& arm_;
   Pose T_base_world_;
   RestingPlaces places_;
-  double from_above_;
+  PlacingMotion motion_;
   std::vector<Vector> seeds_;
   std::map<std::string, int> objections_;
 };

@@ -98,7 +98,8 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   CollisionWorld world = world_now();
   Attachment held{"mug"};
   const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
-  Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {places()}, 0.1);
+  Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {places()},
+                  {0.1});
   int reached = 0;
   for (const Pose& T : places()) {
     const auto posture = putting.at(T, q, q, held);
@@ -120,7 +121,7 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   EXPECT_GT(reached, 3);
   Pose inside = places(1).front();
   inside.translation().z() -= 0.2;
-  Putting into(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {{inside}}, 0.1);
+  Putting into(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {{inside}}, {0.1});
   EXPECT_TRUE(into.anywhere(q, q, held, 1).empty());
   EXPECT_FALSE(into.objections().empty());
 }
@@ -130,7 +131,7 @@ TEST_F(Placing, a_place_found_before_the_grasp_is_found_again_from_anywhere) {
   CollisionWorld world = world_now();
   Attachment held{"mug"};
   const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
-  Putting before(world, robot_, arm, scene_.T_world_base, {places()}, 0.1);
+  Putting before(world, robot_, arm, scene_.T_world_base, {places()}, {0.1});
   const std::vector<PlacingConfiguration> found = before.anywhere(q, q, held, 8);
   ASSERT_GT(found.size(), 3U);
   std::mt19937 random(11);
@@ -146,11 +147,36 @@ TEST_F(Placing, a_place_found_before_the_grasp_is_found_again_from_anywhere) {
         const Axis& a = robot_.axes()[static_cast<std::size_t>(axis)];
         elsewhere[axis] = std::uniform_real_distribution<double>(a.lower, a.upper)(random);
       }
-      Putting again(world, robot_, arm, scene_.T_world_base, {{one.T_world_object}}, 0.1);
+      Putting again(world, robot_, arm, scene_.T_world_base, {{one.T_world_object}}, {0.1});
       again.search_near(one.arm_at);
       EXPECT_EQ(again.anywhere(elsewhere, elsewhere, held, 1).size(), 1U) << again.objections();
     }
   }
+}
+
+TEST_F(Placing, with_a_margin_the_hand_may_be_lower_than_planned) {
+  const Group& arm = robot_.require_group("arm");
+  CollisionWorld world = world_now();
+  Attachment held{"mug"};
+  const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
+  // The palm is beside the mug, ever lower, until the hand reaches the table.
+  double lowest = 1, lowest_with_margin = 1;
+  constexpr double kMargin = 0.02;
+  for (double up = 0; up < 0.12; up += 0.01) {
+    Attachment lower = held;
+    lower.T_tool_object.translate(Vector3(0, 0, up));
+    for (const double margin : {0.0, kMargin}) {
+      Putting putting(world, robot_, arm, scene_.T_world_base, {places(8)}, {0.1, margin});
+      const auto found = putting.anywhere(q, q, lower, 1);
+      if (found.empty()) continue;
+      const Vector at = RobotModel::with(q, arm, found.front().arm_at);
+      double& height = margin > 0 ? lowest_with_margin : lowest;
+      height = std::min(height, robot_.link_pose(at, robot_.tool_link()).translation().z());
+    }
+  }
+  std::printf("lowest %.3f, with margin %.3f m\n", lowest, lowest_with_margin);
+  EXPECT_GE(lowest_with_margin, lowest + kMargin - 0.011) << "steps of 10 mm";
+  EXPECT_LE(lowest_with_margin, lowest + kMargin + 0.011);
 }
 
 TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
@@ -159,12 +185,12 @@ TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
   Attachment held{"mug"};
   const Vector q = held_above_table(world, upside_down, held);
   const Group& arm = robot_.require_group("arm");
-  Putting upright(world, robot_, arm, scene_.T_world_base, {places()}, 0.1);
+  Putting upright(world, robot_, arm, scene_.T_world_base, {places()}, {0.1});
   EXPECT_TRUE(upright.anywhere(q, q, held, 1).empty())
       << "the hand would be below the mug, in the table";
 
   Putting lying(world, robot_, arm, scene_.T_world_base,
-                lying_places(places(), mug_, PlacingSettings{}.min_tipping), 0.1);
+                lying_places(places(), mug_, PlacingSettings{}.min_tipping), {0.1});
   const std::vector<PlacingConfiguration> found = lying.anywhere(q, q, held, 5);
   ASSERT_FALSE(found.empty()) << lying.objections();
   for (const PlacingConfiguration& posture : found) {
