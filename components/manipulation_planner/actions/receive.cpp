@@ -23,20 +23,19 @@ constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the 
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
 Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver,
                                           TimePoint deadline) {
-  bool has_cleared = false;
   parts.offers.await();
   parts.action.exchange_engaged = false;
-  const TimePoint began = parts.now.time();
+  TimePoint waits_since = parts.now.time();
   while (parts.now.time() < deadline) {
     parts.action.phase = ActionPhase::watching_for_offer;
     const std::optional<Offer> offer = parts.offers.made();
     if (offer) co_return offer;
-    const double waited = to_seconds(parts.now.time() - began);
-    if (!has_cleared && !parts.offers.is_seen() && waited > parts.settings.offer_clear_after &&
+    const double waited = to_seconds(parts.now.time() - waits_since);
+    if (!parts.offers.is_seen() && waited > parts.settings.offer_clear_after &&
         parts.area.is_occupied(giver)) {
-      has_cleared = true;
       Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);
       if (!cleared.good) parts.refuse("clearing the offer area", cleared.reason);
+      waits_since = parts.now.time();
       continue;
     }
     co_await parts.waiting.pause(kObserveAgain);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/model/human/human_body.hpp"
 
@@ -15,13 +16,26 @@ constexpr double kOfferAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  //
 
 Vector3 horizontal(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
+/// Returns where a person would comfortably offer something with that arm: held out toward the
+/// robot's hand, turned at the shoulder by at most `max_turn` [rad].
+Vector3 offer_toward(const Person& person, Side side, const Vector3& p_hand, double max_turn) {
+  const char* name = side == Side::left ? "l_shoulder" : "r_shoulder";
+  const Vector3& p_shoulder =
+      person.joints[static_cast<std::size_t>(body_joint_index(name))].position;
+  const Vector3 arm = comfortable_reach(person, side) - p_shoulder, to_hand = p_hand - p_shoulder;
+  const double turn = std::remainder(
+      std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * std::numbers::pi);
+  return p_shoulder +
+         Eigen::AngleAxisd(std::clamp(turn, -max_turn, max_turn), Vector3::UnitZ()) * arm;
+}
+
 }  // namespace
 
 double OfferArea::clearance(const Person& person, const Vector& q) const {
   double room = std::numeric_limits<double>::infinity();
   const Vector3 p_hand = now_.T_world_base() * arm_.robot().link_pose(q, arm_.palm()).translation();
   for (const Side side : {Side::left, Side::right}) {
-    const Vector3 p_offer = comfortable_reach(person, side);
+    const Vector3 p_offer = offer_toward(person, side, p_hand, settings_.offer_max_angle);
     const double hand = horizontal(p_hand - p_offer).norm() - settings_.offer_area_hand;
     const double arm =
         retreat_.distance(q, now_.T_world_base(), p_offer) - settings_.offer_area_arm;

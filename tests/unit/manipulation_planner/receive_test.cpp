@@ -214,6 +214,18 @@ TEST(ManipulationPlanner, who_steps_toward_the_hand_that_is_near_is_stepped_back
       << "it comes again: " << rig.planner.status().reason;
 }
 
+TEST(ManipulationPlanner, people_beside_the_arm_offer_toward_the_hand_and_need_room_there) {
+  Rig rig;
+  rig.scene.objects[0].holder = Holder::human;
+  rig.scene.objects[0].holder_id = "anna";
+  rig.draw_back();
+  for (BodyJoint& joint : rig.people.people.front().joints) joint.position.y() += 0.5;
+  rig.scene.objects[0].T_world_object.translation().y() += 0.5;
+  rig.start(ActionKind::receive);
+  rig.run(10);
+  EXPECT_EQ(rig.phases, std::vector<std::string>{"clear the offer area"});
+}
+
 TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
   Rig rig;
   rig.moves = true;
