@@ -43,6 +43,7 @@ SimWorld::Impl::Impl(const RobotModel& robot_model, const ObjectLibrary& library
     objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
   people = std::make_unique<People>(setup, settings, objects, shapes, dynamics);
   prepare_sight();
+  if (people->mind_fingers()) finger_capsules = robot_capsules(model);
   std::uint64_t salt = seed;
   for (const SensorSettings& sensor : setup.human_sensors)
     human_sensors.emplace_back(sensor, salt += 0x1000193);
@@ -115,7 +116,7 @@ void SimWorld::Impl::step() {
   const auto holding =
       std::find_if(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
   const Hand& offering = holding != hands.end() ? *holding : hands.front();
-  people->move(settings.step, tool_state(offering), offering.gripped);
+  people->move(settings.step, {tool_state(offering), fingers_of(offering)}, offering.gripped);
   for (Hand& hand : hands) hold_with(hand);
   dynamics.stepSimulation(settings.step, 0);
   ++steps;

@@ -21,6 +21,16 @@ BodyState SimWorld::Impl::tool_state(const Hand& hand) const {
   return s;
 }
 
+std::vector<Ball> SimWorld::Impl::fingers_of(const Hand& hand) const {
+  std::vector<Ball> balls;
+  for (const LinkCapsule& c : finger_capsules) {
+    if (hand.grasp.chain_of(robot->body_of(c.link)) < 1) continue;
+    const Pose& T = robot->T_world_link(c.link);
+    for (const Vector3& p : {c.a, c.b}) balls.push_back({T * p, c.radius});
+  }
+  return balls;
+}
+
 void SimWorld::Impl::hold_with(Hand& hand) {
   if (hand.gripped < 0 || !helped(hand.gripped)) return;
   ObjectBody& object = objects[hand.gripped];

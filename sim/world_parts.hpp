@@ -75,6 +75,8 @@ struct SimWorld::Impl {
 
   // world_hands.cpp: grasps of the robot's hands
   BodyState tool_state(const Hand& hand) const;  ///< of its palm, world
+  /// Returns the ends of the links of its fingers, while any person minds them.
+  std::vector<Ball> fingers_of(const Hand& hand) const;
   void hold_with(Hand& hand);       ///< applies the grasp constraint for the coming step
   static void release(Hand& hand);  ///< ends grasp and constraint
   /// Returns whether the grasp constraint helps to hold the object.
@@ -137,6 +139,7 @@ struct SimWorld::Impl {
   std::vector<PersonVolume> person_volumes;
   Sight sight;
   std::vector<LinkCapsule> hiding_links;
+  std::vector<LinkCapsule> finger_capsules;  // of all links, while any person minds the fingers
   std::vector<HumanSensor> human_sensors;
   std::vector<ObjectSensor> object_sensors;
 

@@ -23,6 +23,17 @@ bool of_hand(BodyPart part, Side side) {
                             : part == BodyPart::hand_right || part == BodyPart::forearm_right;
 }
 
+/// Returns the pose of an object in a hand that holds it, turned by `turn`: its nearest part at the
+/// palm, where it is turned at all.
+Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>& turn) {
+  constexpr double kBeside = PersonModel::kPalm + 0.05, kFarthest = 0.4, kStep = 0.002;  // [m]
+  if (!turn) return Pose(Eigen::Translation3d(kBeside, 0, 0));
+  double away = kFarthest;
+  const Vector3 back = turn->inverse() * Vector3::UnitX();
+  while (away > 0 && surface_distance(model, -away * back) > PersonModel::kPalm) away -= kStep;
+  return make_pose(Vector3(away, 0, 0), *turn);
+}
+
 bool is_hand(BodyPart part) { return part == BodyPart::hand_left || part == BodyPart::hand_right; }
 int hand_number(BodyPart part) { return part == BodyPart::hand_left ? 0 : 1; }
 
@@ -86,9 +97,8 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   if (!start.holds.empty()) {
     person.object = object_index(objects_, start.holds);
     ObjectBody& object = objects_[person.object];
-    const double beside = PersonModel::kPalm + 0.05;
     const Pose hand = person.hand().state().T_world_body;
-    object.put(Pose(hand * Eigen::Translation3d(beside, 0, 0)));
+    object.put(hand * held_pose(object.model(), start.hand_turn));
     person.grip.hold(hand.inverse() * object.state().T_world_body);
   }
   people_.push_back(std::move(person));
@@ -124,17 +134,22 @@ bool People::listen() const {
                      [](const Body& person) { return person.model.listens(); });
 }
 
-void People::move(double dt, const BodyState& robot_hand, int gripped) {
+bool People::mind_fingers() const {
+  return std::any_of(people_.begin(), people_.end(),
+                     [](const Body& person) { return person.model.minds_fingers(); });
+}
+
+void People::move(double dt, const RobotHandState& robot, int gripped) {
   for (Body& person : people_) {
-    observe(person, dt, robot_hand, gripped);
+    observe(person, dt, robot, gripped);
     hold_or_release(person);
     pull(person, dt);
   }
 }
 
-void People::observe(Body& person, double dt, const BodyState& robot_hand, int gripped) {
+void People::observe(Body& person, double dt, const RobotHandState& robot, int gripped) {
   PersonView view;
-  view.robot_hand = robot_hand.T_world_body.translation();
+  view.robot_hand = robot.palm.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
     person.object = person.fetches >= 0          ? person.fetches
                     : gripped >= 0               ? gripped
@@ -147,6 +162,13 @@ void People::observe(Body& person, double dt, const BodyState& robot_hand, int g
     view.object_velocity = object.state().velocity;
     view.held_by_robot = gripped == person.object;
     view.grip_force = person.grip.wrench().force;
+    view.p_hand_object =
+        person.hand().state().T_world_body.inverse() * view.T_world_object.translation();
+    const Pose T_object_world = view.T_world_object.inverse();
+    for (const Ball& ball : robot.fingers) {
+      const double distance = surface_distance(object.model(), T_object_world * ball.p_world);
+      view.finger_distance = std::min(view.finger_distance, distance - ball.radius);
+    }
   }
   for (int s = 0; s < 2; ++s) {
     view.hand_pushed[s] = person.hands[s]->state().T_world_body.translation() -

@@ -22,6 +22,18 @@ using ObjectBodies = std::deque<ObjectBody>;
 /// The number of the object with that id; -1: none.
 int object_index(const ObjectBodies& objects, const std::string& id);
 
+/// A ball.
+struct Ball {
+  Vector3 p_world{Vector3::Zero()};  ///< of its middle [m]
+  double radius{};                   ///< [m]
+};
+
+/// What people see of a hand of the robot.
+struct RobotHandState {
+  BodyState palm;             ///< world
+  std::vector<Ball> fingers;  ///< ends of their links, while any person minds them
+};
+
 class People {
  public:
   /// Puts an object into the hand of each person that starts with one.
@@ -49,7 +61,9 @@ class People {
   bool follow_somebody() const;  ///< whether any person follows a source outside
   /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1:
   /// none.
-  void move(double dt, const BodyState& robot_hand, int gripped);
+  void move(double dt, const RobotHandState& robot, int gripped);
+  /// Returns whether any person minds how near the fingers of the robot are.
+  bool mind_fingers() const;
 
   bool grips(int object) const;  ///< whether a person's hand holds the object
   /// Whether a person's hand holds the object or, reaching for it, is within 12 mm of contact.
@@ -77,7 +91,7 @@ class People {
     const PersonHand& hand() const { return *hands[model.side() == Side::left ? 0 : 1]; }
   };
   void build(const StartPerson&, const SimSettings&, int number, ShapeStore&);
-  void observe(Body&, double dt, const BodyState& robot_hand, int gripped);
+  void observe(Body&, double dt, const RobotHandState& robot, int gripped);
   void hold_or_release(Body&);
   void pull(Body&, double dt);
   double hand_gap(const Body&) const;

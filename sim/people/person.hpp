@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <random>
@@ -14,6 +15,7 @@
 #include "common/model/human/human_body.hpp"
 #include "common/model/object_model.hpp"
 #include "sim/people/followed_body.hpp"
+#include "sim/people/moving_offer.hpp"
 #include "sim/people/recording.hpp"
 #include "sim/physics/grip.hpp"
 
@@ -58,6 +60,7 @@ struct PersonSettings {
   double max_warp{0.10};             ///< a recorded hand is moved by no more than this [m]
   double warp_time{0.5};             ///< over the last part before contact [s]
   double fetches_at{};               ///< a fetcher reaches for its object from then on [s]
+  MovingOfferSettings moving;        ///< how a giver moves what is offered; duration 0: not at all
   BehaviourProfile behaviour{};      ///< what this person does differently
   std::vector<Furniture> furniture;  ///< what they hold is kept above it
 };
@@ -73,6 +76,10 @@ struct PersonView {
   std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
   bool grip_broke{};                    ///< it slipped out of this person's hand
   Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
+  /// Of the robot's nearest finger from the surface of `object` [m].
+  double finger_distance{std::numeric_limits<double>::infinity()};
+  /// Of `object`, in the frame of the hand that holds it [m].
+  Vector3 p_hand_object{Vector3::Zero()};
 };
 
 /// What a partner hears the robot say about an object.
@@ -110,6 +117,8 @@ class PersonModel {
   /// robot asks for.
   void announce(Announcement announcement);
 
+  /// Whether a giver moves what is offered: the distance of the robot's fingers is needed.
+  bool minds_fingers() const { return settings_.moving.duration > 0; }
   const std::string& source() const { return settings_.external; }  ///< followed; empty: none
   const std::string& id() const { return settings_.id; }            ///< unique in the scenario
   bool listens() const { return settings_.kind == PersonKind::partner; }  ///< to announce()
@@ -150,6 +159,7 @@ class PersonModel {
   Vector3 step_to_place() const;
   Vector3 offer_from_shoulder(const PersonView&) const;
   void offer(double dt, const PersonView&);
+  void offer_in_motion(double dt, const PersonView&);
   void step_aside(double dt);
   double reach_fraction() const;
   double reach_time() const;
@@ -195,8 +205,12 @@ class PersonModel {
       walk_direction_{1};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()},
       side_of_object_{Vector3::UnitX()}, warp_{Vector3::Zero()}, step_{Vector3::Zero()};
-  std::optional<FollowedBody> followed_;  // of an external person
-  Vector3 led_{Vector3::Zero()};          // of its hand from where it is reported to be
+  std::optional<FollowedBody> followed_;    // of an external person
+  std::optional<MovingOffer> moving_;       // of a giver who keeps moving, once they offer
+  Vector3 p_hand_object_{Vector3::Zero()};  // of what is moved, in the hand [m]
+  // Of the handover hand from its middle configuration.
+  Eigen::Quaterniond hand_turn_{Eigen::Quaterniond::Identity()};
+  Vector3 led_{Vector3::Zero()};  // of its hand from where it is reported to be
   Vector3 gaze_{Vector3::UnitX()};
   Person body_;
   std::array<BodyState, 2> hands_;

@@ -10,8 +10,13 @@ namespace {
 
 constexpr double kPart = 0.6;   // each part of a reach with a stop takes this share of one without
 constexpr double kLetGo = 0.5;  // who gives lets go once the robot has held on for so long [s]
-constexpr double kComeNear = 0.35;    // the robot's hand, when who changes their mind does so [m]
-constexpr double kReconsider = 2.0;   // before the second offer [s]
+constexpr double kComeNear = 0.35;   // the robot's hand, when who changes their mind does so [m]
+constexpr double kReconsider = 2.0;  // before the second offer [s]
+constexpr double kMoveTime = 1.0;    // to where a giver who keeps moving begins to do so [s]
+// Such a giver holds the object this far out: share of the arm's length [1], before the shoulder
+// [m].
+constexpr double kLeastOut = 0.6, kMostOut = 0.95, kLeastBefore = 0.4;
+constexpr double kOffFingers = 0.35;  // ... and this far from the robot's palm [m]
 constexpr double kOfferTime = 1.0;    // of the motion [s]
 constexpr double kMostTurn = 0.6;     // of the offer out of the way ahead [rad]
 constexpr double kBeforeHand = 0.5;   // from the robot's hand, where something is held out [m]
@@ -92,6 +97,7 @@ void PersonModel::offer(double dt, const PersonView& view) {
   lost_time_ = view.held_by_robot ? lost_time_ + dt : 0;
   if (lost_time_ > kLetGo) return give_up();
   if (view.held_by_robot) return;
+  if (settings_.moving.duration > 0) return offer_in_motion(dt, view);
   come_back();
   hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
   const bool near =
@@ -118,6 +124,33 @@ void PersonModel::offer(double dt, const PersonView& view) {
   from_ = hand_target_;
   duration_ = kReconsider;
   enter(PersonPhase::keeping);
+}
+
+/// Leads the hand to where the motion begins, then along it. The object turns about itself, so that
+/// the hand goes around it.
+void PersonModel::offer_in_motion(double dt, const PersonView& view) {
+  const Eigen::Quaterniond facing(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
+  if (!moving_) {
+    const ArmReach reach{shoulder(index()),  forward(),
+                         kLeastOut * reach_, kMostOut * reach_,
+                         kLeastBefore,       view.robot_hand - facing * view.p_hand_object,
+                         kOffFingers};
+    // The boxes are of the object; in reach is the hand, in the middle posture of the wrist.
+    MovingOfferSettings of_hand = settings_.moving;
+    p_hand_object_ = view.p_hand_object;
+    const Vector3 ahead = facing * p_hand_object_;
+    for (Vector3* corner :
+         {&of_hand.start_low, &of_hand.start_high, &of_hand.next_low, &of_hand.next_high})
+      *corner -= ahead;
+    moving_.emplace(of_hand, reach, shoulder(index()) + p_shoulder_offer_);
+  }
+  const bool waits = view.finger_distance < settings_.moving.waits_within;
+  if (waits && since() < kMoveTime) phase_since_ += dt;
+  const double s = min_jerk(since() / kMoveTime);
+  if (s >= 1) moving_->step(dt, waits);
+  hand_turn_ = Eigen::Quaterniond::Identity().slerp(s, moving_->turn());
+  const Vector3 turned = facing * (p_hand_object_ - hand_turn_ * p_hand_object_);
+  hand_target_ = from_ + s * (moving_->position() + turned - from_);
 }
 
 /// Not while both have hold of the object, or reach for it.

@@ -70,8 +70,9 @@ void PersonModel::want_hands(double dt) {
     const Vector3 before = hands_[s].T_world_body.translation(), now = points_[kHand[s]];
     hands_[s].velocity =
         first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((now - before) / dt);
-    hands_[s].T_world_body =
-        make_pose(now, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ())));
+    Eigen::Quaterniond turned(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
+    if (s == index()) turned = turned * hand_turn_;
+    hands_[s].T_world_body = make_pose(now, turned);
   }
 }
 

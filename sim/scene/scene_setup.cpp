@@ -248,7 +248,32 @@ class Reader {
       s.fetches_at = person.fetches_at();
     }
     if (person.has_varies() && !vary(s, person.varies())) return;
+    if (person.has_moves()) read_motion(p, person.moves());
     out_.people.push_back(std::move(p));
+  }
+
+  void read_motion(StartPerson& p, const config::MovingOffer& moves) {
+    PersonSettings& s = p.settings;
+    if (s.kind != PersonKind::giver) fail("person " + s.id + " moves an offer but is no GIVER");
+    if (moves.duration() <= 0) fail("moves of " + s.id + ": duration must be above 0");
+    if (moves.fastest() < moves.slowest() || moves.fastest_turn() < moves.slowest_turn())
+      fail("moves of " + s.id + ": the fastest must not be below the slowest");
+    MovingOfferSettings& m = s.moving;
+    m.duration = moves.duration();
+    m.start_low = vec(moves.start_low()), m.start_high = vec(moves.start_high());
+    m.next_low = vec(moves.next_low()), m.next_high = vec(moves.next_high());
+    if ((m.start_high - m.start_low).minCoeff() < 0 || (m.next_high - m.next_low).minCoeff() < 0)
+      fail("moves of " + s.id + ": a box has a high corner below its low corner");
+    m.spread = moves.spread();
+    m.slowest = moves.slowest(), m.fastest = moves.fastest();
+    m.slowest_turn = moves.slowest_turn(), m.fastest_turn = moves.fastest_turn();
+    m.max_turn = moves.max_turn(), m.waits_within = moves.waits_within();
+    m.seed = random_();
+    if (!moves.any_orientation()) return;
+    std::normal_distribution<double> normal;
+    Eigen::Vector4d turn;
+    for (int i = 0; i < 4; ++i) turn[i] = normal(random_);
+    p.hand_turn = Eigen::Quaterniond(turn.normalized());
   }
 
   /// False: nobody this time.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <random>
 
 #include "common/bus/node_context.hpp"
@@ -35,6 +36,8 @@ struct StartPerson {
   PersonSettings settings;  ///< variation drawn from the seed included
   std::string holds;        ///< object id, for a giver
   std::string fetches;      ///< object id, for a fetcher
+  /// Of the object in the hand that holds it, where that is drawn.
+  std::optional<Eigen::Quaterniond> hand_turn;
 };
 
 struct TimedControl {
