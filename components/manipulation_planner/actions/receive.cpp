@@ -26,15 +26,17 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver
   parts.offers.await();
   parts.action.exchange_engaged = false;
   TimePoint waits_since = parts.now.time();
+  bool can_clear = true;
   while (parts.now.time() < deadline) {
     parts.action.phase = ActionPhase::watching_for_offer;
     const std::optional<Offer> offer = parts.offers.made();
     if (offer) co_return offer;
     const double waited = to_seconds(parts.now.time() - waits_since);
-    if (!parts.offers.is_seen() && waited > parts.settings.offer_clear_after &&
+    if (can_clear && !parts.offers.is_seen() && waited > parts.settings.offer_clear_after &&
         parts.area.is_occupied(giver)) {
       Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);
       if (!cleared.good) parts.refuse("clearing the offer area", cleared.reason);
+      can_clear = !parts.area.is_occupied(giver);
       waits_since = parts.now.time();
       continue;
     }
