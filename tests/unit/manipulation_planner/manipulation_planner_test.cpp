@@ -1,3 +1,4 @@
+#include "components/manipulation_planner/placing/place_search.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
 namespace handsel::manipulation_planner {
@@ -346,6 +347,40 @@ TEST(ManipulationPlanner, places_what_it_holds_on_the_surface) {
   rig.run(60);
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
   EXPECT_FALSE(rig.planner.status().holding);
+}
+
+/// Returns how high above a table a mug is released whose origin is `below` the hand [m]; negative:
+/// the mug cannot be put down.
+double release_height(double below) {
+  constexpr double kHalfTable = 0.05;
+  Rig rig;
+  Vector at_grasp = rig.q;  // as the rig answers
+  at_grasp[rig.robot->require_group("arm").axes[0]] += 0.2;
+  const Vector3 mug =
+      rig.robot->link_pose(at_grasp, rig.robot->tool_link()).translation() - Vector3(0, 0, below);
+  rig.scene.objects[0].T_world_object = make_pose(mug);
+  rig.grasped_as_it_stands = true;
+  const Vector3 table = mug - Vector3(0, 0, 0.16);
+  rig.scene.boxes[0] = {"table", make_pose(table), {0.5, 0.5, 2 * kHalfTable}, true};
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.start(ActionKind::place);
+  double lowest = 1e9;
+  for (int i = 0; i < 3000 && rig.planner.status().state == ActionState::running; ++i) {
+    rig.cycle();
+    if (rig.planner.status().holding)
+      lowest = std::min(lowest, rig.scene.objects[0].T_world_object.translation().z());
+  }
+  if (rig.planner.status().state != ActionState::succeeded) return -1;
+  return lowest - table.z() - kHalfTable - rig.mug.height_above_support;
+}
+
+TEST(ManipulationPlanner, a_hand_that_reaches_below_what_it_holds_releases_it_a_little_higher) {
+  EXPECT_NEAR(release_height(0.3), kAbovePlace, 1e-3);
+  double highest = -1;
+  for (double below = 0.2; below > 0; below -= 0.005)
+    highest = std::max(highest, release_height(below));
+  EXPECT_NEAR(highest, kAbovePlace + 0.008, 1e-3);
 }
 
 }  // namespace
