@@ -61,7 +61,8 @@ std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
   return free_places(in, object, surface, T_now, max_places, placing);
 }
 
-/// Returns every free place of the surface, the nearest to `T_chosen` first where one was chosen.
+/// Returns every free place of the surface; where one was chosen, the object is turned as there and
+/// at that height, and the nearest places come first.
 std::vector<Pose> all_places_on(const PlacingJob& job, const SceneBox& surface,
                                 const std::string& object, const Pose& T_now,
                                 const std::optional<Destination>& chosen) {
@@ -74,7 +75,10 @@ std::vector<Pose> all_places_on(const PlacingJob& job, const SceneBox& surface,
   };
   std::stable_sort(places.begin(), places.end(),
                    [&](const Pose& a, const Pose& b) { return distance(a) < distance(b); });
-  for (Pose& T : places) T.linear() = chosen->T_world_object.linear();
+  for (Pose& T : places) {
+    T.linear() = chosen->T_world_object.linear();
+    T.translation().z() = chosen->T_world_object.translation().z();
+  }
   return places;
 }
 
