@@ -15,7 +15,7 @@ constexpr double kReconsider = 2.0;  // before the second offer [s]
 constexpr double kMoveTime = 1.0;    // to where a giver who keeps moving begins to do so [s]
 // Such a giver holds the object this far out: share of the arm's length [1], before the shoulder
 // [m].
-constexpr double kLeastOut = 0.6, kMostOut = 0.95, kLeastBefore = 0.4;
+constexpr double kMinOut = 0.6, kMaxOut = 0.95, kMinBefore = 0.4;
 constexpr double kOffFingers = 0.35;  // ... and this far from the robot's palm [m]
 constexpr double kOfferTime = 1.0;    // of the motion [s]
 constexpr double kMostTurn = 0.6;     // of the offer out of the way ahead [rad]
@@ -131,9 +131,9 @@ void PersonModel::offer(double dt, const PersonView& view) {
 void PersonModel::offer_in_motion(double dt, const PersonView& view) {
   const Eigen::Quaterniond facing(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
   if (!moving_) {
-    const ArmReach reach{shoulder(index()),  forward(),
-                         kLeastOut * reach_, kMostOut * reach_,
-                         kLeastBefore,       view.robot_hand - facing * view.p_hand_object,
+    const ArmReach reach{shoulder(index()), forward(),
+                         kMinOut * reach_,  kMaxOut * reach_,
+                         kMinBefore,        view.robot_hand - facing * view.p_hand_object,
                          kOffFingers};
     // The boxes are of the object; in reach is the hand, in the middle posture of the wrist.
     MovingOfferSettings of_hand = settings_.moving;
