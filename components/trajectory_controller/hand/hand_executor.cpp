@@ -54,7 +54,7 @@ HandExecutor::HandExecutor(const HandSettings& settings, HandAxes hand,
 void HandExecutor::reset(const Vector& robot_position, const Vector& robot_effort) noexcept {
   fingers_.reset(robot_position);
   phase_ = Phase::hold;
-  paused_ = freeing_ = false;
+  paused_ = freeing_ = unsure_ = false;
   max_effort_ = 0.0;
   if (robot_effort.size() == robot_position.size())
     for (std::size_t i = 0; i < fingers_.size(); ++i) {
@@ -81,6 +81,7 @@ void HandExecutor::follow(const Vector& robot_position, double dead_band) noexce
     if (!there) f.mover.go_to(f.target, fingers_.comfort(i), fingers_.stop(i));
   }
   phase_ = Phase::hold;
+  unsure_ = false;
   // What was begun is not finished any more.
   if (state_ == HandState::moving) state_ = HandState::refused;
   release_.disarm();
@@ -144,7 +145,7 @@ void HandExecutor::start(Phase phase) {
   phase_ = phase;
   state_ = HandState::moving;
   settled_for_ = lost_for_ = 0.0;
-  payload_felt_ = false;
+  payload_felt_ = unsure_ = false;
   double farthest = 0.0;
   for (const Finger& f : fingers_)
     farthest = std::max(farthest, std::abs(f.final - f.mover.state().position));
@@ -206,16 +207,33 @@ void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
   fingers_.hold_object(kMinor * max_effort_);
   // A finger that something keeps from what it should push on leaves the others unbalanced: only a
   // person who also holds the object keeps it there.
-  const bool pushes = fingers_.all_push(robot, settings_.grip_effort, settings_.min_push);
-  const bool held = presses(robot) && (!person_near_ || pushes);
-  state_ = held ? HandState::grasped : HandState::empty;
+  const bool holds = holds_alone(robot);
+  unsure_ = !holds && presses(robot);
+  state_ = holds ? HandState::grasped : HandState::empty;
   phase_ = Phase::hold;
+  settled_for_ = 0.0;
+}
+
+/// Returns whether the fingers press on an object and hold that without help: no person is near, or
+/// all fingers push as planned.
+bool HandExecutor::holds_alone(const RobotState& robot) const noexcept {
+  return presses(robot) && (!person_near_ || fingers_.all_push(robot, settings_.grip_effort,
+                                                               settings_.min_push));
+}
+
+/// Fingers that do not push as planned may still hold what the person then lets go of.
+void HandExecutor::judge_again(const RobotState& robot, double dt) noexcept {
+  settled_for_ = holds_alone(robot) ? settled_for_ + dt : 0.0;
+  if (settled_for_ < settings_.settle_time) return;
+  state_ = HandState::grasped;
+  unsure_ = false;
 }
 
 void HandExecutor::check_outcome(const RobotState& robot, double payload, double dt) noexcept {
   if (phase_ == Phase::closing || phase_ == Phase::seeking || phase_ == Phase::gripping) return;
   if (phase_ == Phase::loosened) return;
   if (phase_ == Phase::hold) {
+    if (unsure_) judge_again(robot, dt);
     if (state_ != HandState::grasped) return;
     if (payload > 2.0 * settings_.lost_payload) payload_felt_ = true;
     lost_for_ = payload_felt_ && payload < settings_.lost_payload ? lost_for_ + dt : 0.0;

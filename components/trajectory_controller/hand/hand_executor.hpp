@@ -106,6 +106,8 @@ class HandExecutor {
   void comply(const RobotState& robot, double dt) noexcept;
   void check_outcome(const RobotState& robot, double payload, double dt) noexcept;
   bool presses(const RobotState& robot) const noexcept;
+  bool holds_alone(const RobotState& robot) const noexcept;
+  void judge_again(const RobotState& robot, double dt) noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;
 
   HandSettings settings_;
@@ -114,6 +116,7 @@ class HandExecutor {
   HandState state_{HandState::idle};
   bool paused_{}, payload_felt_{}, person_near_{};
   bool closed_{};            // since it was reset or opened last
+  bool unsure_{};            // the last grasp ended with fingers that do not push as planned
   bool freeing_{};           // it opens for a person who is clamped
   double speed_limit_{1.0};  // fraction of the comfort velocity
   double settled_for_{}, lost_for_{};

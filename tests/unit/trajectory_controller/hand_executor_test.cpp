@@ -264,6 +264,30 @@ TEST_F(HandTest, what_a_person_holds_too_is_grasped_only_when_every_finger_pushe
       << "nobody else keeps it where it is: it has come to rest in the hand";
 }
 
+TEST_F(HandTest, a_grasp_in_doubt_is_grasped_once_the_person_has_left_the_object_to_the_fingers) {
+  jammed_ = {1.0, 1.0, 0.3, 1.0};
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  HandCommand c;
+  c.action = HandAction::grasp;
+  c.position = Vector::Constant(4, 0.5);
+  c.effort = Eigen::Vector4d(1.2, 1.2, 1.2, 0.3);
+  ASSERT_EQ(hand_.accept(c), "");
+  run(3.5);
+  ASSERT_EQ(hand_.state(), HandState::empty) << "a person may still hold the object";
+  person_distance_ = 10.0;
+  run(0.5);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  block_ = {10, 10, 10, 10};  // the object is gone
+  jammed_ = {0, 0, 0, 0};
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  person_distance_ = 0.1;
+  run(0.5);
+  person_distance_ = 10.0;
+  run(0.5);
+  EXPECT_EQ(hand_.state(), HandState::empty) << "fingers that press on nothing hold nothing";
+}
+
 TEST_F(HandTest, closing_on_nothing_is_empty) {
   command(HandAction::grasp, 0.7);
   run(3.0);
