@@ -108,6 +108,8 @@ const char* name(Mode);
 
 enum class MotionState : std::uint8_t { idle, running, finished, refused, stopped };
 enum class HandState : std::uint8_t { idle, moving, grasped, empty, released, refused };
+/// Returns the word of kHandStateNames; "unknown" for a value outside the enumeration.
+const char* name(HandState);
 
 /// A hand other than the first one.
 struct OtherHandState {

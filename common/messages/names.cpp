@@ -16,6 +16,7 @@ constexpr bool ends_with(const char* const (&)[n], Enum last) {
 static_assert(ends_with(kBehaviourNames, Behaviour::watch));
 static_assert(ends_with(kCauseNames, Cause::awaits_person));
 static_assert(ends_with(kModeNames, Mode::fault));
+static_assert(ends_with(kHandStateNames, HandState::refused));
 static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
 static_assert(ends_with(kActionKindNames, ActionKind::carry));
@@ -35,6 +36,7 @@ static_assert(ends_with(kSimActionNames, SimAction::emergency_stop));
 const char* name(Behaviour value) { return look_up(kBehaviourNames, value); }
 const char* name(Cause value) { return look_up(kCauseNames, value); }
 const char* name(Mode value) { return look_up(kModeNames, value); }
+const char* name(HandState value) { return look_up(kHandStateNames, value); }
 const char* name(TaskKind value) { return look_up(kTaskKindNames, value); }
 const char* name(TaskState value) { return look_up(kTaskStateNames, value); }
 const char* name(ActionKind value) { return look_up(kActionKindNames, value); }

@@ -43,6 +43,8 @@ inline constexpr const char* kCauseNames[] = {"none",
                                               "clamped",
                                               "awaits_person"};
 inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
+inline constexpr const char* kHandStateNames[] = {"idle",  "moving",   "grasped",
+                                                  "empty", "released", "refused"};
 inline constexpr const char* kTaskKindNames[] = {
     "give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
     "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};

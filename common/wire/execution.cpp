@@ -9,7 +9,6 @@ namespace {
 
 constexpr const char* kHandActions[] = {"move", "grasp", "release_on_pull", "release"};
 constexpr const char* kMotions[] = {"idle", "running", "finished", "refused", "stopped"};
-constexpr const char* kHands[] = {"idle", "moving", "grasped", "empty", "released", "refused"};
 constexpr Range kLimitRatio{0, 1e9};
 static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) &&
                   handsel_CAUSE_COST_AHEAD == static_cast<int>(Cause::cost_ahead),
@@ -55,7 +54,7 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
 
 void describe(WireIo& io, OtherHandState& m, handsel_OtherHandState& w) {
   io.text("group", m.group, w.group, Text::name);
-  io.choice("hand", m.hand, w.hand, kHands);
+  io.choice("hand", m.hand, w.hand, kHandStateNames);
 }
 
 void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
@@ -68,7 +67,7 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.choice("motion", m.motion, w.motion, kMotions);
   io.number("progress", m.progress, w.progress, kFraction);
   io.integer("hand_command", m.hand_command, w.hand_command);
-  io.choice("hand", m.hand, w.hand, kHands);
+  io.choice("hand", m.hand, w.hand, kHandStateNames);
   io.list("other_hands", m.other_hands, w.other_hands, 3);
   io.number("pull", m.pull, w.pull, kForce);
   io.text("reason", m.reason, w.reason, Text::sentence);

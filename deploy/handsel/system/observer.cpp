@@ -99,6 +99,15 @@ void Observer::watch_execution(Bus& bus) {
       note(at, "mode " + std::string(name(execution.mode)) +
                    (causes.empty() ? "" : " (" + causes + ")"));
     }
+    const auto note_hand = [&](const std::string& hand, HandState was, HandState is) {
+      if (seen.ever && was != is) note(at, hand + " " + name(is));
+    };
+    note_hand("hand", seen.sample.hand, execution.hand);
+    for (std::size_t i = 0; i < execution.other_hands.size(); ++i) {
+      const auto& before = seen.sample.other_hands;
+      const OtherHandState& other = execution.other_hands[i];
+      if (i < before.size()) note_hand(other.group, before[i].hand, other.hand);
+    }
     keep_newest(snapshot_.execution, execution, at);
   });
   watch<SafetyState>(bus, [this](const SafetyState& safety, TimePoint at) {
