@@ -38,7 +38,10 @@ void SimWorld::Impl::evaluate() {
   }
   if (collided) ++collisions;
 
-  people->volumes(tool_state(hands.front()).T_world_body.translation(), person_volumes);
+  robot_hands.clear();
+  for (const Hand& hand : hands)
+    robot_hands.push_back(tool_state(hand).T_world_body.translation());
+  people->volumes(robot_hands, person_volumes);
   near = separations.separation(*robot, person_volumes);
   min_separation = std::min(min_separation, near.distance);
   if (near.link >= 0 && near.distance < 0.5) {

@@ -137,6 +137,7 @@ struct SimWorld::Impl {
   std::vector<Touch> touches, pushes;
   double pushed_at{-kPush};
   std::vector<PersonVolume> person_volumes;
+  std::vector<Vector3> robot_hands;  // positions of the palms
   Sight sight;
   std::vector<LinkCapsule> hiding_links;
   std::vector<LinkCapsule> finger_capsules;  // of all links, while any person minds the fingers

@@ -247,12 +247,15 @@ bool People::yields(int code) const {
 
 const std::string& People::id(int code) const { return people_[code / kCodes].model.id(); }
 
-void People::volumes(const Vector3& robot_hand, std::vector<PersonVolume>& out) const {
+void People::volumes(const std::vector<Vector3>& robot_hands,
+                     std::vector<PersonVolume>& out) const {
   out.clear();
   for (const Body& person : people_) {
-    const bool exchanged =
-        person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
-        (robot_hand - objects_[person.object].state().T_world_body.translation()).norm() < 0.35;
+    const auto is_near_object = [&](const Vector3& hand) {
+      return (hand - objects_[person.object].state().T_world_body.translation()).norm() < 0.35;
+    };
+    const bool exchanged = person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
+                           std::any_of(robot_hands.begin(), robot_hands.end(), is_near_object);
     out.push_back(
         {&person.model.body(), person.model.in_handover() || exchanged, person.model.side()});
   }

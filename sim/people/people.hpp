@@ -72,9 +72,9 @@ class People {
   /// index of a touch.
   bool yields(int code) const;
   const std::string& id(int code) const;  ///< of a touched person
-  /// Writes what the separation is measured to. Forearm and hand of a handover are exempt until the
-  /// robot's hand is 0.35 m from the object that it gave.
-  void volumes(const Vector3& robot_hand, std::vector<PersonVolume>& out) const;
+  /// Writes what the separation is measured to. Forearm and hand of a handover are exempt until
+  /// every hand of the robot (at `robot_hands`, world frame [m]) is 0.35 m from the object.
+  void volumes(const std::vector<Vector3>& robot_hands, std::vector<PersonVolume>& out) const;
 
  private:
   struct Body {
