@@ -50,6 +50,8 @@ class Fingers {
   auto begin() noexcept { return fingers_.begin(); }
   /// Behind the last axis, for loops.
   auto end() noexcept { return fingers_.end(); }
+  auto begin() const noexcept { return fingers_.begin(); }
+  auto end() const noexcept { return fingers_.end(); }
 
   /// Returns a position of axis `i` as one inside its bounds.
   double inside(std::size_t i, double position) const noexcept;

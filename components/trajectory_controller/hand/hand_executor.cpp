@@ -118,7 +118,8 @@ std::string HandExecutor::accept(const HandCommand& command) {
 void HandExecutor::retarget(std::size_t i, double target) noexcept {
   Finger& f = fingers_[i];
   f.target = fingers_.inside(i, target);
-  const bool gently = phase_ == Phase::closing || phase_ == Phase::seeking;
+  const bool gently = phase_ == Phase::closing || phase_ == Phase::seeking ||
+                      phase_ == Phase::gripping;
   if (paused_) return;
   const bool fast = phase_ == Phase::regripping;
   AxisLimits l = fast ? fingers_.stop(i) : fingers_.comfort(i);
@@ -179,9 +180,9 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
   for (Finger& f : fingers_) f.target = f.mover.state().position;
 }
 
-/// Axes that press on nothing yet continue in the direction in which they will push; then all
-/// press.
-void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
+/// Axes that press on nothing yet continue in the direction in which they will push. Returns whether
+/// each presses on something or has moved as far as it may.
+bool HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   bool done = true;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
@@ -195,14 +196,31 @@ void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
     retarget(i, f.target + dt * settings_.seek_speed * f.lever * f.effort / max_effort_);
     if (f.target <= fingers_.lower(i) || f.target >= fingers_.upper(i)) f.contact = true;
   }
-  if (!done) return;
+  return done;
+}
+
+/// Returns the fraction of the grip force that the axes in contact give.
+double HandExecutor::share_in_contact() const noexcept {
+  double all = 0.0, touching = 0.0;
+  for (const Finger& f : fingers_) {
+    all += std::abs(f.effort);
+    if (f.pressed_for >= settings_.touch_time) touching += std::abs(f.effort);
+  }
+  return all > 0.0 ? touching / all : 0.0;
+}
+
+/// A person who feels the fingers releases the object at once: the grip force grows as soon as most
+/// of it acts on the object, while other axes still move to theirs.
+void HandExecutor::seek_contact(const RobotState& robot, double dt) noexcept {
+  if (!seek(robot, dt) && share_in_contact() < settings_.grip_share) return;
   phase_ = Phase::gripping;
   settled_for_ = 0.0;
 }
 
 void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
+  const bool sought = seek(robot, dt);
   level_ = std::min(1.0, level_ + dt / settings_.grip_rise_time);
-  settled_for_ = level_ >= 1.0 ? settled_for_ + dt : 0.0;
+  settled_for_ = sought && level_ >= 1.0 ? settled_for_ + dt : 0.0;
   if (settled_for_ < settings_.settle_time) return;
   fingers_.hold_object(kMinor * max_effort_);
   // A finger that something keeps from what it should push on leaves the others unbalanced: only a
@@ -323,7 +341,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
   }
   if (!paused_) {
     if (phase_ == Phase::closing) watch_contacts(robot, dt);
-    if (phase_ == Phase::seeking) seek(robot, dt);
+    if (phase_ == Phase::seeking) seek_contact(robot, dt);
     if (phase_ == Phase::gripping) grip(robot, dt);
     change_level(dt);
     if (release_.armed() && in.new_state) watch_release(in, now);

@@ -264,6 +264,23 @@ TEST_F(HandTest, what_a_person_holds_too_is_grasped_only_when_every_finger_pushe
       << "nobody else keeps it where it is: it has come to rest in the hand";
 }
 
+TEST_F(HandTest, the_grip_force_does_not_wait_for_a_finger_that_finds_nothing) {
+  block_ = {0.5, 0.5, 0.5, 10.0};
+  HandCommand c;
+  c.action = HandAction::grasp;
+  c.position = Vector::Constant(4, 0.5);
+  c.effort = Eigen::Vector4d(1.2, 1.2, 1.2, 0.6);
+  ASSERT_EQ(hand_.accept(c), "");
+  const auto is_touching = [this] { return robot_.effort[0] > 0.1; };
+  for (int k = 0; k < 300 && !is_touching(); ++k) run(0.01);
+  ASSERT_TRUE(is_touching());
+  run(0.6);
+  EXPECT_GT(robot_.effort[0], 0.9 * 1.2) << "a person who feels the fingers lets go at once";
+  run(2.0);
+  EXPECT_NEAR(out_.position[3], 0.5 + 0.5 * HandSettings{}.seek_travel, 1e-3)
+      << "the other finger still searches";
+}
+
 TEST_F(HandTest, a_grasp_in_doubt_is_grasped_once_the_person_has_left_the_object_to_the_fingers) {
   jammed_ = {1.0, 1.0, 0.3, 1.0};
   block_ = {0.5, 0.5, 0.5, 0.5};
