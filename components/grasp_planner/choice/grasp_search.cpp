@@ -80,6 +80,7 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
       if (p.id != holder) continue;
       p = with_fingers_bent(p, start.T_world_object.translation());
       p.inflation += settings().off_fingers;
+      holder_body = body_at_object(p, start.T_world_object);
     }
     start.world.set_people(around);
     for (Person& p : around.people) {
@@ -302,12 +303,19 @@ double GraspChooser::Search::on_our_side(const Grasp& g) const {
   return 0.5 * (1 + to_hand.stableNormalized().dot(to_robot));
 }
 
+bool GraspChooser::Search::touches_holder(const Grasp& g) {
+  if (!holder_body) return false;
+  ++out.touch_tests;
+  return hand.touches(*holder_body, g);
+}
+
 bool GraspChooser::Search::off_giver(const Vector& arm_q, const Grasp& g) {
   ++out.states;
   return giver->check_people(whole(arm_q, g.pregrasp_joints)).free;
 }
 
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
+  if (touches_holder(g)) return ChoiceReason::collision;
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;
   const auto grasp_q = reach(T_world_hand, inputs.request.start, 2);
   if (!grasp_q) return ChoiceReason::out_of_reach;

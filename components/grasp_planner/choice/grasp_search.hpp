@@ -67,6 +67,8 @@ struct GraspChooser::Search {
   /// How far on the robot's side of the object the hand is, [0, 1]: the person with the object in
   /// the hand is on the other.
   double on_our_side(const Grasp& g) const;
+  /// Whether the hand touches who holds the object, however the arm gets to the grasp.
+  bool touches_holder(const Grasp& g);
   /// Far enough from head, torso, upper arms and legs of the person that holds it, the hand open.
   bool off_giver(const Vector& arm_q, const Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
@@ -79,6 +81,7 @@ struct GraspChooser::Search {
   Scene scene;
   Site start;
   std::optional<Site> goal;
+  std::optional<HandShape::PlacedHand> holder_body;  // frame of the object
   std::optional<CollisionWorld> giver;     // the person that holds it, but for forearms and hands
   std::optional<CollisionWorld> carrying;  // about the goal, with the object in the hand
   // with the object in the hand, at the handover: the person's arms are no obstacle

@@ -3,9 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/human/human_body.hpp"
 #include "components/grasp_planner/choice/visibility.hpp"
 
 namespace handsel::grasp_planner {
+
+HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object) {
+  HandShape::PlacedHand out;
+  const Pose T_object_world = T_world_object.inverse();
+  for (const BodyCapsule& part : body_capsules(person)) {
+    HandShape::Placed p;
+    p.capsule = true;
+    p.a = T_object_world * part.a;
+    p.b = T_object_world * part.b;
+    p.radius = part.radius;
+    const Vector3 along = p.b - p.a;
+    p.middle = 0.5 * (p.a + p.b);
+    p.bound = 0.5 * along.norm() + p.radius;
+    p.T_frame_shape.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along).toRotationMatrix();
+    p.T_frame_shape.translation() = p.middle;
+    p.shape = CollisionShape::make(Capsule{p.radius, along.norm()});
+    p.core = convex_core(p.shape->shape(), p.T_frame_shape);
+    out.box.extend(Vector3(p.middle.array() - p.bound));
+    out.box.extend(Vector3(p.middle.array() + p.bound));
+    out.solids.push_back(std::move(p));
+  }
+  return out;
+}
 
 HandAtObject::HandAtObject(const HandGeometry& hand, const Graspable& object, double support_gap)
     : hand_(hand), object_(object), support_gap_(support_gap) {}
@@ -39,6 +64,15 @@ bool HandAtObject::stands_in(const Grasp& g) const {
   return std::none_of(lows.begin(), lows.end(), [&](const HandShape::Low& low) {
     return low.height < object_.box().min().z() + support_gap_;
   });
+}
+
+bool HandAtObject::touches(const HandShape::PlacedHand& body, const Grasp& g) {
+  for (const Vector* joints : {&g.hand_joints, &g.pregrasp_joints}) {
+    hand_.forward(*joints, T_open_);
+    if (HandShape::hands_touch(hand_.shape.placed(T_open_, g.T_object_hand), body, 0.0))
+      return true;
+  }
+  return false;
 }
 
 double HandAtObject::visible(const Grasp& g, const Vector3& p_object_eye) {

@@ -1,12 +1,16 @@
-// The hand in a grasp: supports below it, what it hides of the object.
+// The hand in a grasp: supports below it, people beside it, what it hides of the object.
 #pragma once
 
 #include <vector>
 
+#include "common/messages/world.hpp"
 #include "components/grasp_planner/hand/hand_geometry.hpp"
 #include "components/grasp_planner/object/graspable.hpp"
 
 namespace handsel::grasp_planner {
+
+/// Returns the body of a person in the frame of an object at `T_world_object`.
+HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object);
 
 class HandAtObject {
  public:
@@ -20,6 +24,9 @@ class HandAtObject {
   /// Returns whether the object can be stood on a surface in this grasp: the open hand is nowhere
   /// below its foot.
   bool stands_in(const Grasp& g) const;
+  /// Returns whether the hand, opened or closed, touches a body as of body_at_object(): by whatever
+  /// configuration the arm gets there.
+  bool touches(const HandShape::PlacedHand& body, const Grasp& g);
   /// Returns the fraction of the object that is seen past the closed hand from an eye, frame of the
   /// object.
   double visible(const Grasp& g, const Vector3& p_object_eye);

@@ -347,6 +347,18 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
   EXPECT_GT(count(none, ChoiceReason::near_giver), 0U);
 }
 
+TEST(HeldOut, grasps_that_touch_who_holds_it_cost_no_inverse_kinematics) {
+  HumanState people;
+  const Scene scene = held_out(people);
+  ChoiceSettings settings;
+  settings.rank_away = -1;  // what is on the side of who holds it comes first
+  settings.rank_stands = 0;
+  settings.reach_budget = 60;
+  const Choice c = choose(request(), scene, people, settings);
+  EXPECT_GE(c.grasps.size(), 10U) << c.why_none(mug().list);
+  EXPECT_GT(count(c, ChoiceReason::collision), c.reaches);
+}
+
 TEST(Platform, drives_to_what_is_out_of_reach_and_stays_clear) {
   const Scene scene = table_with_mug(2.4, 0.3);
   const HumanState people = anna(2.0, 1.2);
