@@ -58,6 +58,7 @@ double ramp(double x, double low, double high) {
 }
 
 bool in_handover_with(const World& w, const std::string& person) {
+  if (doing(w, ActionKind::pick)) return w.action->human == person && !person.empty();
   return (doing(w, ActionKind::give) || doing(w, ActionKind::receive)) &&
          (w.action->human.empty() || w.action->human == person);
 }

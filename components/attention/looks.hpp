@@ -30,7 +30,8 @@ struct NearHand {
 /// Returns the hand of the person that is nearest to `p` (world [m]). The person needs all joints.
 NearHand nearest_hand(const Person& person, const Vector3& p);
 
-/// Is this the person whom the robot hands something to or takes something from?
+/// Returns whether the robot hands something to this person, picks up what the person is to get, or
+/// takes something from the person.
 bool in_handover_with(const World& w, const std::string& person);
 /// Returns the person whose forearms and hands are exempt from separation while the handover is
 /// engaged; empty otherwise.

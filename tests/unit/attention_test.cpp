@@ -296,6 +296,26 @@ TEST_F(AttentionTest, the_exchanging_hand_does_not_stop_the_robot_once_engaged) 
   EXPECT_FALSE(engaged.advice().has_target_shift);
 }
 
+TEST_F(AttentionTest, the_person_whom_an_object_is_picked_for_expects_the_robot_near) {
+  people_.people = {standing(1.2, 0)};
+  action_.kind = ActionKind::pick;
+  action_.state = ActionState::running;
+  Attention for_nobody(settings(), body_);
+  run(for_nobody, 0, 1);
+  action_.human = "anna";
+  Attention for_anna(settings(), body_);
+  run(for_anna, 0, 1);
+  action_.human = "bob";
+  Attention for_another(settings(), body_);
+  run(for_another, 0, 1);
+  const auto factor = [this](const Attention& a) {
+    return of(a.state(), Behaviour::avoid).speed_factor;
+  };
+  EXPECT_LT(factor(for_nobody), 1.0);
+  EXPECT_GT(factor(for_anna), factor(for_nobody) + 0.1);
+  EXPECT_EQ(factor(for_another), factor(for_nobody));
+}
+
 TEST_F(AttentionTest, give_waits_for_an_attentive_person) {
   people_.people = {standing(1.8, 0)};
   action_.kind = ActionKind::give;
