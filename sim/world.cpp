@@ -113,10 +113,8 @@ void SimWorld::Impl::step() {
   reference.effort = side.effort();
   if (stuck_hand) stuck_hand->apply(settings.step, grips_something(), reference);
   robot->drive(reference.position, reference.velocity, reference.acceleration, reference.effort);
-  const auto holding =
-      std::find_if(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
-  const Hand& offering = holding != hands.end() ? *holding : hands.front();
-  people->move(settings.step, {tool_state(offering), fingers_of(offering)}, offering.gripped);
+  update_robot_hands();
+  people->move(settings.step, robot_hands);
   for (Hand& hand : hands) hold_with(hand);
   dynamics.stepSimulation(settings.step, 0);
   ++steps;

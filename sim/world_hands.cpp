@@ -21,14 +21,19 @@ BodyState SimWorld::Impl::tool_state(const Hand& hand) const {
   return s;
 }
 
-std::vector<Ball> SimWorld::Impl::fingers_of(const Hand& hand) const {
-  std::vector<Ball> balls;
-  for (const LinkCapsule& c : finger_capsules) {
-    if (hand.grasp.chain_of(robot->body_of(c.link)) < 1) continue;
-    const Pose& T = robot->T_world_link(c.link);
-    for (const Vector3& p : {c.a, c.b}) balls.push_back({T * p, c.radius});
+void SimWorld::Impl::update_robot_hands() {
+  robot_hands.resize(hands.size());
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    RobotHandState& seen = robot_hands[i];
+    seen.palm = tool_state(hands[i]);
+    seen.gripped = hands[i].gripped;
+    seen.fingers.clear();
+    for (const LinkCapsule& c : finger_capsules) {
+      if (hands[i].grasp.chain_of(robot->body_of(c.link)) < 1) continue;
+      const Pose& T = robot->T_world_link(c.link);
+      for (const Vector3& p : {c.a, c.b}) seen.fingers.push_back({T * p, c.radius});
+    }
   }
-  return balls;
 }
 
 void SimWorld::Impl::hold_with(Hand& hand) {

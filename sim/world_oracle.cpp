@@ -38,9 +38,7 @@ void SimWorld::Impl::evaluate() {
   }
   if (collided) ++collisions;
 
-  robot_hands.clear();
-  for (const Hand& hand : hands)
-    robot_hands.push_back(tool_state(hand).T_world_body.translation());
+  update_robot_hands();
   people->volumes(robot_hands, person_volumes);
   near = separations.separation(*robot, person_volumes);
   min_separation = std::min(min_separation, near.distance);

@@ -75,8 +75,7 @@ struct SimWorld::Impl {
 
   // world_hands.cpp: grasps of the robot's hands
   BodyState tool_state(const Hand& hand) const;  ///< of its palm, world
-  /// Returns the ends of the links of its fingers, while any person minds them.
-  std::vector<Ball> fingers_of(const Hand& hand) const;
+  void update_robot_hands();                     ///< writes what people see of all hands
   void hold_with(Hand& hand);       ///< applies the grasp constraint for the coming step
   static void release(Hand& hand);  ///< ends grasp and constraint
   /// Returns whether the grasp constraint helps to hold the object.
@@ -137,7 +136,7 @@ struct SimWorld::Impl {
   std::vector<Touch> touches, pushes;
   double pushed_at{-kPush};
   std::vector<PersonVolume> person_volumes;
-  std::vector<Vector3> robot_hands;  // positions of the palms
+  std::vector<RobotHandState> robot_hands;  // as people see them, in the order of `hands`
   Sight sight;
   std::vector<LinkCapsule> hiding_links;
   std::vector<LinkCapsule> finger_capsules;  // of all links, while any person minds the fingers

@@ -139,15 +139,40 @@ bool People::mind_fingers() const {
                      [](const Body& person) { return person.model.minds_fingers(); });
 }
 
-void People::move(double dt, const RobotHandState& robot, int gripped) {
+void People::move(double dt, const std::vector<RobotHandState>& robot_hands) {
   for (Body& person : people_) {
-    observe(person, dt, robot, gripped);
+    observe(person, dt, robot_hands);
     hold_or_release(person);
     pull(person, dt);
   }
 }
 
-void People::observe(Body& person, double dt, const RobotHandState& robot, int gripped) {
+/// Returns the hand of the robot that a person deals with: the one that holds the person's object,
+/// else the nearest to what the person holds, else one that holds anything, else the nearest.
+const RobotHandState& People::hand_for(const Body& person,
+                                       const std::vector<RobotHandState>& robot_hands) const {
+  const auto holds_same = [&](const RobotHandState& hand) {
+    return hand.gripped >= 0 && hand.gripped == person.object;
+  };
+  const auto holds = [](const RobotHandState& hand) { return hand.gripped >= 0; };
+  const bool is_holding = person.object >= 0 && person.grip.holding();
+  const BodyState at = is_holding ? objects_[person.object].state() : person.hand().state();
+  const Vector3 p = at.T_world_body.translation();
+  const auto is_nearer = [&p](const RobotHandState& a, const RobotHandState& b) {
+    return (a.palm.T_world_body.translation() - p).norm() <
+           (b.palm.T_world_body.translation() - p).norm();
+  };
+  auto found = std::find_if(robot_hands.begin(), robot_hands.end(), holds_same);
+  if (found == robot_hands.end() && !is_holding)
+    found = std::find_if(robot_hands.begin(), robot_hands.end(), holds);
+  if (found == robot_hands.end())
+    found = std::min_element(robot_hands.begin(), robot_hands.end(), is_nearer);
+  return *found;
+}
+
+void People::observe(Body& person, double dt, const std::vector<RobotHandState>& robot_hands) {
+  const RobotHandState& robot = hand_for(person, robot_hands);
+  const int gripped = robot.gripped;
   PersonView view;
   view.robot_hand = robot.palm.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
@@ -247,12 +272,14 @@ bool People::yields(int code) const {
 
 const std::string& People::id(int code) const { return people_[code / kCodes].model.id(); }
 
-void People::volumes(const std::vector<Vector3>& robot_hands,
+void People::volumes(const std::vector<RobotHandState>& robot_hands,
                      std::vector<PersonVolume>& out) const {
   out.clear();
   for (const Body& person : people_) {
-    const auto is_near_object = [&](const Vector3& hand) {
-      return (hand - objects_[person.object].state().T_world_body.translation()).norm() < 0.35;
+    const auto is_near_object = [&](const RobotHandState& hand) {
+      return (hand.palm.T_world_body.translation() -
+              objects_[person.object].state().T_world_body.translation())
+                 .norm() < 0.35;
     };
     const bool exchanged = person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
                            std::any_of(robot_hands.begin(), robot_hands.end(), is_near_object);

@@ -32,6 +32,7 @@ struct Ball {
 struct RobotHandState {
   BodyState palm;             ///< world
   std::vector<Ball> fingers;  ///< ends of their links, while any person minds them
+  int gripped{-1};            ///< object in the hand; -1: none
 };
 
 class People {
@@ -59,9 +60,8 @@ class People {
   void announce(Announcement announcement, const std::string& human, const std::string& object);
   bool listen() const;  ///< whether any person is a partner, to whom the robot may say something
   bool follow_somebody() const;  ///< whether any person follows a source outside
-  /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1:
-  /// none.
-  void move(double dt, const RobotHandState& robot, int gripped);
+  /// Decides, moves and holds for the coming step. `robot_hands`: not empty.
+  void move(double dt, const std::vector<RobotHandState>& robot_hands);
   /// Returns whether any person minds how near the fingers of the robot are.
   bool mind_fingers() const;
 
@@ -73,8 +73,9 @@ class People {
   bool yields(int code) const;
   const std::string& id(int code) const;  ///< of a touched person
   /// Writes what the separation is measured to. Forearm and hand of a handover are exempt until
-  /// every hand of the robot (at `robot_hands`, world frame [m]) is 0.35 m from the object.
-  void volumes(const std::vector<Vector3>& robot_hands, std::vector<PersonVolume>& out) const;
+  /// every hand of the robot is 0.35 m from the object.
+  void volumes(const std::vector<RobotHandState>& robot_hands,
+               std::vector<PersonVolume>& out) const;
 
  private:
   struct Body {
@@ -91,7 +92,8 @@ class People {
     const PersonHand& hand() const { return *hands[model.side() == Side::left ? 0 : 1]; }
   };
   void build(const StartPerson&, const SimSettings&, int number, ShapeStore&);
-  void observe(Body&, double dt, const RobotHandState& robot, int gripped);
+  const RobotHandState& hand_for(const Body&, const std::vector<RobotHandState>& robot_hands) const;
+  void observe(Body&, double dt, const std::vector<RobotHandState>& robot_hands);
   void hold_or_release(Body&);
   void pull(Body&, double dt);
   double hand_gap(const Body&) const;

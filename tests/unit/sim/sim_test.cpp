@@ -452,5 +452,22 @@ TEST(SimRobotBody, a_bare_urdf_holds_its_posture_too) {
   EXPECT_LT((after.position - before.position).cwiseAbs().maxCoeff(), 1e-3);
 }
 
+TEST(SimPeople, a_giver_offers_before_the_nearer_hand_of_the_robot) {
+  const RobotModel duo = RobotModel::load(deploy() / "robots/duo/duo.txtpb");
+  for (const char* palm : {"palm", "left_palm"}) {
+    const Vector3 p_palm =
+        duo.link_pose(duo.rest_configuration(), duo.link_index(palm)).translation();
+    config::Scenario scenario = mug_in_hand();
+    auto* person = add_person(scenario, config::GIVER);
+    person->set_object("mug");
+    person->set_x(p_palm.x() + 0.75);
+    person->set_y(p_palm.y());
+    SimWorld world(duo, library(), scenario, SimSettings{}, 1);
+    while (world.time() < 6) world.step();
+    EXPECT_EQ(world.person_phase(0), PersonPhase::offering);
+    EXPECT_GT((world.T_world_object("mug").translation() - p_palm).norm(), 0.4) << palm;
+  }
+}
+
 }  // namespace
 }  // namespace handsel::sim
