@@ -48,6 +48,21 @@ void PlanningProblem::note_home(const std::string& object) {
   if (!home.empty()) homes_[object] = home;
 }
 
+void PlanningProblem::forbid(const PlannedAction& action, const std::string& reason) {
+  const std::string text = action.text();
+  forbidden_[text] = reason;
+  if (action.kind == ActionKind::place) forbidden_places_[action.object].push_back(text);
+}
+
+bool PlanningProblem::permit_placing(const std::string& object) {
+  const auto found = forbidden_places_.find(object);
+  if (found == forbidden_places_.end()) return false;
+  for (const std::string& text : found->second) forbidden_.erase(text);
+  forbidden_places_.erase(found);
+  permitted_.insert(object);
+  return true;
+}
+
 std::string PlanningProblem::why_impossible(const std::vector<PlannedAction>& actions,
                                             State state) const {
   World& world = situation_.world();

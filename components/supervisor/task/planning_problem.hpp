@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,13 @@ class PlanningProblem {
   Plan plan(const State& state) const;
   /// Returns the plan that puts back what the robot holds, where it came from if possible.
   Plan recovery(const State& state) const;
-  /// Excludes an action from all plans. `action`: its text.
-  void forbid(const std::string& action, const std::string& reason) { forbidden_[action] = reason; }
+  /// Excludes an action from all plans.
+  void forbid(const PlannedAction& action, const std::string& reason);
+  /// Admits the placing actions that were excluded since the robot's hold of the object did not serve
+  /// for them. Returns whether there were any.
+  bool permit_placing(const std::string& object);
+  /// Returns whether permit_placing() has admitted an action of this object.
+  bool has_permitted_placing(const std::string& object) const { return permitted_.count(object) > 0; }
   /// Remembers the surface on which the object is now, as its place for a recovery.
   void note_home(const std::string& object);
 
@@ -66,6 +72,8 @@ class PlanningProblem {
   std::string text_;
   TaskQuery query_;
   Forbidden forbidden_;
+  std::map<std::string, std::vector<std::string>> forbidden_places_;  // object: texts of actions
+  std::set<std::string> permitted_;                                   // objects
   std::map<std::string, std::string> homes_;  // object: surface it came from
 };
 

@@ -292,6 +292,11 @@ void TaskRun::ended(TimePoint now) {
   const PlannedAction last = *progress_.current();
   effects_.expect(last);
   progress_.done();
+  if (last.kind == ActionKind::give && !failures_.recovering() &&
+      problem_.permit_placing(last.object)) {
+    replan(now);
+    return;
+  }
   if (last.kind != ActionKind::receive || !last.object.empty()) return;
   // What was taken has a name now.
   const std::string taken = !action->object.empty() ? action->object : situation_.held();
@@ -315,13 +320,16 @@ void TaskRun::answer_failure(ActionFailure failure, const std::string& reason, T
   }
   progress_.failed(reason);
   failures_.note(text, reason);
-  problem_.forbid(text, reason);
+  problem_.forbid(failed, reason);
   if (failures_.recovering()) {
     if (!failures_.may_recover_otherwise() || !replan(now))
       finish(TaskState::failed, failures_.reason());
     return;
   }
-  const bool otherwise = rule == nullptr || rule->then != settings::FailureRule::Answer::give_up;
+  const bool held_anew =
+      failed.kind == ActionKind::place && problem_.has_permitted_placing(failed.object);
+  const bool otherwise =
+      !held_anew && (rule == nullptr || rule->then != settings::FailureRule::Answer::give_up);
   if (!otherwise || !replan(now)) give_up(failures_.first(), now);
 }
 

@@ -280,6 +280,36 @@ TEST(Supervisor, receives_and_puts_down_whatever_it_is) {
   EXPECT_TRUE(rig.world.on.contains("ball"));
 }
 
+TEST(Supervisor, what_cannot_be_put_down_as_it_was_taken_is_handed_back_and_taken_anew_once) {
+  for (const bool serves_at_last : {true, false}) {
+    for (const std::string from : {"anna", ""}) {
+      TaskRig rig;
+      rig.world.on.clear();
+      rig.world.held_by["mug"] = "anna";
+      int takes = 0;
+      rig.fails = [&](const ActionGoal& goal) {
+        takes += goal.kind == ActionKind::receive;
+        const bool serves = takes > 1 && serves_at_last;
+        return Failure(goal.kind == ActionKind::place && !serves ? "no free place" : "");
+      };
+      rig.run(2.5);
+      rig.ask(TaskKind::receive, "mug", from, "table");
+      ASSERT_TRUE(rig.finish());
+      EXPECT_EQ(takes, 2);
+      if (serves_at_last) {
+        EXPECT_EQ(rig.last().state, TaskState::succeeded) << rig.last().reason;
+        EXPECT_EQ(rig.done(),
+                  "receive mug from anna, place mug on table, give mug to anna, "
+                  "receive mug from anna, place mug on table, go to rest");
+      } else {
+        EXPECT_EQ(rig.last().state, TaskState::failed);
+        EXPECT_EQ(rig.last().reason,
+                  "place mug on table: no free place; mug was handed to anna");
+      }
+    }
+  }
+}
+
 TEST(Supervisor, what_is_so_already_is_done_with_a_sentence) {
   TaskRig rig;
   rig.run(2.5);
