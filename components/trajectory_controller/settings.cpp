@@ -117,7 +117,7 @@ void read_hand(const settings::TrajectoryControllerSettings& in, ControllerSetti
   s.hand.touch_time = h.touch_time;
   s.hand.seek_speed = h.seek_speed;
   s.hand.seek_travel = h.seek_travel;
-  s.hand.grip_share = h.grip_share;
+  s.hand.grip_fraction = h.grip_fraction;
   s.hand.grip_effort = h.grip_effort;
   s.hand.grip_rise_time = h.grip_rise_time;
   s.hand.settle_time = h.settle_time;

@@ -41,11 +41,13 @@ class PlanningProblem {
   Plan recovery(const State& state) const;
   /// Excludes an action from all plans.
   void forbid(const PlannedAction& action, const std::string& reason);
-  /// Admits the placing actions that were excluded since the robot's hold of the object did not serve
-  /// for them. Returns whether there were any.
+  /// Admits the placing actions that were excluded since the robot's hold of the object did not
+  /// serve for them. Returns whether there were any.
   bool permit_placing(const std::string& object);
   /// Returns whether permit_placing() has admitted an action of this object.
-  bool has_permitted_placing(const std::string& object) const { return permitted_.count(object) > 0; }
+  bool has_permitted_placing(const std::string& object) const {
+    return permitted_.count(object) > 0;
+  }
   /// Remembers the surface on which the object is now, as its place for a recovery.
   void note_home(const std::string& object);
 

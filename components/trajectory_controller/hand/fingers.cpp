@@ -67,6 +67,15 @@ double Fingers::pressed(const RobotState& robot, std::size_t i) const noexcept {
   return axis < robot.effort.size() ? robot.effort[axis] : 0.0;
 }
 
+double Fingers::fraction_in_contact(double touch_time) const noexcept {
+  double all = 0.0, touching = 0.0;
+  for (const Finger& f : fingers_) {
+    all += std::abs(f.effort);
+    if (f.pressed_for >= touch_time) touching += std::abs(f.effort);
+  }
+  return all > 0.0 ? touching / all : 0.0;
+}
+
 int Fingers::count_pressing(const RobotState& robot, double effort) const noexcept {
   int count = 0;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {

@@ -50,8 +50,6 @@ class Fingers {
   auto begin() noexcept { return fingers_.begin(); }
   /// Behind the last axis, for loops.
   auto end() noexcept { return fingers_.end(); }
-  auto begin() const noexcept { return fingers_.begin(); }
-  auto end() const noexcept { return fingers_.end(); }
 
   /// Returns a position of axis `i` as one inside its bounds.
   double inside(std::size_t i, double position) const noexcept;
@@ -82,6 +80,9 @@ class Fingers {
   /// Returns whether every axis with an effort of more than `effort` [Nm] pushes with at least
   /// `ratio` of its effort.
   bool all_push(const RobotState& robot, double effort, double ratio) const noexcept;
+  /// Returns the fraction of the grip force that axes give which have pressed on something for
+  /// `touch_time` [s] while they closed, [0, 1].
+  double fraction_in_contact(double touch_time) const noexcept;
   /// Makes the set-points and efforts of this moment those that hold the object; axes with less
   /// effort than `min_effort` [Nm, N] only hold.
   void hold_object(double min_effort) noexcept;

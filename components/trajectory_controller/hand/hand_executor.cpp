@@ -40,6 +40,20 @@ std::string why_not(const HandCommand& command, const Fingers& fingers) {
   return {};
 }
 
+/// Returns whether enough axes press on what is held.
+bool presses(const Fingers& fingers, const HandSettings& settings,
+             const RobotState& robot) noexcept {
+  return fingers.count_pressing(robot, settings.touch_effort) >= settings.min_contacts;
+}
+
+/// Returns whether the fingers press on an object and hold that without help: no person is near, or
+/// all fingers push as planned.
+bool holds_alone(const Fingers& fingers, const HandSettings& settings, const RobotState& robot,
+                 bool person_near) noexcept {
+  return presses(fingers, settings, robot) &&
+         (!person_near || fingers.all_push(robot, settings.grip_effort, settings.min_push));
+}
+
 }  // namespace
 
 HandExecutor::HandExecutor(const HandSettings& settings, HandAxes hand,
@@ -118,8 +132,8 @@ std::string HandExecutor::accept(const HandCommand& command) {
 void HandExecutor::retarget(std::size_t i, double target) noexcept {
   Finger& f = fingers_[i];
   f.target = fingers_.inside(i, target);
-  const bool gently = phase_ == Phase::closing || phase_ == Phase::seeking ||
-                      phase_ == Phase::gripping;
+  const bool gently =
+      phase_ == Phase::closing || phase_ == Phase::seeking || phase_ == Phase::gripping;
   if (paused_) return;
   const bool fast = phase_ == Phase::regripping;
   AxisLimits l = fast ? fingers_.stop(i) : fingers_.comfort(i);
@@ -180,8 +194,8 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
   for (Finger& f : fingers_) f.target = f.mover.state().position;
 }
 
-/// Axes that press on nothing yet continue in the direction in which they will push. Returns whether
-/// each presses on something or has moved as far as it may.
+/// Axes that press on nothing yet continue in the direction in which they will push. Returns
+/// whether each presses on something or has moved as far as it may.
 bool HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   bool done = true;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
@@ -199,24 +213,6 @@ bool HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   return done;
 }
 
-/// Returns the fraction of the grip force that the axes in contact give.
-double HandExecutor::share_in_contact() const noexcept {
-  double all = 0.0, touching = 0.0;
-  for (const Finger& f : fingers_) {
-    all += std::abs(f.effort);
-    if (f.pressed_for >= settings_.touch_time) touching += std::abs(f.effort);
-  }
-  return all > 0.0 ? touching / all : 0.0;
-}
-
-/// A person who feels the fingers releases the object at once: the grip force grows as soon as most
-/// of it acts on the object, while other axes still move to theirs.
-void HandExecutor::seek_contact(const RobotState& robot, double dt) noexcept {
-  if (!seek(robot, dt) && share_in_contact() < settings_.grip_share) return;
-  phase_ = Phase::gripping;
-  settled_for_ = 0.0;
-}
-
 void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
   const bool sought = seek(robot, dt);
   level_ = std::min(1.0, level_ + dt / settings_.grip_rise_time);
@@ -225,33 +221,26 @@ void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
   fingers_.hold_object(kMinor * max_effort_);
   // A finger that something keeps from what it should push on leaves the others unbalanced: only a
   // person who also holds the object keeps it there.
-  const bool holds = holds_alone(robot);
-  unsure_ = !holds && presses(robot);
+  const bool holds = holds_alone(fingers_, settings_, robot, person_near_);
+  unsure_ = !holds && presses(fingers_, settings_, robot);
   state_ = holds ? HandState::grasped : HandState::empty;
   phase_ = Phase::hold;
   settled_for_ = 0.0;
-}
-
-/// Returns whether the fingers press on an object and hold that without help: no person is near, or
-/// all fingers push as planned.
-bool HandExecutor::holds_alone(const RobotState& robot) const noexcept {
-  return presses(robot) && (!person_near_ || fingers_.all_push(robot, settings_.grip_effort,
-                                                               settings_.min_push));
-}
-
-/// Fingers that do not push as planned may still hold what the person then lets go of.
-void HandExecutor::judge_again(const RobotState& robot, double dt) noexcept {
-  settled_for_ = holds_alone(robot) ? settled_for_ + dt : 0.0;
-  if (settled_for_ < settings_.settle_time) return;
-  state_ = HandState::grasped;
-  unsure_ = false;
 }
 
 void HandExecutor::check_outcome(const RobotState& robot, double payload, double dt) noexcept {
   if (phase_ == Phase::closing || phase_ == Phase::seeking || phase_ == Phase::gripping) return;
   if (phase_ == Phase::loosened) return;
   if (phase_ == Phase::hold) {
-    if (unsure_) judge_again(robot, dt);
+    if (unsure_) {
+      // Fingers that do not push as planned may still hold what the person then lets go of.
+      settled_for_ =
+          holds_alone(fingers_, settings_, robot, person_near_) ? settled_for_ + dt : 0.0;
+      if (settled_for_ >= settings_.settle_time) {
+        state_ = HandState::grasped;
+        unsure_ = false;
+      }
+    }
     if (state_ != HandState::grasped) return;
     if (payload > 2.0 * settings_.lost_payload) payload_felt_ = true;
     lost_for_ = payload_felt_ && payload < settings_.lost_payload ? lost_for_ + dt : 0.0;
@@ -261,7 +250,7 @@ void HandExecutor::check_outcome(const RobotState& robot, double payload, double
   settled_for_ = at_rest() ? settled_for_ + dt : 0.0;
   if (!at_rest() || (phase_ == Phase::regripping && level_ < 1.0)) return;
   if (phase_ == Phase::regripping) {
-    state_ = presses(robot) ? HandState::grasped : HandState::empty;
+    state_ = presses(fingers_, settings_, robot) ? HandState::grasped : HandState::empty;
   } else {
     state_ = phase_ == Phase::releasing ? HandState::released : HandState::idle;
     release_.disarm();
@@ -269,15 +258,11 @@ void HandExecutor::check_outcome(const RobotState& robot, double payload, double
   phase_ = Phase::hold;
 }
 
-/// Returns whether enough axes press on what is held.
-bool HandExecutor::presses(const RobotState& robot) const noexcept {
-  return fingers_.count_pressing(robot, settings_.touch_effort) >= settings_.min_contacts;
-}
-
 void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
   if (phase_ != Phase::hold && phase_ != Phase::loosened && phase_ != Phase::releasing) return;
   const RobotState& robot = *in.robot;
-  const bool pressing = presses(robot), near = in.person_distance <= settings_.person_range;
+  const bool pressing = presses(fingers_, settings_, robot),
+             near = in.person_distance <= settings_.person_range;
   const Grip before = release_.grip();
   const Grip wanted = release_.update({in.force, in.toward, near, pressing}, now);
   if (wanted == before) {
@@ -341,7 +326,14 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
   }
   if (!paused_) {
     if (phase_ == Phase::closing) watch_contacts(robot, dt);
-    if (phase_ == Phase::seeking) seek_contact(robot, dt);
+    // A person who feels the fingers releases the object at once: the grip force grows as soon as
+    // most of it acts on the object, while other axes still search.
+    if (phase_ == Phase::seeking &&
+        (seek(robot, dt) ||
+         fingers_.fraction_in_contact(settings_.touch_time) >= settings_.grip_fraction)) {
+      phase_ = Phase::gripping;
+      settled_for_ = 0.0;
+    }
     if (phase_ == Phase::gripping) grip(robot, dt);
     change_level(dt);
     if (release_.armed() && in.new_state) watch_release(in, now);

@@ -15,15 +15,15 @@ namespace handsel::trajectory_controller {
 /// Angles, speeds and efforts are those of turning axes; of a sliding one they count at the lever
 /// of a finger.
 struct HandSettings {
-  double grasp_speed{0.5};     ///< fraction of the comfort velocity while closing
-  double min_closing{0.05};    ///< smallest travel of an axis that closes [rad]
-  double touch_effort{0.08};   ///< effort on the world from which an axis is in contact [Nm]
-  double touch_time{0.02};     ///< for this long, while it closes [s]
-  double seek_speed{0.2};      ///< of the search for contact beyond the command [rad/s]
-  double seek_travel{0.25};    ///< largest travel of that search [rad]
+  double grasp_speed{0.5};    ///< fraction of the comfort velocity while closing
+  double min_closing{0.05};   ///< smallest travel of an axis that closes [rad]
+  double touch_effort{0.08};  ///< effort on the world from which an axis is in contact [Nm]
+  double touch_time{0.02};    ///< for this long, while it closes [s]
+  double seek_speed{0.2};     ///< of the search for contact beyond the command [rad/s]
+  double seek_travel{0.25};   ///< largest travel of that search [rad]
   /// Fraction of the grip force on axes in contact from which on the force grows although others
   /// still search.
-  double grip_share{0.8};
+  double grip_fraction{0.8};
   double grip_effort{0.5};     ///< grip force of a command without one, longest axis [Nm]
   double grip_rise_time{0.4};  ///< rise of the grip force, and decay when the hand opens [s]
   double settle_time{0.15};    ///< at rest for this long before the outcome is reported [s]
@@ -104,15 +104,10 @@ class HandExecutor {
   void retarget(std::size_t i, double target) noexcept;
   void watch_contacts(const RobotState& robot, double dt) noexcept;
   bool seek(const RobotState& robot, double dt) noexcept;
-  double share_in_contact() const noexcept;
-  void seek_contact(const RobotState& robot, double dt) noexcept;
   void grip(const RobotState& robot, double dt) noexcept;
   void change_level(double dt) noexcept;
   void comply(const RobotState& robot, double dt) noexcept;
   void check_outcome(const RobotState& robot, double payload, double dt) noexcept;
-  bool presses(const RobotState& robot) const noexcept;
-  bool holds_alone(const RobotState& robot) const noexcept;
-  void judge_again(const RobotState& robot, double dt) noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;
 
   HandSettings settings_;

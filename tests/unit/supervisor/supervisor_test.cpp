@@ -303,8 +303,7 @@ TEST(Supervisor, what_cannot_be_put_down_as_it_was_taken_is_handed_back_and_take
                   "receive mug from anna, place mug on table, go to rest");
       } else {
         EXPECT_EQ(rig.last().state, TaskState::failed);
-        EXPECT_EQ(rig.last().reason,
-                  "place mug on table: no free place; mug was handed to anna");
+        EXPECT_EQ(rig.last().reason, "place mug on table: no free place; mug was handed to anna");
       }
     }
   }
