@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
 #include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
@@ -20,9 +21,23 @@ constexpr double kSameDistance =
     0.5;  // distances of the arm's farthest axis that count as equal [rad]
 constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the giver waits
 
+/// Uses the arm that is nearest to the giver: people hold back before that hand.
+Routine<Outcome> use_nearest_arm(Parts& parts, const std::string& giver) {
+  const Person* person = parts.now.person(giver);
+  if (person == nullptr) co_return Outcome{};
+  const Vector3& p_torso =
+      person->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const std::vector<std::string> arms = arms_for(parts, p_torso, nullptr);
+  if (arms.empty()) co_return Outcome{};
+  Outcome used = co_await use_arm(parts, arms.front());
+  co_return used;
+}
+
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
 Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver,
                                           TimePoint deadline) {
+  const Outcome nearest = co_await use_nearest_arm(parts, giver);
+  if (!nearest.good) parts.refuse("choosing the arm", nearest.reason);
   parts.offers.await();
   parts.action.exchange_engaged = false;
   TimePoint waits_since = parts.now.time();
