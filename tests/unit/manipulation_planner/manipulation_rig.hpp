@@ -21,8 +21,8 @@ inline settings::ManipulationPlannerSettings settings() {
 // otherwise, every trajectory reaches its end.
 class Rig {
  public:
-  Rig()
-      : robot(std::make_shared<RobotModel>(RobotModel::load(robot_description("jido")))),
+  explicit Rig(const std::string& description = "jido")
+      : robot(std::make_shared<RobotModel>(RobotModel::load(robot_description(description)))),
         mug(ObjectModel::load(object_description("mug"))),
         planner(
             settings(), robot,

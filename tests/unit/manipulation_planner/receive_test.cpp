@@ -226,6 +226,22 @@ TEST(ManipulationPlanner, people_beside_the_arm_offer_toward_the_hand_and_need_r
   EXPECT_EQ(rig.phases, std::vector<std::string>{"clear the offer area"});
 }
 
+TEST(ManipulationPlanner, the_arm_before_the_giver_makes_room_for_the_offer) {
+  for (const double side : {1.0, -1.0}) {
+    Rig rig("duo");
+    rig.scene.objects[0].holder = Holder::human;
+    rig.scene.objects[0].holder_id = "anna";
+    rig.draw_back();
+    for (BodyJoint& joint : rig.people.people.front().joints) joint.position.y() += 0.4 * side;
+    rig.scene.objects[0].T_world_object.translation().y() += 0.4 * side;
+    rig.start(ActionKind::receive);
+    rig.run_until("clear the offer area");
+    ASSERT_EQ(phase_text(rig.planner.status()), "clear the offer area");
+    rig.run(0.5);
+    EXPECT_EQ(rig.last_path.group, side > 0 ? "left_arm" : "arm");
+  }
+}
+
 TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
   Rig rig;
   rig.moves = true;
