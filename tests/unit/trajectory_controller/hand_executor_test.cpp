@@ -38,6 +38,13 @@ class HandTest : public testing::Test {
     c.pull_force = 4.0;
     ASSERT_EQ(hand_.accept(c), "");
   }
+  void grasp_at(double position, const Vector& effort) {
+    HandCommand c;
+    c.action = HandAction::grasp;
+    c.position = Vector::Constant(4, position);
+    c.effort = effort;
+    ASSERT_EQ(hand_.accept(c), "");
+  }
   void run(double seconds) {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       for (int i = 0; i < 4; ++i) {
@@ -249,11 +256,7 @@ TEST_F(HandTest, what_a_person_holds_too_is_grasped_only_when_every_finger_pushe
     person_distance_ = person_distance;
     jammed_ = {1.0, 1.0, 0.3, 1.0};
     block_ = {0.5, 0.5, 0.5, 0.5};
-    HandCommand c;
-    c.action = HandAction::grasp;
-    c.position = Vector::Constant(4, 0.5);
-    c.effort = Eigen::Vector4d(1.2, 1.2, 1.2, 0.3);
-    ASSERT_EQ(hand_.accept(c), "");
+    grasp_at(0.5, Eigen::Vector4d(1.2, 1.2, 1.2, 0.3));
     run(2.5);
   };
   squeeze(0.1);
@@ -266,11 +269,7 @@ TEST_F(HandTest, what_a_person_holds_too_is_grasped_only_when_every_finger_pushe
 
 TEST_F(HandTest, the_grip_force_does_not_wait_for_a_finger_that_finds_nothing) {
   block_ = {0.5, 0.5, 0.5, 10.0};
-  HandCommand c;
-  c.action = HandAction::grasp;
-  c.position = Vector::Constant(4, 0.5);
-  c.effort = Eigen::Vector4d(1.2, 1.2, 1.2, 0.6);
-  ASSERT_EQ(hand_.accept(c), "");
+  grasp_at(0.5, Eigen::Vector4d(1.2, 1.2, 1.2, 0.6));
   const auto is_touching = [this] { return robot_.effort[0] > 0.1; };
   for (int k = 0; k < 300 && !is_touching(); ++k) run(0.01);
   ASSERT_TRUE(is_touching());
@@ -284,11 +283,7 @@ TEST_F(HandTest, the_grip_force_does_not_wait_for_a_finger_that_finds_nothing) {
 TEST_F(HandTest, a_grasp_in_doubt_is_grasped_once_the_person_has_left_the_object_to_the_fingers) {
   jammed_ = {1.0, 1.0, 0.3, 1.0};
   block_ = {0.5, 0.5, 0.5, 0.5};
-  HandCommand c;
-  c.action = HandAction::grasp;
-  c.position = Vector::Constant(4, 0.5);
-  c.effort = Eigen::Vector4d(1.2, 1.2, 1.2, 0.3);
-  ASSERT_EQ(hand_.accept(c), "");
+  grasp_at(0.5, Eigen::Vector4d(1.2, 1.2, 1.2, 0.3));
   run(3.5);
   ASSERT_EQ(hand_.state(), HandState::empty) << "a person may still hold the object";
   person_distance_ = 10.0;
