@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdlib>
 #include <functional>
 #include <limits>
@@ -155,7 +156,11 @@ class SecondWriter {
     return std::unique_ptr<SecondWriter>(new SecondWriter(type, kind, make));
   }
   ~SecondWriter() {
-    ends_ = true;
+    {
+      const std::lock_guard lock(mutex_);
+      ends_ = true;
+    }
+    ended_.notify_all();
     thread_.join();
     dds_delete(participant_);
   }
@@ -184,15 +189,18 @@ class SecondWriter {
     EXPECT_GT(writer, 0) << dds_strretcode(-writer);
     const Duration period = from_seconds(row.rate > 0 ? std::max(0.001, 0.2 / row.rate) : 0.02);
     thread_ = std::thread([this, writer, period, make = std::move(make), sample = type.new_wire()] {
+      std::unique_lock lock(mutex_);
       for (std::uint64_t count = 1; !ends_; ++count) {
         if (make(count, sample.get()) && dds_write(writer, sample.get()) == DDS_RETCODE_OK) ++sent_;
-        std::this_thread::sleep_for(period);
+        ended_.wait_for(lock, period, [this] { return ends_; });
       }
     });
   }
 
   dds_entity_t participant_{};
-  std::atomic<bool> ends_{false};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool ends_{false};
   std::atomic<std::uint64_t> sent_{0};
   std::thread thread_;
 };

@@ -6,14 +6,18 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -71,16 +75,16 @@ std::string content_of(const fs::path& file) {
 /// Waits until the child has ended; kills it when its time is up.
 Ended wait_for(pid_t child) {
   Ended ended;
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+  EXPECT_GE(handle, 0) << std::strerror(errno);
+  pollfd end{handle, POLLIN, 0};
+  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
+  ended.killed = poll(&end, 1, static_cast<int>(patience.count())) != 1;
+  if (ended.killed) kill(-child, SIGKILL);
+  close(handle);
   rusage used{};
   int status = 0;
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (wait4(child, &status, WNOHANG, &used) == 0) {
-    if (!ended.killed && std::chrono::steady_clock::now() > end) {
-      ended.killed = true;
-      kill(-child, SIGKILL);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  wait4(child, &status, 0, &used);
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
