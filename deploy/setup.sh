@@ -11,7 +11,7 @@ libtinyxml2-dev libqhull-dev libglpk-dev libboost-dev libboost-filesystem-dev li
 nlohmann-json3-dev libcli11-dev
 libgtest-dev libgmock-dev libbenchmark-dev mold
 "
-test_packages="chromium universal-ctags"
+test_packages="chromium universal-ctags locales"
 python_packages="python3"  # with --test, unless there is a Python of at least version 3.9 already
 page_packages="nodejs npm"  # unless there is a Node.js of at least version 18 with npm already
 

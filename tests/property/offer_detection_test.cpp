@@ -402,7 +402,7 @@ Result run_recorded(const test::RecordedHandover& recording, test::RecordedView 
 TEST(OfferDetection, of_a_recorded_handover_only_the_giver_offers) {
   setenv("HANDSEL_HOME", deploy().c_str(), 1);
   const auto recording = test::recorded_handover();
-  if (!recording) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
+  if (!recording) GTEST_SKIP() << "HANDSEL_DATA is not set";
   using test::RecordedView;
   const Result waits =
       run_recorded(*recording, RecordedView::giver_waits, "recorded giver who waits");

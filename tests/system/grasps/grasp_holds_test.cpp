@@ -6,6 +6,7 @@
 
 #include "components/grasp_planner/load.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
+#include "tests/support/reference_data.hpp"
 #include "tests/system/grasps/grasp_execution.hpp"
 
 namespace handsel {
@@ -105,13 +106,10 @@ struct Foreign {
 class ForeignHolds : public Grasping, public testing::WithParamInterface<Foreign> {};
 
 TEST_P(ForeignHolds, five_grasps_by_contact_alone_through_lift_tilt_and_shake) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  const std::filesystem::path folder =
-      data == nullptr ? "" : std::filesystem::path(data) / "objects/ycb";
-  if (!std::filesystem::exists(folder))
-    GTEST_SKIP() << "HANDSEL_DATA names no folder with objects/ycb";
+  const auto folder = test::reference_data("objects/ycb");
+  if (!folder) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const Foreign& foreign = GetParam();
-  const std::string mesh = (folder / foreign.name).string();
+  const std::string mesh = (*folder / foreign.name).string();
   const TemporaryFolder own;
   std::ostringstream text;
   text << "name: \"" << foreign.name << "\"\nmesh: \"" << mesh << ".obj\"\nparts { convex_mesh: \""

@@ -7,17 +7,16 @@
 #include <filesystem>
 
 #include "deploy/handsel/offline/grasp_table.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel {
 namespace {
 
 TEST(GraspTable, every_object_made_by_others_has_grasps_by_every_hand) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  const std::filesystem::path folder =
-      data == nullptr ? "" : std::filesystem::path(data) / "objects";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "HANDSEL_DATA names no folder with objects";
+  const auto folder = test::reference_data("objects");
+  if (!folder) GTEST_SKIP() << "HANDSEL_DATA is not set";
   std::vector<std::string> meshes;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(*folder)) {
     const std::string name = entry.path().stem().string();
     // Convex parts and a mesh for collision are forms of objects that are there themselves.
     if (entry.path().extension() == ".obj" && name.find("_vhacd") == std::string::npos &&

@@ -10,6 +10,7 @@
 #include "common/model/object_model.hpp"
 #include "common/model/robot_model.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel {
 namespace {
@@ -458,10 +459,9 @@ TEST(ForeignRobots, an_arm_of_more_axes_than_can_be_solved_has_no_inverse) {
 }
 
 TEST(ForeignRobots, are_loaded_from_the_data_folder) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  const std::filesystem::path root = data != nullptr ? data : "";
-  if (data == nullptr || !std::filesystem::exists(root / "robots"))
-    GTEST_SKIP() << "HANDSEL_DATA is not set or has no robots";
+  const auto robots = test::reference_data("robots");
+  if (!robots) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  const std::filesystem::path root = robots->parent_path();
   const auto panda = RobotModel::load_urdf(root / "robots/franka_panda/panda.urdf",
                                            root / "robots/franka_panda/panda.srdf");
   EXPECT_EQ(panda.group("panda_arm")->axes.size(), 7u);

@@ -9,6 +9,7 @@
 #include "common/base/errors.hpp"
 #include "sim/people/bvh.hpp"
 #include "sim/people/recording.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel::sim {
 namespace {
@@ -28,11 +29,7 @@ fs::path ours(const std::string& name) {
   return fs::path(HANDSEL_SOURCE_DIR) / "tests/fuzz/corpus" / name;
 }
 
-fs::path bvh_folder() {
-  const char* data = std::getenv("HANDSEL_DATA");
-  const fs::path folder = data == nullptr ? fs::path() : fs::path(data) / "motion/bvh";
-  return fs::exists(folder) ? folder : fs::path();
-}
+fs::path bvh_folder() { return handsel::test::reference_data("motion/bvh").value_or(fs::path()); }
 
 std::string sentence(const std::string& name) {
   try {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "common/trajectory/limits_check.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel {
 namespace {
@@ -172,11 +173,10 @@ TEST(Approximate, axes_beyond_their_limits_are_slowed_down_and_only_there) {
 }
 
 TEST(Approximate, hand_of_a_real_handover) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  const std::string path = std::string(data ? data : "") +
-                           "/motion/kth_handover/handover_sample/giver_RHand_pose_saved.csv";
-  std::ifstream file(path);
-  if (!file) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
+  const auto path =
+      test::reference_data("motion/kth_handover/handover_sample/giver_RHand_pose_saved.csv");
+  if (!path) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  std::ifstream file(*path);
   std::string line;
   std::getline(file, line);
   std::vector<double> times;
