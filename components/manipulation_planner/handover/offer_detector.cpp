@@ -49,14 +49,25 @@ double OfferDetector::min_extension(const Person& person, const SceneObject& obj
   const double away = (object.T_world_object.translation() - p_hand).norm();
   const double far =
       std::clamp((away - settings_.offer_near_hand) / settings_.offer_near_range, 0.0, 1.0);
-  const double min = settings_.offer_near_extension +
-                     far * (settings_.offer_extension - settings_.offer_near_extension);
+  const double near_extension =
+      settings_.offer_near_extension -
+      (is_held_out(person, object) ? settings_.offer_long_rest_extension : 0.0);
+  const double min = near_extension + far * (settings_.offer_extension - near_extension);
   const Offer offer{object.id, person.id};
   if (offer == accepted_)
     return std::max(
         std::min(min - settings_.offer_noise, max_extension_ - settings_.offer_min_withdrawal),
         max_extension_ - settings_.offer_max_withdrawal);
   return offer == seen_ ? min - settings_.offer_noise : min;
+}
+
+bool OfferDetector::is_held_out(const Person& person, const SceneObject& object) const {
+  const auto found = followed_.find(object.id);
+  if (found == followed_.end() || found->second.holder != person.id) return false;
+  const double rise =
+      extension(person, object.T_world_object.translation()) - found->second.min_extension;
+  return rise >= settings_.offer_held_out &&
+         found->second.trail.rest() >= settings_.offer_long_rest;
 }
 
 bool OfferDetector::is_for_robot(const Person& person, const Vector3& p_shoulder,
@@ -129,8 +140,8 @@ void OfferDetector::await() {
 }
 
 void OfferDetector::update(const Vector3& p_hand) {
-  if (followed_ != now_.scene_count()) {
-    followed_ = now_.scene_count();
+  if (scenes_followed_ != now_.scene_count()) {
+    scenes_followed_ = now_.scene_count();
     follow_objects();
     follow_extension();
   }
@@ -146,11 +157,19 @@ void OfferDetector::update(const Vector3& p_hand) {
 }
 
 void OfferDetector::follow_objects() {
-  for (const SceneObject& object : now_.scene().objects)
-    trails_.try_emplace(object.id, settings_)
-        .first->second.add(now_.time() - from_seconds(object.age),
-                           object.T_world_object.translation());
-  std::erase_if(trails_, [&](const auto& entry) { return now_.object(entry.first) == nullptr; });
+  for (const SceneObject& object : now_.scene().objects) {
+    FollowedObject& followed = followed_.try_emplace(object.id, settings_).first->second;
+    const Vector3 p_object = object.T_world_object.translation();
+    followed.trail.add(now_.time() - from_seconds(object.age), p_object);
+    if (object.holder_id != followed.holder) {
+      followed.holder = object.holder_id;
+      followed.min_extension = std::numeric_limits<double>::infinity();
+    }
+    const Person* holder = object.holder == Holder::human ? now_.person(object.holder_id) : nullptr;
+    if (holder != nullptr)
+      followed.min_extension = std::min(followed.min_extension, extension(*holder, p_object));
+  }
+  std::erase_if(followed_, [&](const auto& entry) { return now_.object(entry.first) == nullptr; });
 }
 
 /// Extends the max extension of the accepted offer by a mean, which noise hardly exceeds.
@@ -164,9 +183,9 @@ void OfferDetector::follow_extension() {
 }
 
 std::optional<Offer> OfferDetector::made() const {
-  const auto found = seen_ ? trails_.find(seen_->object) : trails_.end();
-  if (found == trails_.end()) return std::nullopt;
-  const ObjectTrail& trail = found->second;
+  const auto found = seen_ ? followed_.find(seen_->object) : followed_.end();
+  if (found == followed_.end()) return std::nullopt;
+  const ObjectTrail& trail = found->second.trail;
   double rest_time = settings_.offer_rest;
   if (trail.detour() > settings_.offer_max_detour)
     rest_time = std::max(rest_time, settings_.offer_detour_rest);

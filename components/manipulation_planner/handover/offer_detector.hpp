@@ -1,6 +1,7 @@
 // Detects that a person offers an object, with hysteresis. Pure.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -71,8 +72,16 @@ class OfferDetector {
   bool is_engaged() const { return hand_at_offer_ || is_still_offered(); }
 
  private:
+  struct FollowedObject {
+    explicit FollowedObject(const settings::ManipulationPlannerSettings& settings)
+        : trail(settings) {}
+    ObjectTrail trail;
+    std::string holder;                                             // person or robot; or empty
+    double min_extension{std::numeric_limits<double>::infinity()};  // while this person holds it
+  };
   double min_extension(const Person& person, const SceneObject& object,
                        const Vector3& p_hand) const;
+  bool is_held_out(const Person& person, const SceneObject& object) const;
   void follow_objects();
   void follow_extension();
   std::optional<Offer> find(const std::string& object, const std::string& giver,
@@ -88,8 +97,8 @@ class OfferDetector {
   TimePoint offered_at_{};
   std::optional<Offer> seen_;  // at rest or not, not accepted yet
   TimePoint seen_since_{};
-  std::map<std::string, ObjectTrail> trails_;  // of the objects, by id
-  std::uint64_t followed_{};                   // scenes from which they were extended
+  std::map<std::string, FollowedObject> followed_;  // by id
+  std::uint64_t scenes_followed_{};                 // from which these were updated
 };
 
 }  // namespace handsel::manipulation_planner
