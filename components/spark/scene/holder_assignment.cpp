@@ -14,6 +14,14 @@ namespace {
 // What a loaded hand has lifted so far does not stand there any more [m].
 constexpr double kClearOfSupport = 0.01;
 
+/// Returns the distance of a palm from an object, as from the centre of one that is as long as it
+/// is wide: from the box around it, plus half the smallest side of that box [m]. The centre of a
+/// long object may be far from the hand that holds one end.
+double palm_distance(const Vector3& p_palm, const ObjectModel& model, const Pose& T_world_object) {
+  const Eigen::AlignedBox3d box = object_extent(&model, {});
+  return box.exteriorDistance(T_world_object.inverse() * p_palm) + box.sizes().minCoeff() / 2;
+}
+
 }  // namespace
 
 /// Returns the box under the object, its bottom no more than `gap` [m] from the top; nullptr: none.
@@ -96,7 +104,7 @@ std::optional<std::size_t> HolderAssignment::loaded_hand(const ObjectTrack& trac
   for (std::size_t i = 0; i < in_.robot.hands().size(); ++i) {
     const RobotPlacement::Hand& hand = in_.robot.hands()[i];
     const double reach = track.object.holder == Holder::robot ? kReach : kTaken;
-    if (!((track.object.T_world_object.translation() - hand.T_world_palm.translation()).norm() <
+    if (!(palm_distance(hand.T_world_palm.translation(), *model, track.object.T_world_object) <
           reach))
       continue;
     together += hand.payload;

@@ -89,6 +89,25 @@ TEST_F(SceneObjects,
   EXPECT_NE(holder(0.3, 0.25), Holder::robot);
 }
 
+TEST_F(SceneObjects, a_hand_that_bears_the_end_of_a_long_object_holds_it) {
+  model_.emplace(
+      settings_, std::make_shared<const RobotModel>(test::planar_arm()),
+      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+      std::vector<SceneBox>{});
+  for (Vector3& vertex : mug_.mesh.vertices) vertex.x() *= 4;
+  people_.people = {person_at({2.2, 0, 0})};
+  RobotState robot;
+  robot.position = Vector::Zero(3);
+  robot.payload = mug_.mass;
+  model_->update(robot);
+  const auto holder = [&](double t, double before_palm) {
+    see(t, {mug("mug", {before_palm, 0, 0})});
+    return find(wait(t, t), "mug")->holder;
+  };
+  EXPECT_NE(holder(0, 0.45), Holder::robot) << "its end leans on the fingertips";
+  EXPECT_EQ(holder(0.1, 0.37), Holder::robot);
+}
+
 TEST_F(SceneObjects, out_of_sight_grows_uncertain_and_seen_again_is_sure) {
   see(0, {mug("mug", {0.7, 0, 0.74})});
   EXPECT_EQ(find(wait(0, 0.4), "mug")->uncertainty, 0);
