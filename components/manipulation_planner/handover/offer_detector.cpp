@@ -100,7 +100,9 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
   const double max_height =
       settings_.offer_max_height +
       settings_.offer_height_gain * std::max(0.0, extended - settings_.offer_extension);
-  return height >= settings_.offer_min_height && height <= max_height &&
+  const double min_height = settings_.offer_min_height -
+                            (is_held_out(person, object) ? settings_.offer_long_rest_height : 0.0);
+  return height >= min_height && height <= max_height &&
          is_for_robot(person, p_shoulder, p_object, p_hand) &&
          extended >= min_extension(person, object, p_hand);
 }

@@ -55,7 +55,7 @@ class OfferDetectorTest : public testing::Test {
     for (; clock_ < begin + duration_ + rest; clock_ += 0.02) {
       const double s = std::min(1.0, (clock_ - begin) / duration_);
       const double along = s * s * s * (10 - 15 * s + 6 * s * s);
-      hold_at(from + along * (to - from));
+      hold_at(from + along * (to - from), 0, height_);
       at(clock_);
       if (detector_.made()) return clock_ - begin - duration_ + 1;
     }
@@ -75,6 +75,7 @@ class OfferDetectorTest : public testing::Test {
   Vector3 p_hand_{0.35, 0, 1.1};
   double clock_{1.0};
   double duration_{0.9};  // of a motion [s]
+  double height_{-0.15};  // of the mug above the shoulder in a motion, over the stature
 };
 
 TEST_F(OfferDetectorTest, finds_who_offers_what_and_only_that) {
@@ -138,6 +139,18 @@ TEST_F(OfferDetectorTest, before_the_robots_hand_an_arm_bent_more_counts_after_a
   const double found = bring(0.12, 0.195, 4.0);
   EXPECT_GT(found, 1 + 1.5);
   EXPECT_LT(found, 1 + 2.2);
+}
+
+TEST_F(OfferDetectorTest, what_is_held_out_low_counts_after_a_long_rest) {
+  height_ = -0.27;
+  EXPECT_LT(bring(0.29, 0.29, 4.0), 0) << "hanging there all the time";
+  EXPECT_LT(bring(0.29, 0.12, 0.0), 0);
+  const double found = bring(0.12, 0.29, 4.0);
+  EXPECT_GT(found, 1 + 1.5);
+  EXPECT_LT(found, 1 + 2.2);
+  height_ = -0.30;
+  EXPECT_LT(bring(0.29, 0.12, 0.0), 0);
+  EXPECT_LT(bring(0.12, 0.29, 4.0), 0) << "too low";
 }
 
 TEST_F(OfferDetectorTest, what_is_held_out_farther_may_be_higher) {
