@@ -228,13 +228,16 @@ Routine<Closing> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
   co_return result;
 }
 
-/// Waits until the giver has released the object. Fingers that press on it feel some of its weight,
-/// too: it is the robot's when that stays and the giver's hand has gone.
-Routine<Outcome> await_release(Parts& parts, const Offer& offer, double timeout) {
+/// Waits until the giver has released the object. Fingers that press on the object feel some of its
+/// weight, too: the object is the robot's when that stays and the giver's hand has gone. A hand
+/// that is sure of its grip has the object as well when nobody else holds it: it must not open.
+Routine<Outcome> await_release(Parts& parts, const Offer& offer, double timeout, bool is_sure) {
   parts.action.phase = ActionPhase::waiting_for_release;
   const auto is_given = [&] {
-    return is_held_by_robot(parts, offer.object) &&
-           !parts.held.is_at_hand_of(offer.giver, offer.object);
+    const SceneObject* seen = parts.now.object(offer.object);
+    const bool has_it = is_held_by_robot(parts, offer.object) ||
+                        (is_sure && seen != nullptr && seen->holder == Holder::nobody);
+    return has_it && !parts.held.is_at_hand_of(offer.giver, offer.object);
   };
   const TimePoint deadline = parts.now.time() + from_seconds(timeout);
   TimePoint since = parts.now.time();
@@ -288,12 +291,13 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   }
   const Closing closed = co_await close_on_offer(parts, take, *grasp);
   Outcome taken = closed.outcome;
-  if (taken.good) taken = co_await await_release(parts, take.offer, parts.settings.let_go_timeout);
+  if (taken.good)
+    taken = co_await await_release(parts, take.offer, parts.settings.let_go_timeout, true);
   if (closed.unsure) {
     // A giver who feels the robot hold the object releases it at once: a hand that opened then
     // would drop it. One who still holds it keeps their hand there.
     const Outcome released =
-        co_await await_release(parts, take.offer, parts.settings.unsure_grip_time);
+        co_await await_release(parts, take.offer, parts.settings.unsure_grip_time, false);
     if (released.good) taken = released;
   }
   if (!taken.good) {

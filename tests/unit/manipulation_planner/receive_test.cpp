@@ -312,6 +312,20 @@ TEST(ManipulationPlanner, an_unsure_grip_does_not_open_on_what_the_giver_has_rel
   }
 }
 
+TEST(ManipulationPlanner, a_sure_grip_does_not_open_on_what_nobody_else_holds) {
+  Rig rig;
+  rig.object_comes = false;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run_until("waiting for release");
+  ASSERT_EQ(phase_text(rig.planner.status()), "waiting for release");
+  rig.scene.objects[0].holder = Holder::nobody;
+  rig.scene.objects[0].holder_id.clear();
+  rig.run(200);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 0);
+}
+
 TEST(ManipulationPlanner, a_grip_that_bears_the_load_is_worth_a_longer_motion) {
   for (const double margin : {1.0, -3.0}) {
     Rig rig;
