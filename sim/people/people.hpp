@@ -58,7 +58,7 @@ class People {
   /// Tells the partners that the robot offers `object` to `human`, or asks for the object; empty:
   /// whoever, whatever.
   void announce(Announcement announcement, const std::string& human, const std::string& object);
-  bool listen() const;  ///< whether any person is a partner, to whom the robot may say something
+  bool listen() const;           ///< whether the robot may say something to any of these people
   bool follow_somebody() const;  ///< whether any person follows a source outside
   /// Decides, moves and holds for the coming step. `robot_hands`: not empty.
   void move(double dt, const std::vector<RobotHandState>& robot_hands);

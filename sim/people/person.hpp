@@ -121,7 +121,10 @@ class PersonModel {
   bool minds_fingers() const { return settings_.moving.duration > 0; }
   const std::string& source() const { return settings_.external; }  ///< followed; empty: none
   const std::string& id() const { return settings_.id; }            ///< unique in the scenario
-  bool listens() const { return settings_.kind == PersonKind::partner; }  ///< to announce()
+  /// Whether announce() changes, now or later, what the person does.
+  bool listens() const {
+    return settings_.kind == PersonKind::partner || settings_.kind == PersonKind::giver;
+  }
   PersonPhase phase() const { return phase_; }     ///< what the person does now
   const Person& body() const { return body_; }     ///< ground truth, velocities included
   Side side() const { return side_; }              ///< of the handover hand
@@ -153,6 +156,7 @@ class PersonModel {
   void retract(double dt);
   void dart_on(double dt, const PersonView&);
   void give_up();
+  void take_part();
   void hold_back(const PersonView&);
   bool is_to_offer() const;
   void come_back();

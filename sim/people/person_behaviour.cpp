@@ -93,9 +93,19 @@ void PersonModel::come_back() {
   if (step.norm() > 0) feet_ = home_ + min_jerk(since() / step_time(step.norm())) * step;
 }
 
+/// Makes a giver who has given a partner: takes the object when it is handed back, and offers it at
+/// rest when asked again.
+void PersonModel::take_part() {
+  if (settings_.kind == PersonKind::giver) settings_.kind = PersonKind::partner;
+  settings_.moving = {};
+}
+
 void PersonModel::offer(double dt, const PersonView& view) {
   lost_time_ = view.held_by_robot ? lost_time_ + dt : 0;
-  if (lost_time_ > kLetGo) return give_up();
+  if (lost_time_ > kLetGo) {
+    take_part();
+    return give_up();
+  }
   if (view.held_by_robot) return;
   if (settings_.moving.duration > 0) return offer_in_motion(dt, view);
   come_back();

@@ -203,7 +203,7 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   Outcome last = nothing_offered(wanted, giver, timeout);
   std::set<GraspOfArm> failed;
   TimePoint deadline = parts.now.time() + from_seconds(timeout);
-  const TimePoint patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
+  std::optional<TimePoint> patient_until;
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
     std::optional<Offer> offer = co_await await_offer(parts, giver, deadline);
     if (!offer) break;
@@ -218,7 +218,9 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
       last = co_await await_other_offer(parts, *offer, p_asked, list.outcome, last);
       continue;
     }
-    if (!serves && parts.now.time() < patient_until) {
+    if (!serves && !patient_until)
+      patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
+    if (!serves && parts.now.time() < *patient_until) {
       last = co_await await_other_offer(parts, *offer, p_asked, cannot_put_down(*offer), last);
       continue;
     }

@@ -141,6 +141,22 @@ TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_rob
   EXPECT_EQ(person.phase(), PersonPhase::watching);
 }
 
+TEST(SimPerson, giver_takes_back_what_the_robot_hands_back_and_offers_it_when_asked) {
+  PersonModel person(giver());
+  live(person, 3, {0.4, 0.3, 1.0});
+  live(person, 0.7, {0.4, 0.3, 1.0}, true);
+  ASSERT_FALSE(person.wants_grip());
+  const PersonView view = offer({0.95, 0.05, 1.05});
+  for (int i = 0; i < 5000; ++i) person.step(0.001, view);
+  ASSERT_EQ(person.phase(), PersonPhase::watching) << "the robot does not hand it back";
+  person.announce(Announcement::offers);
+  for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i) person.step(0.001, view);
+  ASSERT_EQ(person.phase(), PersonPhase::pulling);
+  person.announce(Announcement::asks);
+  live(person, 6, {0.4, 0.5, 1.0});
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+}
+
 TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
   PersonSettings settings = giver();
   settings.feet = Vector3(1.35, 0, 0);
