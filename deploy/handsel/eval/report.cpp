@@ -33,6 +33,7 @@ Json task_json(const TaskOutcome& outcome) {
           {"started_s", outcome.started},
           {"duration_s", outcome.duration},
           {"first_motion_s", outcome.first_motion < 0 ? Json() : Json(outcome.first_motion)},
+          {"handover_s", outcome.handover < 0 ? Json() : Json(outcome.handover)},
           {"steps", std::move(steps)},
           {"refusals", refusals(outcome.refusals)}};
 }

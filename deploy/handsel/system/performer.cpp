@@ -142,6 +142,13 @@ void Performer::follow(TimePoint now) {
   if (outcome.first_motion < 0 && ground_truth.arrival > task_begin_ &&
       ground_truth.sample.robot_moving)
     outcome.first_motion = to_seconds(ground_truth.arrival - task_begin_);
+  const TaskKind kind = goals_[current_].kind;
+  const std::string_view taker = kind == TaskKind::give      ? "human"
+                                 : kind == TaskKind::receive ? "robot"
+                                                             : "";
+  if (outcome.handover < 0 && ground_truth.arrival > task_begin_ && !taker.empty() &&
+      ground_truth.sample.carrier == taker)
+    outcome.handover = to_seconds(ground_truth.arrival - task_begin_);
   outcome.state = name(status.state);
   outcome.reason = status.reason;
   outcome.refusals = status.refusals;

@@ -42,6 +42,9 @@ struct TaskOutcome {
   std::string state, reason;
   double started{}, duration{};  ///< [s]
   double first_motion{-1};  ///< after the goal was given the robot moved first [s]; negative: never
+  /// Give, receive: after the goal was given the taking party first held the object alone [s];
+  /// negative: never.
+  double handover{-1};
   std::vector<StepOutcome> steps;  ///< those that began, in order
   Refusals refusals;               ///< as the supervisor reported last
 };
