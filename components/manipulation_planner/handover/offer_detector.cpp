@@ -97,11 +97,12 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
   const Vector3 p_shoulder = holding_shoulder(person, p_object);
   const double height = (p_object - p_shoulder).z() / stature_of(person);
   const double extended = extension(person, p_object);
+  const bool held_out = is_held_out(person, object);
+  const double min_height =
+      settings_.offer_min_height - (held_out ? settings_.offer_long_rest_height : 0.0);
+  const double gain = settings_.offer_height_gain * (held_out ? settings_.offer_long_rest_gain : 1);
   const double max_height =
-      settings_.offer_max_height +
-      settings_.offer_height_gain * std::max(0.0, extended - settings_.offer_extension);
-  const double min_height = settings_.offer_min_height -
-                            (is_held_out(person, object) ? settings_.offer_long_rest_height : 0.0);
+      settings_.offer_max_height + gain * std::max(0.0, extended - settings_.offer_extension);
   return height >= min_height && height <= max_height &&
          is_for_robot(person, p_shoulder, p_object, p_hand) &&
          extended >= min_extension(person, object, p_hand);
