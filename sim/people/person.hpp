@@ -163,6 +163,7 @@ class PersonModel {
   Vector3 step_to_place() const;
   Vector3 offer_from_shoulder(const PersonView&) const;
   void offer(double dt, const PersonView&);
+  void turn_hand_back(double dt);
   void offer_in_motion(double dt, const PersonView&);
   void step_aside(double dt);
   double reach_fraction() const;

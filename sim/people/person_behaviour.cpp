@@ -18,9 +18,10 @@ constexpr double kMoveTime = 1.0;    // to where a giver who keeps moving begins
 constexpr double kMinOut = 0.6, kMaxOut = 0.95, kMinBefore = 0.4;
 constexpr double kOffFingers = 0.35;  // ... and this far from the robot's palm [m]
 constexpr double kOfferTime = 1.0;    // of the motion [s]
-constexpr double kMostTurn = 0.6;     // of the offer out of the way ahead [rad]
-constexpr double kBeforeHand = 0.5;   // from the robot's hand, where something is held out [m]
-constexpr double kImpatience = 8.0;   // who is ignored for so long holds it out anew [s] ...
+constexpr double kTurnBack = 0.5;    // time constant of a hand that turns back after the motion [s]
+constexpr double kMostTurn = 0.6;    // of the offer out of the way ahead [rad]
+constexpr double kBeforeHand = 0.5;  // from the robot's hand, where something is held out [m]
+constexpr double kImpatience = 8.0;  // who is ignored for so long holds it out anew [s] ...
 constexpr double kStepNearer = 0.12;  // ... and comes nearer by this [m] ...
 constexpr int kMostSteps = 2;         // ... so often
 // [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it,
@@ -107,14 +108,20 @@ void PersonModel::offer(double dt, const PersonView& view) {
     return give_up();
   }
   if (view.held_by_robot) return;
-  if (settings_.moving.duration > 0) return offer_in_motion(dt, view);
-  come_back();
-  hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
+  if (settings_.moving.duration > 0) {
+    offer_in_motion(dt, view);
+    if (!moving_->is_over()) return;
+  } else {
+    come_back();
+    turn_hand_back(dt);
+    hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
+  }
   const bool near =
       view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kComeNear;
   if (near || since() < duration_) ignored_ = 0;
   if ((ignored_ += dt) > kImpatience) {  // holds it out anew, nearer to where the robot's hand is
     ignored_ = 0;
+    settings_.moving = {};
     from_ = hand_target_;
     home_ = feet_;
     p_shoulder_offer_ = offer_from_shoulder(view);
@@ -134,6 +141,12 @@ void PersonModel::offer(double dt, const PersonView& view) {
   from_ = hand_target_;
   duration_ = kReconsider;
   enter(PersonPhase::keeping);
+}
+
+/// Turns the hand back to the middle configuration of the wrist.
+void PersonModel::turn_hand_back(double dt) {
+  if (hand_turn_.w() < 1)
+    hand_turn_ = hand_turn_.slerp(std::min(1.0, dt / kTurnBack), Eigen::Quaterniond::Identity());
 }
 
 /// Leads the hand to where the motion begins, then along it. The object turns about itself, so that

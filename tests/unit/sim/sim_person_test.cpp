@@ -157,6 +157,32 @@ TEST(SimPerson, giver_takes_back_what_the_robot_hands_back_and_offers_it_when_as
   EXPECT_EQ(person.phase(), PersonPhase::offering);
 }
 
+TEST(SimPerson, giver_who_moves_and_is_ignored_then_holds_it_out_anew_upright) {
+  PersonSettings settings = giver();
+  settings.moving.duration = 3;
+  settings.moving.start_low = settings.moving.next_low = Vector3(0.86, -0.3, 0.9);
+  settings.moving.start_high = settings.moving.next_high = Vector3(1.06, 0.3, 1.1);
+  settings.moving.spread = 0.1;
+  settings.moving.slowest = settings.moving.fastest = 0.1;
+  settings.moving.slowest_turn = settings.moving.fastest_turn = 0.3;
+  settings.moving.max_turn = 0.9;
+  settings.moving.seed = 3;
+  PersonModel person(settings);
+  const Vector3 robot_hand(0.3, 0.3, 1.0);
+  const auto turn = [&] {
+    const Eigen::Quaterniond facing(Eigen::AngleAxisd(settings.yaw, Vector3::UnitZ()));
+    return facing.angularDistance(Eigen::Quaterniond(person.hand().T_world_body.linear()));
+  };
+  live(person, 8, robot_hand);
+  EXPECT_GT(turn(), 0.3);
+  const Vector3 stays = person.hand().T_world_body.translation();
+  live(person, 2, robot_hand);
+  EXPECT_LT((person.hand().T_world_body.translation() - stays).norm(), 0.01);
+  live(person, 12, robot_hand);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+  EXPECT_LT(turn(), 0.02);
+}
+
 TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
   PersonSettings settings = giver();
   settings.feet = Vector3(1.35, 0, 0);
