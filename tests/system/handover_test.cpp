@@ -15,8 +15,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kSeeds = 10;
-constexpr int kAtLeast = 9;
+/// Returns the number of seeds, HANDSEL_SEEDS or ten.
+int seed_count() {
+  const char* seeds = std::getenv("HANDSEL_SEEDS");
+  return seeds != nullptr ? std::atoi(seeds) : 10;
+}
+/// Returns nine of ten of a number, rounded up.
+int nine_of_ten(int count) { return (9 * count + 9) / 10; }
 
 std::vector<Json> in_lockstep(const std::string& scenario, int seeds) {
   std::vector<Trial> trials;
@@ -66,12 +71,13 @@ int successes(const std::vector<Json>& lines) {
   return count;
 }
 
-TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
-  const std::vector<Json> lockstep = in_lockstep("give_mug", kSeeds);
-  ASSERT_EQ(lockstep.size(), static_cast<std::size_t>(kSeeds));
-  EXPECT_GE(successes(lockstep), kAtLeast) << "in lock-step";
+TEST(Handover, seeds_over_dds_succeed_and_lockstep_agrees) {
+  const int seeds = seed_count(), at_least = nine_of_ten(seeds);
+  const std::vector<Json> lockstep = in_lockstep("give_mug", seeds);
+  ASSERT_EQ(lockstep.size(), static_cast<std::size_t>(seeds));
+  EXPECT_GE(successes(lockstep), at_least) << "in lock-step";
   int done = 0, agreed = 0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
+  for (int seed = 1; seed <= seeds; ++seed) {
     const Json report = over_dds("give_mug", seed);
     const std::string what = "seed " + std::to_string(seed);
     const bool success = report["success"];
@@ -89,8 +95,8 @@ TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
     EXPECT_GE(report["oracle"]["human_contact_before_release_s"].get<double>(), 0.2) << what;
     EXPECT_GE(report["oracle"]["human_alone_s"].get<double>(), 1.0) << what;
   }
-  EXPECT_GE(done, kAtLeast) << "over DDS";
-  EXPECT_GE(agreed, kAtLeast);
+  EXPECT_GE(done, at_least) << "over DDS";
+  EXPECT_GE(agreed, at_least);
 }
 
 void expect_failure(const Json& line, const std::string& what) {
