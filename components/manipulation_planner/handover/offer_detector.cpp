@@ -51,7 +51,7 @@ double OfferDetector::min_extension(const Person& person, const SceneObject& obj
       std::clamp((away - settings_.offer_near_hand) / settings_.offer_near_range, 0.0, 1.0);
   const double near_extension =
       settings_.offer_near_extension -
-      (is_held_out(person, object) ? settings_.offer_long_rest_extension : 0.0);
+      (is_extended_at_rest(person, object) ? settings_.offer_long_rest_extension : 0.0);
   const double min = near_extension + far * (settings_.offer_extension - near_extension);
   const Offer offer{object.id, person.id};
   if (offer == accepted_)
@@ -61,12 +61,12 @@ double OfferDetector::min_extension(const Person& person, const SceneObject& obj
   return offer == seen_ ? min - settings_.offer_noise : min;
 }
 
-bool OfferDetector::is_held_out(const Person& person, const SceneObject& object) const {
+bool OfferDetector::is_extended_at_rest(const Person& person, const SceneObject& object) const {
   const auto found = followed_.find(object.id);
   if (found == followed_.end() || found->second.holder != person.id) return false;
   const double rise =
       extension(person, object.T_world_object.translation()) - found->second.min_extension;
-  return rise >= settings_.offer_held_out &&
+  return rise >= settings_.offer_long_rest_rise &&
          found->second.trail.rest() >= settings_.offer_long_rest;
 }
 
@@ -97,7 +97,7 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
   const Vector3 p_shoulder = holding_shoulder(person, p_object);
   const double height = (p_object - p_shoulder).z() / stature_of(person);
   const double extended = extension(person, p_object);
-  const bool held_out = is_held_out(person, object);
+  const bool held_out = is_extended_at_rest(person, object);
   const double min_height =
       settings_.offer_min_height - (held_out ? settings_.offer_long_rest_height : 0.0);
   const double gain = settings_.offer_height_gain * (held_out ? settings_.offer_long_rest_gain : 1);

@@ -81,7 +81,7 @@ class OfferDetector {
   };
   double min_extension(const Person& person, const SceneObject& object,
                        const Vector3& p_hand) const;
-  bool is_held_out(const Person& person, const SceneObject& object) const;
+  bool is_extended_at_rest(const Person& person, const SceneObject& object) const;
   void follow_objects();
   void follow_extension();
   std::optional<Offer> find(const std::string& object, const std::string& giver,

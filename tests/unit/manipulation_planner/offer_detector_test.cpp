@@ -109,7 +109,7 @@ TEST_F(OfferDetectorTest, what_is_kept_raised_or_held_aside_is_no_offer) {
   EXPECT_TRUE(is_offered());
 }
 
-TEST_F(OfferDetectorTest, what_is_held_out_to_another_person_is_no_offer) {
+TEST_F(OfferDetectorTest, what_is_extended_at_rest_to_another_person_is_no_offer) {
   Person ben = people_.people[0];
   ben.id = "ben";
   ben.joints = standing_body({0.75, 0.25, 0}, 0, 1.75);
@@ -141,7 +141,7 @@ TEST_F(OfferDetectorTest, before_the_robots_hand_an_arm_bent_more_counts_after_a
   EXPECT_LT(found, 1 + 2.2);
 }
 
-TEST_F(OfferDetectorTest, what_is_held_out_low_or_high_counts_after_a_long_rest) {
+TEST_F(OfferDetectorTest, what_is_extended_at_rest_low_or_high_counts_after_a_long_rest) {
   height_ = -0.27;
   EXPECT_LT(bring(0.29, 0.29, 4.0), 0) << "hanging there all the time";
   const auto is_found = [&](double extension, double height) {
@@ -159,7 +159,7 @@ TEST_F(OfferDetectorTest, what_is_held_out_low_or_high_counts_after_a_long_rest)
   EXPECT_FALSE(is_found(0.29, 0.02)) << "before the eyes";
 }
 
-TEST_F(OfferDetectorTest, what_is_held_out_farther_may_be_higher) {
+TEST_F(OfferDetectorTest, what_is_extended_at_rest_farther_may_be_higher) {
   hold_at(0.28, 0, -0.02);
   EXPECT_FALSE(is_offered());
   hold_at(0.32, 0, -0.02);
@@ -214,7 +214,7 @@ TEST_F(OfferDetectorTest, only_what_was_asked_for_is_awaited) {
   EXPECT_FALSE(detector_.made()) << "not observed since";
 }
 
-TEST_F(OfferDetectorTest, an_accepted_offer_held_out_farther_ends_sooner_on_its_way_back) {
+TEST_F(OfferDetectorTest, an_accepted_offer_long_rest_rise_farther_ends_sooner_on_its_way_back) {
   hold_at(0.28);
   detector_.accept({"mug", "anna"});
   hold_at(0.27);
