@@ -80,7 +80,7 @@ std::vector<SceneBody> SceneBodies::bodies(const Scene& scene, const std::string
     body.allowed = allowed.count(object.id) > 0;
     const ObjectModel* model =
         library_ && object.holder == Holder::human ? library_(object.model) : nullptr;
-    for (const PlacedShape& part : model != nullptr ? model->parts : std::vector<PlacedShape>{}) {
+    for (const PlacedShape& part : model != nullptr ? model->parts : std::vector<ObjectPart>{}) {
       SceneBody solid = body;
       solid.T_world_shape = object.T_world_object * part.T_parent_shape;
       solid.shape = CollisionShape::make(part.shape);

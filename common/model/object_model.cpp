@@ -38,6 +38,21 @@ Shape to_shape(const config::ObjectPart& part, const fs::path& file, const Vecto
                     ": a part needs a shape: box, cylinder, capsule, sphere or convex_mesh");
 }
 
+PlacedShape to_placed(const config::ObjectPart& part, const fs::path& file, const Vector3& scale) {
+  return {to_shape(part, file, scale), handsel::to_pose(part.pose())};
+}
+
+std::vector<PlacedShape> walls(const config::ObjectPart& part, const fs::path& file,
+                               const Vector3& scale) {
+  std::vector<PlacedShape> out;
+  for (const config::ObjectPart& wall : part.walls()) {
+    if (wall.walls_size() > 0)
+      throw ConfigError(locate(file, "walls") + ": a wall is convex and has no walls of its own");
+    out.push_back(to_placed(wall, file, scale));
+  }
+  return out;
+}
+
 }  // namespace
 
 ObjectModel ObjectModel::load(const fs::path& description) {
@@ -67,9 +82,19 @@ ObjectModel ObjectModel::load(const fs::path& description) {
   object.height_above_support =
       text.height_above_support() != 0 ? text.height_above_support() : -low.z();
   for (const auto& part : text.parts())
-    object.parts.push_back({to_shape(part, description, scale), to_pose(part.pose())});
-  if (object.parts.empty()) object.parts.push_back({Box{high - low}, make_pose((low + high) / 2)});
+    object.parts.push_back({to_placed(part, description, scale), walls(part, description, scale)});
+  if (object.parts.empty())
+    object.parts.push_back({{Box{high - low}, make_pose((low + high) / 2)}, {}});
   return object;
+}
+
+std::vector<PlacedShape> ObjectModel::solids() const {
+  std::vector<PlacedShape> out;
+  for (const ObjectPart& part : parts) {
+    if (part.walls.empty()) out.push_back(part);
+    out.insert(out.end(), part.walls.begin(), part.walls.end());
+  }
+  return out;
 }
 
 }  // namespace handsel

@@ -50,9 +50,14 @@ def refine(profile):
     return out
 
 
+def around(radius):
+    """Returns the number of facets around a body of revolution."""
+    return max(16, round(2 * math.pi * radius / STEP))
+
+
 def revolve(profile):
     """A body of revolution; the profile of (radius, z) runs from the axis at the bottom, outside up, to the axis again."""
-    mesh, segments = Mesh(), max(16, round(2 * math.pi * max(r for r, _ in profile) / STEP))
+    mesh, segments = Mesh(), around(max(r for r, _ in profile))
     rings = []
     for r, z in refine(profile):
         if r < 1e-9:
@@ -128,14 +133,26 @@ def at(x, y, z, roll=0.0, pitch=0.0):
     return f"pose {{ xyz {{ x: {x:g} y: {y:g} z: {z:g} }}{turn} }}"
 
 
+def cup_walls(R, H, wall, bottom):
+    """Walls of an open cup: a box behind each facet of its mesh, and its bottom."""
+    n = around(R)
+    middle, width, thick = (R - wall / 2) * math.cos(math.pi / n), 2 * R * math.sin(math.pi / n), wall * math.cos(math.pi / n)
+    out = [f"{at(0, 0, (bottom - H) / 2)} cylinder {{ radius: {R} length: {bottom} }}"]
+    for k in range(n):
+        yaw = 2 * math.pi * (k + 0.5) / n
+        pose = f"pose {{ xyz {{ x: {middle * math.cos(yaw):.6f} y: {middle * math.sin(yaw):.6f} z: {bottom / 2:g} }} rpy {{ z: {yaw:.6f} }} }}"
+        out.append(f"{pose} box {{ x: {thick:.6f} y: {width:.6f} z: {H - bottom:g} }}")
+    return "".join(f"\n  walls {{ {w} }}" for w in out)
+
+
 def mug():
     R, H, wall, bottom = 0.040, 0.095, 0.004, 0.006
     reach, half, thick = 0.028, 0.028, 0.006
     h = H / 2
     mesh = revolve([(0, -h), (R, -h), (R, h), (R - wall, h), (R - wall, -h + bottom), (0, -h + bottom)])
     add_handle(mesh, R - wall / 2, reach + wall / 2, half, thick)
-    describe("mug", "A mug of 0.3 l with its handle toward +x.", mesh, 0.32, 0.6,
-             [f"cylinder {{ radius: {R} length: {H} }}",
+    describe("mug", "An empty mug of 0.3 l with its handle toward +x.", mesh, 0.32, 0.6,
+             [f"cylinder {{ radius: {R} length: {H} }}{cup_walls(R, H, wall, bottom)}\n",
               f"{at(R + 0.6 * reach, 0, half, 0, math.pi / 2)} capsule {{ radius: {thick} length: {reach:g} }}",
               f"{at(R + reach - thick / 2, 0, 0)} capsule {{ radius: {thick} length: {2 * half:g} }}",
               f"{at(R + 0.6 * reach, 0, -half, 0, math.pi / 2)} capsule {{ radius: {thick} length: {reach:g} }}"], (0.003, 0, -0.008))

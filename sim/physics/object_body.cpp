@@ -12,7 +12,7 @@ ObjectBody::ObjectBody(const StartObject& start, int index, ShapeStore& shapes,
     : start_(start), world_(world) {
   Pose T_com_object = Pose::Identity();
   T_com_object.translation() = -model().com;
-  btCollisionShape* shape = shapes.combine(model().parts, T_com_object);
+  btCollisionShape* shape = shapes.combine(model().solids(), T_com_object);
   if (shape == nullptr)
     throw ConfigError("object " + start.id + " of model " + start.model_name +
                       " has no parts to collide with");

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint32_t kVersion =
     5;  // of the form on disk and of the method: raise it when either changes
+constexpr std::uint32_t kPinchVersion = 1;  // of the method of hands of two pads
 
 /// FNV-1a, 64 bit.
 class Hash {
@@ -168,6 +169,11 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object,
     h.add(*v);
   h.add(object.mesh);
   for (const PlacedShape& p : object.parts) h.add(p);
+  if (hand.pinches()) {
+    h.add(static_cast<std::uint64_t>(kPinchVersion));
+    for (const ObjectPart& part : object.parts)
+      h.add(static_cast<std::uint64_t>(part.walls.empty()));
+  }
   h.add(object.com);
   h.add(object.friction);
   h.add(object.mass);

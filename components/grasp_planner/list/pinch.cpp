@@ -13,11 +13,19 @@ constexpr int kGrid = 5;  // rays along each side of a pad
 constexpr double kPatch =
     0.0005;  // [m] what is nearer than this to a pad's plane touches: so far it yields
 constexpr double kInside = 0.0003;        // [m] what stands out farther keeps the pad off
+constexpr double kMaxHollow = 0.003;      // [m] a pad bridges a hollow that is no deeper
+constexpr double kBeside = 0.001;         // [m] off its middle, on both sides
 constexpr double kBackOff = 0.004;        // [m] the rays start this far behind the pad's plane
 constexpr double kFlat = 0.94;            // cosine: the surface faces the pad
 constexpr double kParallel = 0.985;       // cosine: the pads face each other
 constexpr double kLeastThickness = 1e-3;  // [m]
 constexpr double kGolden = 0.6180339887498949;
+
+/// Returns whether an area of a pad reaches to both sides of the pad's middle, both ways.
+bool is_around_middle(const Eigen::AlignedBox2d& on_pad) {
+  return !on_pad.isEmpty() && (on_pad.min().array() < -kBeside).all() &&
+         (on_pad.max().array() > kBeside).all();
+}
 
 }  // namespace
 
@@ -81,7 +89,9 @@ std::optional<PinchSearch::Found> PinchSearch::frame(std::uint64_t id, GraspList
   std::vector<SurfaceHit> exits;
   object_.triangles().hits(place.position - kLeastThickness * place.normal, -place.normal,
                            motion_.widest(), exits);
-  std::erase_if(exits, [&](const SurfaceHit& h) { return -h.normal.dot(place.normal) < kFlat; });
+  std::erase_if(exits, [&](const SurfaceHit& h) {
+    return -h.normal.dot(place.normal) < kFlat || object_.is_filled(h.position);
+  });
   why = FrameReason::nothing_opposite;
   for (auto exit = exits.rbegin(); exit != exits.rend();
        ++exit)  // the whole thickness first, then a wall
@@ -92,30 +102,48 @@ std::optional<PinchSearch::Found> PinchSearch::frame(std::uint64_t id, GraspList
   return std::nullopt;
 }
 
+/// Sets the configurations of the hand closed on this thickness and opened before; false when the
+/// hand does not open so far.
+bool PinchSearch::close_on(double thickness, Grasp& g) {
+  const auto closed = motion_.at_gap(thickness);
+  const auto opened = motion_.at_gap(std::min(motion_.widest(), thickness + 2 * settings_.opening));
+  if (!closed || !opened || motion_.gap(*opened) < thickness + 2 * settings_.open_clearance)
+    return false;
+  hand_geometry_.forward(*closed, T_closed_);
+  hand_geometry_.forward(*opened, T_open_);
+  g.hand_joints = *closed;
+  g.pregrasp_joints = *opened;
+  return true;
+}
+
 std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
                                                       const Vector3& along, double thickness,
                                                       GraspList& counters, FrameReason& why) {
   ++counters.finger_solutions;
-  const auto closed = motion_.at_gap(thickness);
-  const auto opened = motion_.at_gap(std::min(motion_.widest(), thickness + 2 * settings_.opening));
-  if (!closed || !opened || motion_.gap(*opened) < thickness + 2 * settings_.open_clearance)
-    return std::nullopt;
-  hand_geometry_.forward(*closed, T_closed_);
-  hand_geometry_.forward(*opened, T_open_);
-  const Pose T_hand_first = motion_.T_hand_pad(0, T_closed_[0]),
-             T_hand_second = motion_.T_hand_pad(1, T_closed_[1]);
-  if (-T_hand_first.linear().col(2).dot(T_hand_second.linear().col(2)) < kParallel)
+  Found found;
+  Grasp& g = found.grasp;
+  if (!close_on(thickness, g)) return std::nullopt;
+  if (-motion_.T_hand_pad(0, T_closed_[0])
+           .linear()
+           .col(2)
+           .dot(motion_.T_hand_pad(1, T_closed_[1]).linear().col(2)) < kParallel)
     return std::nullopt;
   Pose T_object_first = Pose::Identity();
   T_object_first.linear() << along, -place.normal.cross(along), -place.normal;
   T_object_first.translation() = place.position;
-  Found found;
-  Grasp& g = found.grasp;
-  g.T_object_hand = T_object_first * T_hand_first.inverse();
   why = FrameReason::pad_off_surface;
-  if (!touch(0, T_object_first, found)) return std::nullopt;
+  const auto back = settle(0, T_object_first, found);
+  if (!back) return std::nullopt;
+  T_object_first.translation() += *back * place.normal;
+  if (*back > 0 && !close_on(thickness += *back, g)) return std::nullopt;
   const std::size_t on_first = g.contacts.size();
-  if (!touch(1, g.T_object_hand * T_hand_second, found)) return std::nullopt;
+  g.T_object_hand = T_object_first * motion_.T_hand_pad(0, T_closed_[0]).inverse();
+  const auto apart = settle(1, g.T_object_hand * motion_.T_hand_pad(1, T_closed_[1]), found);
+  if (!apart) return std::nullopt;
+  if (*apart > 0) {
+    if (!close_on(thickness + *apart, g)) return std::nullopt;
+    g.T_object_hand = T_object_first * motion_.T_hand_pad(0, T_closed_[0]).inverse();
+  }
   ++counters.touch_tests;
   why = FrameReason::palm_in_object;
   if (hand_geometry_.shape.palm_touches(object_, g.T_object_hand)) return std::nullopt;
@@ -123,8 +151,6 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
   if (fingers_touch(T_closed_, g.T_object_hand, -settings_.depth, counters)) return std::nullopt;
   if (fingers_touch(T_open_, g.T_object_hand, settings_.open_clearance, counters))
     return std::nullopt;
-  g.hand_joints = *closed;
-  g.pregrasp_joints = *opened;
   found.force /= static_cast<double>(g.contacts.size());
   grip(found, std::max(on_first, g.contacts.size() - on_first));
   why = FrameReason::not_closed;
@@ -132,16 +158,9 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
   return found;
 }
 
-/// Where the object meets a pad; of the places that touch, those farthest toward the pad's corners
-/// are its contacts.
-bool PinchSearch::touch(std::uint32_t finger, const Pose& T_object_pad, Found& found) {
-  const Pad& pad = *hand_geometry_.hand.fingers()[finger].pad;
+/// What the rays from behind a pad through its area meet first.
+void PinchSearch::sample(const Pad& pad, const Pose& T_object_pad, std::vector<Place>& places) {
   const Vector3 z = T_object_pad.linear().col(2);
-  struct Place {
-    Eigen::Vector2d on_pad;
-    SurfaceHit hit;
-  };
-  std::vector<Place> places;
   for (int i = 0; i < kGrid; ++i) {
     for (int k = 0; k < kGrid; ++k) {
       const Eigen::Vector2d p((static_cast<double>(i) / (kGrid - 1) - 0.5) * pad.width,
@@ -150,11 +169,39 @@ bool PinchSearch::touch(std::uint32_t finger, const Pose& T_object_pad, Found& f
                                kBackOff + kPatch, hits_);
       const auto first = std::find_if(hits_.begin(), hits_.end(),
                                       [&z](const SurfaceHit& h) { return h.normal.dot(z) < 0; });
-      if (first == hits_.end()) continue;
-      if (first->along < kBackOff - kInside) return false;
-      if (-first->normal.dot(z) >= kFlat) places.push_back({p, *first});
+      if (first != hits_.end()) places.push_back({p, *first});
     }
   }
+}
+
+/// Returns how far a pad must be held back for the surface, 0 where it lies flat; nullopt where it
+/// does not lie or would rest on one side of its middle only. Of the places that touch, those
+/// farthest toward the pad's corners are its contacts.
+std::optional<double> PinchSearch::settle(std::uint32_t finger, const Pose& T_object_pad,
+                                          Found& found) {
+  const Pad& pad = *hand_geometry_.hand.fingers()[finger].pad;
+  const Vector3 z = T_object_pad.linear().col(2);
+  std::vector<Place> places;
+  sample(pad, T_object_pad, places);
+  double nearest = kBackOff;
+  Eigen::AlignedBox2d out, resting;  // on the pad: what stands out, and what the pad rests on
+  for (const Place& p : places) {
+    nearest = std::min(nearest, p.hit.along);
+    if (p.hit.along < kBackOff - kInside) out.extend(p.on_pad);
+  }
+  const bool hollow = !out.isEmpty();
+  if (hollow && nearest < kBackOff - kMaxHollow) return std::nullopt;
+  const double plane = hollow ? nearest : kBackOff;
+  std::erase_if(places, [&](const Place& p) {
+    return p.hit.along > plane + kPatch || -p.hit.normal.dot(z) < kFlat;
+  });
+  double inward = 0;  // the surface of a hollow faces its middle
+  for (const Place& p : places) {
+    resting.extend(p.on_pad);
+    inward -= p.on_pad.dot((T_object_pad.linear().transpose() * p.hit.normal).head<2>());
+  }
+  if (hollow && !(inward > 0 && is_around_middle(out) && is_around_middle(resting)))
+    return std::nullopt;
   std::vector<const Place*> corners;
   for (const Eigen::Vector2d& toward : {Eigen::Vector2d(1, 1), Eigen::Vector2d(-1, 1),
                                         Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1)}) {
@@ -173,7 +220,8 @@ bool PinchSearch::touch(std::uint32_t finger, const Pose& T_object_pad, Found& f
     found.contacts.push_back({c->hit.position, -c->hit.normal, mu});
     found.force -= c->hit.normal.dot(z);
   }
-  return !corners.empty();
+  if (corners.empty()) return std::nullopt;
+  return kBackOff - plane;
 }
 
 bool PinchSearch::fingers_touch(const std::vector<std::vector<Pose>>& T_hand_step,

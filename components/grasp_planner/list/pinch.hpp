@@ -56,9 +56,16 @@ class PinchSearch {
 
  private:
   static constexpr std::uint64_t kTurns = 16;
+  /// A place of the surface before a pad.
+  struct Place {
+    Eigen::Vector2d on_pad;  ///< frame of the pad [m]
+    SurfaceHit hit;          ///< `along` from where the rays start
+  };
   std::optional<Found> across(const SurfacePoint& place, const Vector3& along, double thickness,
                               GraspList& counters, FrameReason& why);
-  bool touch(std::uint32_t finger, const Pose& T_object_pad, Found& found);
+  bool close_on(double thickness, Grasp& g);
+  void sample(const Pad& pad, const Pose& T_object_pad, std::vector<Place>& places);
+  std::optional<double> settle(std::uint32_t finger, const Pose& T_object_pad, Found& found);
   bool fingers_touch(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_object_hand,
                      double clearance, GraspList& counters) const;
   void grip(Found& found, std::size_t max_on_a_pad) const;

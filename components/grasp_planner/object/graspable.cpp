@@ -51,6 +51,9 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_f
   settings.curvature_radius = tip_radius;
   settings.seed = seed;
   points_ = sample_surface(*mesh, settings);
+  for (const ObjectPart& part : object.parts) {
+    if (part.walls.empty()) filled_.push_back(part);
+  }
   std::erase_if(points_, [&](const SurfacePoint& p) {
     return std::any_of(
         object.parts.begin(), object.parts.end(), [&p, tip_radius](const PlacedShape& part) {
@@ -68,6 +71,12 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_f
   tip_centres_ = PointTree(centres_);
   mesh_ = mesh;
   shape_ = CollisionShape::make(mesh_);
+}
+
+bool Graspable::is_filled(const Vector3& position) const {
+  return std::any_of(filled_.begin(), filled_.end(), [&position](const PlacedShape& part) {
+    return depth(part.shape, part.T_parent_shape.inverse() * position) > kDeepInPart;
+  });
 }
 
 double Graspable::curvature_near(const Vector3& position, const Vector3& normal) const {

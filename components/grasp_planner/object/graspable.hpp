@@ -20,6 +20,9 @@ class Graspable {
   /// m): it says what to scale.
   Graspable(const ObjectModel& object, double tip_radius, double step_fraction, std::uint64_t seed);
 
+  /// Returns whether a place of the mesh is deep inside a part that is solid or filled: nothing
+  /// touches it there. Inside a hollow part the pads of a gripper may.
+  bool is_filled(const Vector3& position) const;
   /// Of the contact point nearest to `position` on the same side.
   double curvature_near(const Vector3& position, const Vector3& normal) const;
   /// Returns the name of the object model.
@@ -29,7 +32,7 @@ class Graspable {
   /// Returns what was found and mended in the mesh.
   const MeshFindings& findings() const { return findings_; }
   /// Contact points. Those more than 4 mm deep in one of the object's convex parts are left out:
-  /// there its physical form is solid.
+  /// there its physical form is solid, or hollow and too narrow for a hand of several fingers.
   const std::vector<SurfacePoint>& points() const { return points_; }
   /// Over the places of a fingertip's centre when it touches: point + tip_radius * normal, same
   /// indices as points().
@@ -54,6 +57,7 @@ class Graspable {
   std::string name_;
   MeshPtr mesh_;
   MeshFindings findings_;
+  std::vector<PlacedShape> filled_;  // parts without walls
   std::vector<SurfacePoint> points_;
   std::vector<Vector3> centres_;
   PointTree tip_centres_;

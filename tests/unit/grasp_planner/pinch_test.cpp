@@ -2,6 +2,8 @@
 // grasp, checked from the outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
 
@@ -92,6 +94,46 @@ TEST_P(PinchedObjects, are_held_by_areas_that_close_force) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Objects, PinchedObjects, testing::Values("box", "can", "bottle"));
+
+/// Distance of a contact from the vertical axis of the object [m].
+double off_axis(const Contact& c) { return c.position.head<2>().norm(); }
+
+constexpr double kInsideMug = 0.0362;  // [m] from the axis, the inner wall
+
+TEST(Pinch, holds_an_empty_mug_by_its_rim_with_one_pad_inside) {
+  const ObjectModel o = object("mug");
+  const GraspList list = list_of(o);
+  std::size_t by_rim = 0;
+  for (const ListedGrasp& listed : list.grasps) {
+    const Grasp& g = listed.grasp;
+    std::array<std::size_t, 2> inside{}, outside{};
+    std::array<double, 2> low{1, 1}, high{-1, -1};
+    for (const Contact& c : g.contacts) {
+      ++(off_axis(c) < kInsideMug ? inside : outside)[c.finger];
+      const Vector3 p = on_pad(g, c.finger, c.position);
+      low[c.finger] = std::min(low[c.finger], p.x());
+      high[c.finger] = std::max(high[c.finger], p.x());
+      EXPECT_NEAR(p.z(), 0, 6e-4) << "a contact off its pad";
+    }
+    for (const std::size_t finger : {0, 1}) {
+      const std::size_t other = 1 - finger;
+      if (inside[finger] == 0 || outside[finger] > 0 || inside[other] > 0) continue;
+      ++by_rim;
+      EXPECT_LT(low[finger], -0.005) << "the pad in the hollow rests on one edge only";
+      EXPECT_GT(high[finger], 0.005) << "the pad in the hollow rests on one edge only";
+      EXPECT_GT(g.margin, 0);
+    }
+  }
+  EXPECT_GE(by_rim, 5U);
+}
+
+TEST(Pinch, enters_no_cup_that_is_filled) {
+  ObjectModel o = object("mug");
+  for (ObjectPart& part : o.parts) part.walls.clear();
+  for (const ListedGrasp& listed : list_of(o).grasps) {
+    for (const Contact& c : listed.grasp.contacts) EXPECT_GT(off_axis(c), kInsideMug);
+  }
+}
 
 TEST(Pinch, holds_nothing_wider_than_it_opens) {
   const GraspList list = list_of(object("box", 2.0));

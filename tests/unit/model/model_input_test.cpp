@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 
 #include "common/config/resources.hpp"
@@ -430,12 +432,41 @@ TEST(ObjectDescription, says_what_is_wrong) {
               HasSubstr("o.txtpb:4"));
   EXPECT_THAT(refusal("name: \"o\"\nmesh: \"o.obj\"\nmass: 1\nparts { }\n"),
               HasSubstr("needs a shape"));
+  EXPECT_THAT(refusal("name: \"o\"\nmesh: \"o.obj\"\nmass: 1\n"
+                      "parts { sphere: 1 walls { sphere: 1 walls { sphere: 1 } } }\n"),
+              HasSubstr("has no walls of its own"));
   EXPECT_THAT(message_of<MissingError>([&] { load("name: \"o\"\nmesh: \"p.obj\"\nmass: 1\n"); }),
               HasSubstr("p.obj"));
   const auto object =
       load("name: \"o\"\nmesh: \"o.obj\"\nmass: 1\nscale { x: 0.1 y: 0.1 z: 0.1 }\n");
   ASSERT_EQ(object.parts.size(), 1u);
   EXPECT_LT((std::get<Box>(object.parts[0].shape).size - Vector3::Constant(0.1)).norm(), 1e-9);
+}
+
+TEST(ObjectDescription, hollow_parts_are_their_walls) {
+  const ObjectModel mug =
+      ObjectModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/objects/mug/mug.txtpb");
+  ASSERT_EQ(mug.parts.size(), 4U);
+  EXPECT_TRUE(std::holds_alternative<Cylinder>(mug.parts[0].shape));
+  ASSERT_FALSE(mug.parts[0].walls.empty());
+  const std::vector<PlacedShape> solids = mug.solids();
+  EXPECT_EQ(solids.size(), mug.parts[0].walls.size() + 3);
+  std::size_t upright = 0;
+  for (const PlacedShape& wall : mug.parts[0].walls) {
+    const auto* box = std::get_if<Box>(&wall.shape);
+    if (box == nullptr) continue;  // the bottom
+    ++upright;
+    // Every corner is in the wall of the mesh, between the radii of its inner and outer vertices.
+    for (const double x : {-0.5, 0.5}) {
+      for (const double y : {-0.5, 0.5}) {
+        const Vector3 corner =
+            wall.T_parent_shape * Vector3(x * box->size.x(), y * box->size.y(), 0);
+        EXPECT_LT(corner.head<2>().norm(), 0.04 + 1e-5);
+        EXPECT_GT(corner.head<2>().norm(), 0.036 * std::cos(M_PI / 31) - 1e-5);
+      }
+    }
+  }
+  EXPECT_EQ(upright, 31U);
 }
 
 TEST(ForeignRobots, an_arm_of_more_axes_than_can_be_solved_has_no_inverse) {
