@@ -161,7 +161,7 @@ class PersonModel {
   bool is_to_offer() const;
   void come_back();
   Vector3 step_to_place() const;
-  Vector3 offer_from_shoulder(const PersonView&) const;
+  Vector3 offer_from_shoulder(const PersonView&, const Vector3& step = Vector3::Zero()) const;
   void offer(double dt, const PersonView&);
   void turn_hand_back(double dt);
   void offer_in_motion(double dt, const PersonView&);

@@ -76,10 +76,10 @@ Vector3 PersonModel::step_to_place() const {
                                                : Vector3(Vector3::Zero());
 }
 
-/// Comfortably toward the robot's hand, but not into it.
-Vector3 PersonModel::offer_from_shoulder(const PersonView& view) const {
+/// Comfortably toward the robot's hand, but not into it, after a step.
+Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& step) const {
   const Vector3 root = shoulder(index()),
-                to_hand = view.robot_hand - root - (home_ + step_to_place() - feet_);
+                to_hand = view.robot_hand - root - (home_ + step_to_place() - feet_) - step;
   Vector3 arm = comfortable_reach(body_, side_) - root;
   const double turn =
       std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);
@@ -124,12 +124,14 @@ void PersonModel::offer(double dt, const PersonView& view) {
     settings_.moving = {};
     from_ = hand_target_;
     home_ = feet_;
-    p_shoulder_offer_ = offer_from_shoulder(view);
-    if (!settings_.behaviour.seated && steps_nearer_ < kMostSteps) {
+    const bool steps_nearer = !settings_.behaviour.seated && steps_nearer_ < kMostSteps;
+    const Vector3 to_robot =
+        (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+    const Vector3 step = (steps_nearer ? kStepNearer : 0.0) * to_robot;
+    p_shoulder_offer_ = offer_from_shoulder(view, step);
+    if (steps_nearer) {
       ++steps_nearer_;
-      settings_.behaviour.sidestep =
-          kStepNearer *
-          (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+      settings_.behaviour.sidestep = step;
       home_aside_ = aside_;
       step_clock_ = 0;
       settings_.behaviour.sidestep_at = clock_;
