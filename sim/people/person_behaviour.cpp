@@ -23,7 +23,8 @@ constexpr double kMostTurn = 0.6;    // of the offer out of the way ahead [rad]
 constexpr double kBeforeHand = 0.5;  // from the robot's hand, where something is held out [m]
 constexpr double kImpatience = 8.0;  // who is ignored for so long holds it out anew [s] ...
 constexpr double kStepNearer = 0.12;  // ... and comes nearer by this [m] ...
-constexpr int kMostSteps = 2;         // ... so often
+constexpr int kMostSteps = 2;         // ... so often ...
+constexpr double kBend = 0.01;  // ... where the arm need not bend for it by more than this [m]
 // [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it,
 // and lower with every step away from there.
 constexpr double kAbove = 0.12, kBeside = 0.12;
@@ -124,11 +125,15 @@ void PersonModel::offer(double dt, const PersonView& view) {
     settings_.moving = {};
     from_ = hand_target_;
     home_ = feet_;
-    const bool steps_nearer = !settings_.behaviour.seated && steps_nearer_ < kMostSteps;
-    const Vector3 to_robot =
+    const Vector3 step =
+        kStepNearer *
         (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
-    const Vector3 step = (steps_nearer ? kStepNearer : 0.0) * to_robot;
-    p_shoulder_offer_ = offer_from_shoulder(view, step);
+    p_shoulder_offer_ = offer_from_shoulder(view);
+    const Vector3 nearer = offer_from_shoulder(view, step);
+    // Nobody steps nearer only to bend the arm.
+    const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - kBend;
+    const bool steps_nearer = has_room && !settings_.behaviour.seated && steps_nearer_ < kMostSteps;
+    if (steps_nearer) p_shoulder_offer_ = nearer;
     if (steps_nearer) {
       ++steps_nearer_;
       settings_.behaviour.sidestep = step;
