@@ -53,7 +53,10 @@ void SimWorld::Impl::evaluate() {
       separations.violates(near, *robot, reference.velocity, reference.acceleration))
     ssm_violations += ssm_every;
 
-  if (watched >= 0) handover->observe(situation(), settings.step);
+  if (watched >= 0) {
+    handover->observe(situation(), settings.step);
+    taking.observe(grips(watched), taker());
+  }
   add_to_hash();
 }
 
@@ -90,6 +93,17 @@ ObjectSituation SimWorld::Impl::situation() const {
   return s;
 }
 
+std::optional<Taker> SimWorld::Impl::taker() const {
+  const int number = people->toucher(watched);
+  if (number < 0) return std::nullopt;
+  const auto holds_it = [this](const RobotHandState& hand) { return hand.gripped == watched; };
+  const auto held = std::find_if(robot_hands.begin(), robot_hands.end(), holds_it);
+  const RobotHandState& hand = held != robot_hands.end() ? *held : robot_hands.front();
+  const PersonModel& person = people->model(static_cast<std::size_t>(number));
+  return Taker{&person.body(), person.side(), &objects[watched].model(),
+               objects[watched].T_world_object(), hand.palm.T_world_body.translation()};
+}
+
 void SimWorld::Impl::add_to_hash() {
   hash.add_all(robot->position());
   hash.add_all(robot->velocity());
@@ -110,6 +124,7 @@ void SimWorld::ground_truth(GroundTruth& out) const {
     out.object = w.objects[w.watched].start().id;
     out.T_world_object = w.objects[w.watched].T_world_object();
     w.handover->write(out);
+    w.taking.write(out);
     out.hold = !w.grips(w.watched) ? "" : w.constraint_carries ? "constraint" : "contact";
     out.held_time = w.held_time;
     out.constraint_time = w.constraint_time;

@@ -16,6 +16,7 @@
 #include "common/model/robot_capsules.hpp"
 #include "sim/oracle/handover_oracle.hpp"
 #include "sim/oracle/limits_oracle.hpp"
+#include "sim/oracle/taking_oracle.hpp"
 #include "sim/people/people.hpp"
 #include "sim/robot/hand_measure.hpp"
 #include "sim/robot/robot_grasp.hpp"
@@ -88,10 +89,11 @@ struct SimWorld::Impl {
   void measure(Hand& hand);       ///< what its sensors report
 
   // world_oracle.cpp: what happened
-  void evaluate();                    ///< counts violations and collisions of the step
-  bool is_pushed();                   ///< by a person, without the robot pressing against them
-  ObjectSituation situation() const;  ///< of the watched object
-  void add_to_hash();                 ///< positions and velocities of the step
+  void evaluate();                     ///< counts violations and collisions of the step
+  bool is_pushed();                    ///< by a person, without the robot pressing against them
+  ObjectSituation situation() const;   ///< of the watched object
+  std::optional<Taker> taker() const;  ///< who has a hand at the watched object
+  void add_to_hash();                  ///< positions and velocities of the step
 
   // world_sensing.cpp: what sensors of people and objects see
   void prepare_sight();  ///< which bodies can hide what is behind them
@@ -146,6 +148,7 @@ struct SimWorld::Impl {
   LimitsOracle limits;
   SeparationOracle separations;
   std::unique_ptr<HandoverOracle> handover;
+  TakingOracle taking;
   TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(),
                       Vector3::Zero()};
   double min_separation{std::numeric_limits<double>::infinity()};

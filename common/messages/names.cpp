@@ -27,6 +27,7 @@ static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));
 static_assert(ends_with(kFactNames, FactKind::released));
 static_assert(ends_with(kActionPhaseTexts, ActionPhase::to_rest));
 static_assert(ends_with(kActionFailureNames, ActionFailure::cancelled));
+static_assert(ends_with(kSideNames, Side::right));
 static_assert(ends_with(kHolderNames, Holder::human));
 static_assert(ends_with(kHealthStateNames, HealthState::stopping));
 static_assert(ends_with(kSimActionNames, SimAction::emergency_stop));
@@ -56,6 +57,7 @@ std::string phase_text(const ActionStatus& action) {
   return text;
 }
 
+const char* name(Side value) { return look_up(kSideNames, value); }
 const char* name(Holder value) { return look_up(kHolderNames, value); }
 const char* name(HealthState value) { return look_up(kHealthStateNames, value); }
 

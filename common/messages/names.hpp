@@ -80,6 +80,7 @@ inline constexpr const char* kFactNames[] = {"in_contact_zone",
                                              "waiting_to_receive",
                                              "withdrawn",
                                              "released"};
+inline constexpr const char* kSideNames[] = {"left", "right"};
 inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "human"};
 inline constexpr const char* kPrimitiveNames[] = {"none", "box", "cylinder", "sphere"};
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
@@ -112,6 +113,8 @@ std::string text_of(ActionPhase phase);
 std::string phase_text(const ActionStatus& action);
 /// Returns the word of kActionFailureNames; "unknown" for a value outside the enumeration.
 const char* name(ActionFailure);
+/// Returns the word of kSideNames; "unknown" for a value outside the enumeration.
+const char* name(Side value);
 /// Returns the word of kHolderNames; "unknown" for a value outside the enumeration.
 const char* name(Holder);
 /// Returns the word of kHealthStateNames; "unknown" for a value outside the enumeration.

@@ -144,6 +144,11 @@ struct GroundTruth {
   bool handover_done{};  ///< lifted >= 0.10, contact >= 0.2, alone >= 1
   /// Times the watched object changed hands: a give and a receive count one each.
   std::uint64_t handovers{};
+  bool taken{};                   ///< a person has taken the object from the robot's hand
+  Side taking_side{Side::right};  ///< the hand that took it last; valid if `taken`
+  /// Least fraction of its ranges that the wrist of that hand used at the release, [0, 1].
+  double taking_wrist_strain{};
+  double taking_arm_strain{};  ///< fraction of its range that the upper arm used then, [0, 1]
   /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
   double min_separation{};         ///< smallest `separation` so far [m]; infinity: nobody was there

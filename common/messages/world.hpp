@@ -8,6 +8,7 @@
 #include "common/base/time.hpp"
 #include "common/geometry/pose.hpp"
 #include "common/messages/perception.hpp"
+#include "common/messages/side.hpp"
 
 namespace handsel {
 
@@ -55,8 +56,6 @@ struct Scene {
   std::vector<SceneBox> boxes;       ///< furniture and walls, at most 64
   std::uint32_t left_out{};  ///< objects and boxes known but left out: farther than those named
 };
-
-enum class Side : std::uint8_t { left, right };
 
 /// A point of a person's fitted body.
 struct BodyJoint {

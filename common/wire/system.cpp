@@ -100,6 +100,10 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.flag("dropped", m.dropped, w.dropped);
   io.flag("handover_done", m.handover_done, w.handover_done);
   io.integer("handovers", m.handovers, w.handovers);
+  io.flag("taken", m.taken, w.taken);
+  io.choice("taking_side", m.taking_side, w.taking_side, kSideNames);
+  io.number("taking_wrist_strain", m.taking_wrist_strain, w.taking_wrist_strain, kFraction);
+  io.number("taking_arm_strain", m.taking_arm_strain, w.taking_arm_strain, kFraction);
   io.horizon("separation", m.separation, w.separation, -1e4);
   io.horizon("min_separation", m.min_separation, w.min_separation, -1e4);
   io.integer("ssm_violations", m.ssm_violations, w.ssm_violations);

@@ -254,14 +254,15 @@ bool People::grips(int object) const {
                      [&](const Body& p) { return p.grip.holding() && p.object == object; });
 }
 
-bool People::touches(int object) const {
-  return std::any_of(people_.begin(), people_.end(), [&](const Body& p) {
+int People::toucher(int object) const {
+  const auto found = std::find_if(people_.begin(), people_.end(), [&](const Body& p) {
     if (p.object != object || object < 0) return false;
     if (p.grip.holding()) return true;
     const PersonPhase phase = p.model.phase();
     return (phase == PersonPhase::closing || phase == PersonPhase::reaching) &&
            hand_gap(p) < PersonModel::kPalm + 0.012;
   });
+  return found != people_.end() ? static_cast<int>(found - people_.begin()) : -1;
 }
 
 bool People::yields(int code) const {

@@ -67,7 +67,9 @@ class People {
 
   bool grips(int object) const;  ///< whether a person's hand holds the object
   /// Whether a person's hand holds the object or, reaching for it, is within 12 mm of contact.
-  bool touches(int object) const;
+  bool touches(int object) const { return toucher(object) >= 0; }
+  /// Returns the number of the first person whose hand does so; -1: nobody's.
+  int toucher(int object) const;
   /// Whether the touched part is forearm or hand of a handover, which yields; `code` as in the
   /// index of a touch.
   bool yields(int code) const;

@@ -111,6 +111,7 @@ void PersonModel::leave() {
 void PersonModel::step(double dt, const PersonView& view) {
   if (!frozen_ && dt > 0) {
     clock_ += dt;
+    if (view.held_by_robot) carried_since_ = std::min(carried_since_, clock_);
     if (settings_.kind == PersonKind::external) {
       accompany(dt, view);
     } else if (settings_.kind != PersonKind::still) {
@@ -228,12 +229,13 @@ bool PersonModel::offered(const PersonView& view, int side) const {
 // The better hand, unless the other is clearly nearer or the only one that reaches.
 void PersonModel::choose_hand(const PersonView& view) {
   if (settings_.recording || view.object == nullptr) return;
-  const Side better = settings_.left_handed ? Side::left : Side::right;
+  const Side better = preferred_side();
   const double right = (object_centre(view) - shoulder(1)).norm(),
                left_distance = (object_centre(view) - shoulder(0)).norm();
   const double own = better == Side::right ? right : left_distance,
                other = better == Side::right ? left_distance : right;
-  const bool change = own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own);
+  const bool change = !has_changed_hands() &&
+                      (own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own));
   side_ = change == (better == Side::right) ? Side::left : Side::right;
 }
 
@@ -242,7 +244,10 @@ void PersonModel::watch(double dt, const PersonView& view) {
   const bool takes = settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner ||
                      settings_.kind == PersonKind::recording ||
                      settings_.kind == PersonKind::fetcher;
-  if (offer_time_ <= 0) choose_hand(view);
+  if (settings_.behaviour.readies)
+    get_ready(dt, view);
+  else if (offer_time_ <= 0)
+    choose_hand(view);
   offer_time_ = takes && cooldown_ <= 0 && offered(view, index()) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
   offer_time_ = 0;
@@ -263,6 +268,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
       0.0, 0.35);
   hand_target_ = from_;
   hand_active_ = !settings_.recording;
+  ready_ = 0;
   playback_ = 0;
   if (settings_.recording) {
     home_ = feet_;

@@ -32,8 +32,14 @@ struct BehaviourProfile {
   double look_away_at{};              ///< ... from this time on [s]
   Vector3 sidestep{Vector3::Zero()};  ///< walks so far [m] ...
   double sidestep_at{};               ///< ... from this time on [s]
-  bool seated{};                      ///< sits, and takes no steps aside or back
-  bool early{};                       ///< takes what comes within reach while it still moves
+  /// Raises the hand that will take while the robot has the object.
+  bool readies{};
+  /// Takes with the other hand only from this time on, the first is busy [s].
+  double changes_hand_at{std::numeric_limits<double>::infinity()};
+  /// The times of sidestep and change of hand count from when the robot has the object.
+  bool from_carry{};
+  bool seated{};  ///< sits, and takes no steps aside or back
+  bool early{};   ///< takes what comes within reach while it still moves
 };
 
 /// A box that stands where it is.
@@ -175,6 +181,10 @@ class PersonModel {
   bool offered(const PersonView&, int side) const;
   bool out_of_hand(const PersonView&) const;
   void choose_hand(const PersonView&);
+  void get_ready(double dt, const PersonView&);
+  bool has_changed_hands() const;
+  Side preferred_side() const;
+  double behaviour_time() const;
   Vector3 grasp_point(const PersonView&) const;
   Vector3 nearest_hold(const PersonView&, const Vector3& from) const;
   Vector3 at_contact(const Vector3& feet) const;
@@ -200,7 +210,10 @@ class PersonModel {
       placed_{false};
   bool came_once_{false};  // the first reach or offer is over
   double step_clock_{0};   // of the sidestep
-  double ignored_{0};      // the offer, so long [s]
+  // When the robot first had the object, by the clock of the person [s]; infinity: not yet.
+  double carried_since_{std::numeric_limits<double>::infinity()};
+  double ready_{0};    // fraction of the time of raising the hand
+  double ignored_{0};  // the offer, so long [s]
   Announcement announcement_{Announcement::none};
   double announced_at_{0};  // by the clock of the person [s]
   int steps_nearer_{0};

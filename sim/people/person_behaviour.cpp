@@ -28,6 +28,9 @@ constexpr double kBend = 0.01;  // ... where the arm need not bend for it by mor
 // [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it,
 // and lower with every step away from there.
 constexpr double kAbove = 0.12, kBeside = 0.12;
+// Who waits for something raises a hand so long [s], to so far ahead of the shoulder and below it,
+// over the stature: the forearm level.
+constexpr double kReadyTime = 0.7, kReadyAhead = 0.18, kReadyBelow = 0.19;
 // Who takes something draws it away from the robot's hand before it is lifted: within so long [s],
 // and from so far off on [m].
 constexpr double kLift = 1.2, kClearOfHand = 0.30, kOffHand = 0.15;
@@ -139,7 +142,7 @@ void PersonModel::offer(double dt, const PersonView& view) {
       settings_.behaviour.sidestep = step;
       home_aside_ = aside_;
       step_clock_ = 0;
-      settings_.behaviour.sidestep_at = clock_;
+      settings_.behaviour.sidestep_at = behaviour_time();
     }
     enter(PersonPhase::offering);
   }
@@ -183,6 +186,39 @@ void PersonModel::offer_in_motion(double dt, const PersonView& view) {
   hand_target_ = from_ + s * (moving_->position() + turned - from_);
 }
 
+/// Returns the time that sidestep and change of hand are counted in [s].
+double PersonModel::behaviour_time() const {
+  return settings_.behaviour.from_carry ? clock_ - carried_since_ : clock_;
+}
+
+bool PersonModel::has_changed_hands() const {
+  return behaviour_time() >= settings_.behaviour.changes_hand_at;
+}
+
+Side PersonModel::preferred_side() const {
+  const Side usual = settings_.left_handed ? Side::left : Side::right;
+  return has_changed_hands() ? other_side(usual) : usual;
+}
+
+/// Raises the preferred hand before the body while the robot has the object, or the other one where
+/// the preferred does not reach and that one is free. A hand that was raised is lowered first.
+void PersonModel::get_ready(double dt, const PersonView& view) {
+  Side wanted = preferred_side();
+  const bool is_carried = view.object != nullptr && view.held_by_robot;
+  if (is_carried && !has_changed_hands() && !offered(view, wanted == Side::left ? 0 : 1) &&
+      offered(view, wanted == Side::left ? 1 : 0))
+    wanted = other_side(wanted);
+  const bool is_raised = is_carried && side_ == wanted && !refusing_;
+  ready_ = std::clamp(ready_ + (is_raised ? dt : -dt) / kReadyTime, 0.0, 1.0);
+  hand_active_ = ready_ > 0;
+  if (!hand_active_) side_ = wanted;
+  const Vector3 rest =
+      feet_ + aside_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[index()]];
+  const Vector3 raised = shoulder(index()) +
+                         settings_.stature * (kReadyAhead * forward() - Vector3(0, 0, kReadyBelow));
+  hand_target_ = rest + min_jerk(ready_) * (raised - rest);
+}
+
 /// Not while both have hold of the object, or reach for it.
 void PersonModel::step_aside(double dt) {
   const double length = settings_.behaviour.sidestep.norm();
@@ -191,7 +227,7 @@ void PersonModel::step_aside(double dt) {
                     (phase_ == PersonPhase::offering && lost_time_ <= 0);
   const double duration = step_time(length);
   const bool under_way = step_clock_ > 0 && step_clock_ < duration;
-  if (clock_ < settings_.behaviour.sidestep_at || !(free || under_way)) return;
+  if (behaviour_time() < settings_.behaviour.sidestep_at || !(free || under_way)) return;
   step_clock_ += dt;
   aside_ = home_aside_ + min_jerk(step_clock_ / duration) * settings_.behaviour.sidestep;
 }

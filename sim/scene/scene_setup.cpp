@@ -278,13 +278,14 @@ class Reader {
 
   /// False: nobody this time.
   bool vary(PersonSettings& s, const config::PersonVariation& v) {
-    for (const double share : {v.absent(), v.left_handed(), v.hesitates(), v.withdraws(),
-                               v.looks_away(), v.sidesteps(), v.seated(), v.early()})
+    for (const double share :
+         {v.absent(), v.left_handed(), v.hesitates(), v.withdraws(), v.looks_away(), v.sidesteps(),
+          v.seated(), v.early(), v.readies(), v.changes_hand()})
       if (share < 0 || share > 1)
         fail("varies of " + s.id + ": a share is " + std::to_string(share) +
              ", must be between 0 and 1");
     for (const double size : {v.place(), v.turn(), v.stature(), v.hesitation(), v.away(),
-                              v.sidestep(), v.slowest(), v.begins_after()})
+                              v.sidestep(), v.slowest(), v.begins_after(), v.min_sidestep()})
       if (size < 0)
         fail("varies of " + s.id + ": " + std::to_string(size) + " must not be negative");
     if (v.fastest() < v.slowest())
@@ -313,7 +314,11 @@ class Reader {
     s.behaviour.withdraws = chance(v.withdraws());
     s.behaviour.look_away = some(v.looks_away(), v.away());
     s.behaviour.look_away_at = within(v.begins_after(), v.begins_before());
-    const double step = some(v.sidesteps(), v.sidestep()), way = within(M_PI_2, 3 * M_PI_2);
+    double step = some(v.sidesteps(), v.sidestep()), way = within(M_PI_2, 3 * M_PI_2);
+    if (step > 0 && v.min_sidestep() > 0)
+      step =
+          v.min_sidestep() + (step / v.sidestep() - 0.3) / 0.7 * (v.sidestep() - v.min_sidestep());
+    if (v.only_aside()) way = way < M_PI ? M_PI_2 : 3 * M_PI_2;
     s.behaviour.sidestep_at = within(v.begins_after(), v.begins_before());
     s.behaviour.seated = chance(v.seated());
     const Vector3 to_robot = (out_.T_world_base.translation() - s.feet)
@@ -322,7 +327,20 @@ class Reader {
     if (!s.behaviour.seated)
       s.behaviour.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
     s.behaviour.early = chance(v.early());
+    s.behaviour.from_carry = v.from_carry();
+    vary_hands(s, v);
     return !absent;
+  }
+
+  /// Draws from numbers of its own, so that the other draws are what they were.
+  void vary_hands(PersonSettings& s, const config::PersonVariation& v) const {
+    auto own = random_;
+    std::mt19937_64 random(own());
+    const auto unit = [&random] { return std::uniform_real_distribution<double>(0, 1)(random); };
+    s.behaviour.readies = unit() < v.readies();
+    const bool changes = unit() < v.changes_hand();
+    const double at = v.begins_after() + (v.begins_before() - v.begins_after()) * unit();
+    if (changes) s.behaviour.changes_hand_at = at;
   }
 
   SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage,

@@ -71,6 +71,8 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
     p.flexion = std::atan2(-forearm.dot(palm), forearm.dot(hand));
     p.radial = std::asin(std::clamp(-forearm.dot(thumb), -1.0, 1.0));
     p.elevation = std::acos(std::clamp((arm.shoulder.z() - p.elbow.z()) / arm.upper, -1.0, 1.0));
+    p.adduction =
+        -std::asin(std::clamp((p.elbow - arm.shoulder).dot(arm.outward) / arm.upper, -1.0, 1.0));
     Vector3 neutral = arm.shoulder - p.elbow;
     neutral -= forearm * forearm.dot(neutral);
     const Vector3 across = thumb - forearm * forearm.dot(thumb);
@@ -78,7 +80,8 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
     const WristRanges& r = kWristRanges;
     p.strain =
         std::max({share(p.flexion, r.flexion, r.extension), share(p.radial, r.radial, r.ulnar),
-                  share(p.pronation, r.pronation, r.supination), p.elevation / r.elevation});
+                  share(p.pronation, r.pronation, r.supination), p.elevation / r.elevation,
+                  p.adduction / r.adduction});
     if (!best || p.strain < best->strain) best = p;
   }
   return best;

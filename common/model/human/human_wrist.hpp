@@ -26,18 +26,21 @@ struct WristPosture {
   double radial{};                 ///< of the hand toward the thumb; negative: ulnar
   double pronation{};              ///< of the forearm from thumb up; negative: supination
   double elevation{};              ///< of the upper arm from hanging
-  /// The largest fraction of its range any of the four uses, 0: neutral, 1: at an end.
+  double adduction{};              ///< of the upper arm across the body; negative: outward
+  /// The largest fraction of its range any of the five uses; outward counts as none, 0: neutral, 1:
+  /// at an end.
   double strain{};
 };
 
 /// Ranges of the joints of a grown person: flexion 80, extension 70, radial 20, ulnar 30, pronation
-/// and supination 80 degrees (American Academy of Orthopaedic Surgeons); upper arm 100 degrees
-/// here, so that its comfortable part ends at 60 (ISO 11226).
+/// and supination 80 degrees, adduction of the upper arm 50 (American Academy of Orthopaedic
+/// Surgeons); elevation of the upper arm 100 degrees here, so that its comfortable part ends at 60
+/// (ISO 11226).
 struct WristRanges {
   /// All from the neutral position, > 0 [rad].
-  double flexion, extension, radial, ulnar, pronation, supination, elevation;
+  double flexion, extension, radial, ulnar, pronation, supination, elevation, adduction;
 };
-inline constexpr WristRanges kWristRanges{1.396, 1.222, 0.349, 0.524, 1.396, 1.396, 1.745};
+inline constexpr WristRanges kWristRanges{1.396, 1.222, 0.349, 0.524, 1.396, 1.396, 1.745, 0.873};
 
 /// Up to this fraction of the ranges an arm counts as comfortable.
 inline constexpr double kComfortableStrain = 0.6;

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/messages/names.hpp"
+
 namespace handsel {
 namespace {
 
@@ -39,23 +41,27 @@ Json task_json(const TaskOutcome& outcome) {
 }
 
 Json oracle_json(const GroundTruth& ground_truth) {
-  return {{"carrier", ground_truth.carrier},
-          {"held_s", ground_truth.held_time},
-          {"constraint_s", ground_truth.constraint_time},
-          {"contact_share", ground_truth.held_time > 0
-                                ? Json(1 - ground_truth.constraint_time / ground_truth.held_time)
-                                : Json(nullptr)},
-          {"max_lifted_m", ground_truth.max_lifted},
-          {"human_contact_before_release_s", ground_truth.human_contact_before_release},
-          {"human_alone_s", ground_truth.human_alone},
-          {"dropped", ground_truth.dropped},
-          {"handover_done", ground_truth.handover_done},
-          {"limit_violations", ground_truth.limit_violations},
-          {"collisions", ground_truth.self_or_scene_collisions},
-          {"contact_force_n", ground_truth.contact_force},
-          {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
-          {"commanders", ground_truth.commanders},
-          {"hash", ground_truth.hash}};
+  return {
+      {"carrier", ground_truth.carrier},
+      {"held_s", ground_truth.held_time},
+      {"constraint_s", ground_truth.constraint_time},
+      {"contact_share", ground_truth.held_time > 0
+                            ? Json(1 - ground_truth.constraint_time / ground_truth.held_time)
+                            : Json(nullptr)},
+      {"max_lifted_m", ground_truth.max_lifted},
+      {"human_contact_before_release_s", ground_truth.human_contact_before_release},
+      {"human_alone_s", ground_truth.human_alone},
+      {"dropped", ground_truth.dropped},
+      {"handover_done", ground_truth.handover_done},
+      {"taken_with", ground_truth.taken ? Json(name(ground_truth.taking_side)) : Json(nullptr)},
+      {"wrist_strain", ground_truth.taken ? Json(ground_truth.taking_wrist_strain) : Json(nullptr)},
+      {"arm_strain", ground_truth.taken ? Json(ground_truth.taking_arm_strain) : Json(nullptr)},
+      {"limit_violations", ground_truth.limit_violations},
+      {"collisions", ground_truth.self_or_scene_collisions},
+      {"contact_force_n", ground_truth.contact_force},
+      {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
+      {"commanders", ground_truth.commanders},
+      {"hash", ground_truth.hash}};
 }
 
 std::string format(const char* pattern, double a, double b = 0, double c = 0) {

@@ -48,12 +48,14 @@ Json traits_of(const NodeContext& context, const config::Scenario& scenario) {
     if (person.settings.id != scenario.tasks(0).human()) continue;
     const sim::BehaviourProfile& behaviour = person.settings.behaviour;
     Json traits = Json::array({behaviour.seated ? "seated" : "standing"});
-    const std::pair<bool, const char*> others[] = {{person.settings.left_handed, "left-handed"},
-                                                   {behaviour.hesitation > 0, "hesitates"},
-                                                   {behaviour.withdraws, "withdraws"},
-                                                   {behaviour.look_away > 0, "looks away"},
-                                                   {!behaviour.sidestep.isZero(), "steps aside"},
-                                                   {behaviour.early, "takes early"}};
+    const std::pair<bool, const char*> others[] = {
+        {person.settings.left_handed, "left-handed"},
+        {behaviour.hesitation > 0, "hesitates"},
+        {behaviour.withdraws, "withdraws"},
+        {behaviour.look_away > 0, "looks away"},
+        {!behaviour.sidestep.isZero(), "steps aside"},
+        {std::isfinite(behaviour.changes_hand_at), "changes hands"},
+        {behaviour.early, "takes early"}};
     for (const auto& [has, trait] : others)
       if (has) traits.push_back(trait);
     return traits;
@@ -203,6 +205,9 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                {"drops", ground_truth.dropped ? 1 : 0},
                {"lifted_m", ground_truth.max_lifted},
                {"contact_share", report["oracle"]["contact_share"]},
+               {"taken_with", report["oracle"]["taken_with"]},
+               {"wrist_strain", report["oracle"]["wrist_strain"]},
+               {"arm_strain", report["oracle"]["arm_strain"]},
                {"activations", activations},
                {"activations_of", activations_of},
                {"activations_at_pmin", fastest},

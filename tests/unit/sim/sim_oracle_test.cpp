@@ -2,9 +2,11 @@
 
 #include <random>
 
+#include "common/model/human/two_bones.hpp"
 #include "common/trajectory/stop.hpp"
 #include "sim/oracle/handover_oracle.hpp"
 #include "sim/oracle/limits_oracle.hpp"
+#include "sim/oracle/taking_oracle.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
 namespace handsel::sim {
@@ -264,6 +266,58 @@ TEST(SeparationOracleTest, approaching_fast_is_a_violation_standing_is_not) {
   driver.move(RobotModel::with(driver.q(), arm, *nearer), 0.25);
   EXPECT_LT(truth_of(world).separation, before);
   EXPECT_GT(truth_of(world).ssm_violations, 0u);
+}
+
+TEST(TakingOracleTest, the_arm_of_the_hand_that_takes_is_measured_at_the_release) {
+  const ObjectModel& mug = *library()("mug");
+  // Anna faces -x, her left is at -y. Her hand is on the side of the mug toward her, before the
+  // shoulder and `below` it.
+  const auto taken = [&](Side side, double below) {
+    const bool is_left = side == Side::left;
+    Person anna;
+    anna.joints = standing_body({1.5, 0, 0}, M_PI, 1.75);
+    const auto joint = [&](const std::string& name) -> Vector3& {
+      return anna.joints[static_cast<std::size_t>(body_joint_index((is_left ? "l_" : "r_") + name))]
+          .position;
+    };
+    const Vector3 shoulder = joint("shoulder");
+    const double upper = (joint("elbow") - shoulder).norm(),
+                 fore = (joint("wrist") - joint("elbow")).norm(),
+                 palm = (joint("hand") - joint("wrist")).norm();
+    joint("hand") = shoulder + Vector3(-0.35, 0, -below);
+    joint("wrist") = joint("hand") + palm * (shoulder - joint("hand")).normalized();
+    joint("elbow") = bend(shoulder, joint("wrist"), upper, fore, shoulder - Vector3::UnitZ());
+    const Pose T_world_mug = make_pose(joint("hand") - Vector3(0.07, 0, 0) - mug.com);
+    const Taker taker{&anna, side, &mug, T_world_mug,
+                      T_world_mug.translation() - Vector3(0.15, 0, 0)};
+    TakingOracle oracle;
+    GroundTruth truth;
+    oracle.observe(true, taker);
+    oracle.write(truth);
+    EXPECT_FALSE(truth.taken) << "the robot has it still";
+    oracle.observe(false, taker);
+    oracle.observe(false, std::nullopt);
+    oracle.write(truth);
+    EXPECT_TRUE(truth.taken);
+    EXPECT_EQ(truth.taking_side, side);
+    return truth;
+  };
+  const GroundTruth right = taken(Side::right, 0.3), left = taken(Side::left, 0.3),
+                    high = taken(Side::left, -0.15);
+  const auto strain = [](const GroundTruth& t) {
+    return std::max(t.taking_wrist_strain, t.taking_arm_strain);
+  };
+  EXPECT_GT(strain(right), 0);
+  EXPECT_LT(strain(right), 0.9);
+  EXPECT_NEAR(strain(right), strain(left), 0.1);
+  EXPECT_GT(high.taking_arm_strain, left.taking_arm_strain + 0.1);
+  EXPECT_GT(strain(high), strain(left) + 0.1);
+  TakingOracle put_down;
+  put_down.observe(true, std::nullopt);
+  put_down.observe(false, std::nullopt);
+  GroundTruth truth;
+  put_down.write(truth);
+  EXPECT_FALSE(truth.taken);
 }
 
 TEST(HandoverOracleTest, demands_lift_contact_and_a_second_alone) {

@@ -183,6 +183,50 @@ TEST(SimPerson, giver_who_moves_and_is_ignored_then_holds_it_out_anew_upright) {
   EXPECT_LT(turn(), 0.02);
 }
 
+TEST(SimPerson, raises_a_hand_changes_to_the_other_and_takes_with_that) {
+  PersonSettings settings;
+  settings.id = "anna";
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.behaviour.readies = true;
+  settings.behaviour.from_carry = true;
+  settings.behaviour.changes_hand_at = 2;
+  PersonModel person(settings);
+  const auto ahead = [&](const char* hand, const char* shoulder) {
+    return person.body().joints[joint(shoulder)].position.x() -
+           person.body().joints[joint(hand)].position.x();
+  };
+  double fastest = 0;
+  std::array<Vector3, 2> before{person.hand(0).T_world_body.translation(),
+                                person.hand(1).T_world_body.translation()};
+  const auto run = [&](double duration, const PersonView& view) {
+    for (double t = 0; t < duration; t += 0.001) {
+      person.step(0.001, view);
+      for (int s = 0; s < 2; ++s) {
+        const Vector3 now = person.hand(s).T_world_body.translation();
+        fastest = std::max(fastest, (now - before[static_cast<std::size_t>(s)]).norm() / 0.001);
+        before[static_cast<std::size_t>(s)] = now;
+      }
+    }
+  };
+  PersonView far = offer({0.2, 0.05, 1.05});
+  far.held_by_robot = false;
+  run(3, far);
+  EXPECT_LT(ahead("r_hand", "r_shoulder"), 0.1) << "the robot has nothing yet";
+  far.held_by_robot = true;
+  run(1.5, far);
+  EXPECT_GT(ahead("r_hand", "r_shoulder"), 0.2);
+  EXPECT_LT(ahead("l_hand", "l_shoulder"), 0.1);
+  run(2.5, far);
+  EXPECT_LT(ahead("r_hand", "r_shoulder"), 0.1);
+  EXPECT_GT(ahead("l_hand", "l_shoulder"), 0.2);
+  for (int i = 0; i < 40 && person.phase() != PersonPhase::pulling; ++i)
+    run(0.1, offer({0.95, 0.05, 1.05}));
+  EXPECT_EQ(person.phase(), PersonPhase::pulling);
+  EXPECT_EQ(person.side(), Side::left);
+  EXPECT_LT(fastest, 2.5) << "a hand jumps";
+}
+
 TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
   PersonSettings settings = giver();
   settings.feet = Vector3(1.35, 0, 0);
