@@ -10,6 +10,7 @@
 #include "common/base/errors.hpp"
 #include "common/base/time.hpp"
 #include "common/geometry/pose.hpp"
+#include "common/messages/side.hpp"
 #include "common/trajectory/trajectory.hpp"
 
 namespace handsel {
@@ -165,7 +166,8 @@ struct Contact {
 
 /// A grasp of a person's hand beside that of the robot's hand on the same object.
 struct PartnerGrasp {
-  std::uint64_t id{};  ///< unique per object and hand
+  std::uint64_t id{};      ///< unique per object and hand
+  Side side{Side::right};  ///< whether the hand is a left or a right one
   /// Wrist of the person's hand in the object frame: z along the fingers, x out of the palm.
   Pose T_object_wrist{Pose::Identity()};
   double opposition{};  ///< angle between the directions of the two wrists [rad]
@@ -193,7 +195,8 @@ struct Grasp {
   Vector3 platform{Vector3::Zero()};
   /// Fraction of the object that its receiver (else the robot's head) sees past the hand.
   double visible{};
-  /// Right hands of the person it is for that find room beside it, best first.
+  /// Hands of the person it is for that find room beside it: the right hands first, of each side
+  /// the best first.
   std::vector<PartnerGrasp> partners;
 };
 

@@ -9,6 +9,7 @@
 #include "common/base/errors.hpp"
 #include "common/base/time.hpp"
 #include "common/geometry/pose.hpp"
+#include "common/messages/side.hpp"
 
 namespace handsel {
 
@@ -171,7 +172,8 @@ struct ActionStatus {
   Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
   /// Until the object changes hands, as foreseen [s].
   double time_to_handover{std::numeric_limits<double>::infinity()};
-  bool has_partner{};  ///< the handover is planned for a grasp of the person
+  bool has_partner{};              ///< the handover is planned for a grasp of the person
+  Side partner_side{Side::right};  ///< hand of the person that it is planned for; if has_partner
   /// Wrist of the person's hand at the handover: z along the fingers, x out of the palm; world.
   Pose T_world_partner_wrist{Pose::Identity()};
   /// Largest fraction of its range that wrist or arm of the person uses there.

@@ -76,10 +76,10 @@ struct TopicRow {
   X(TrajectoryRequest, "trajectory_request", request, 0, 0, 2621440, "manipulation_planner ros2_lane", "trajectory_planner") \
   X(TrajectoryReply, "trajectory_reply", reply, 0, 0, 5505024, "trajectory_planner", "manipulation_planner ros2_lane") \
   X(GraspRequest, "grasp_request", request, 0, 0, 1024, "manipulation_planner", "grasp_planner") \
-  X(GraspReply, "grasp_reply", reply, 0, 0, 1048576, "grasp_planner", "manipulation_planner") \
-  X(GraspCandidates, "grasp_candidates", advice, 2, 0, 1048576, "grasp_planner", "bridge") \
+  X(GraspReply, "grasp_reply", reply, 0, 0, 1179648, "grasp_planner", "manipulation_planner") \
+  X(GraspCandidates, "grasp_candidates", advice, 2, 0, 1179648, "grasp_planner", "bridge") \
   X(RegraspRequest, "regrasp_request", request, 0, 0, 1024, "manipulation_planner", "grasp_planner") \
-  X(RegraspReply, "regrasp_reply", reply, 0, 0, 393216, "grasp_planner", "manipulation_planner") \
+  X(RegraspReply, "regrasp_reply", reply, 0, 0, 425984, "grasp_planner", "manipulation_planner") \
   X(StateQuery, "state_query", request, 0, 0, 4194304, "handsel ros2_lane", "collision_checker") \
   X(StateVerdict, "state_verdict", reply, 0, 0, 6144, "collision_checker", "handsel ros2_lane") \
   X(ComponentHealth, "component_health", health, 10, 0.3, 65536,\

@@ -24,6 +24,7 @@ void describe(WireIo& io, Contact& m, handsel_Contact& w) {
 
 void describe(WireIo& io, PartnerGrasp& m, handsel_PartnerGrasp& w) {
   io.integer("id", m.id, w.id);
+  io.choice("side", m.side, w.side, kSideNames);
   io.pose("T_object_wrist", m.T_object_wrist, w.T_object_wrist);
   io.number("opposition", m.opposition, w.opposition, {0, 3.1416});
   io.number("quality", m.quality, w.quality, {-1e3, 1e3});
@@ -44,7 +45,7 @@ void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
   io.flag("has_platform", m.has_platform, w.has_platform);
   io.point("platform", m.platform, w.platform);
   io.number("visible", m.visible, w.visible, {0, 1});
-  io.list("partners", m.partners, w.partners, 4, true);
+  io.list("partners", m.partners, w.partners, 8, true);
   io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0,
            "pregrasp_joints", "has not as many values as hand_joints");
   io.check(m.hand_effort.size() == m.hand_joints.size() || m.hand_effort.size() == 0, "hand_effort",

@@ -74,6 +74,7 @@ void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
   io.point("exchange_point", m.exchange_point, w.exchange_point);
   io.horizon("time_to_handover", m.time_to_handover, w.time_to_handover, 0);
   io.flag("has_partner", m.has_partner, w.has_partner);
+  io.choice("partner_side", m.partner_side, w.partner_side, kSideNames);
   io.pose("T_world_partner_wrist", m.T_world_partner_wrist, w.T_world_partner_wrist);
   io.number("partner_strain", m.partner_strain, w.partner_strain, {0, 1e3});
   io.choice("failure", m.failure, w.failure, kActionFailureNames);

@@ -15,6 +15,8 @@ struct ArmGrasps {
   std::shared_ptr<GraspCache> cache;  ///< grasp lists of that hand, made when first asked for
   /// Which grasps of a person go with those; nullptr: no hand of a person is known.
   std::shared_ptr<TransferCache> transfers{};
+  /// The same of the left hand of a person; `transfers` is of the right one.
+  std::shared_ptr<TransferCache> left_transfers{};
 };
 
 }  // namespace handsel::grasp_planner

@@ -23,6 +23,18 @@ void ListPreparation::run(const Work& work) {
       });
 }
 
+void ListPreparation::prepare_pairs(const std::shared_ptr<GraspCache>& cache,
+                                    const std::shared_ptr<TransferCache>& transfers,
+                                    const ObjectModel& model) {
+  run([cache, transfers, &model](const std::function<bool()>& cancelled) {
+    const auto page = cache->page(model, cancelled);
+    const auto taken = page ? transfers->taker_entry(model, cancelled) : nullptr;
+    const auto table = taken ? transfers->table(model, *page, cancelled) : nullptr;
+    return table ? kReadList + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs))
+                 : Duration{};
+  });
+}
+
 void ListPreparation::prepare(const Scene& scene) {
   for (const SceneObject& o : scene.objects) {
     const ObjectModel* model = objects_(o.model);
@@ -33,15 +45,8 @@ void ListPreparation::prepare(const Scene& scene) {
         return page ? kReadList : Duration{};
       });
     for (const ArmGrasps& arm : arms_) {
-      if (!arm.transfers) continue;
-      run([cache = arm.cache, transfers = arm.transfers,
-           model](const std::function<bool()>& cancelled) {
-        const auto page = cache->page(*model, cancelled);
-        const auto taken = page ? transfers->taker_entry(*model, cancelled) : nullptr;
-        const auto table = taken ? transfers->table(*model, *page, cancelled) : nullptr;
-        return table ? kReadList + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs))
-                     : Duration{};
-      });
+      for (const auto& transfers : {arm.transfers, arm.left_transfers})
+        if (transfers) prepare_pairs(arm.cache, transfers, *model);
     }
   }
 }

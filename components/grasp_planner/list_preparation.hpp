@@ -27,6 +27,8 @@ class ListPreparation {
  private:
   using Work = std::function<Duration(const std::function<bool()>& cancelled)>;
   void run(const Work& work);
+  void prepare_pairs(const std::shared_ptr<GraspCache>& cache,
+                     const std::shared_ptr<TransferCache>& transfers, const ObjectModel& model);
 
   Bus& bus_;
   ObjectLibrary objects_;

@@ -20,14 +20,14 @@ GraspListSettings taker_settings(const settings::GraspPlannerSettings& text) {
   return s;
 }
 
-/// Returns the transfers from a hand of the robot to that of a person; nullptr: no such hand is
-/// known.
+/// Returns the transfers from a hand of the robot to that of a person, described under `name`;
+/// nullptr: no such hand is known.
 std::shared_ptr<TransferCache> make_transfer_cache(const settings::GraspPlannerSettings& text,
+                                                   const std::string& name,
                                                    const std::shared_ptr<const HandGeometry>& robot,
                                                    const GraspStore& store) {
-  if (text.taker.empty()) return nullptr;
-  const auto taker =
-      std::make_shared<const HandGeometry>(HandModel::load(hand_description(text.taker)));
+  if (name.empty()) return nullptr;
+  const auto taker = std::make_shared<const HandGeometry>(HandModel::load(hand_description(name)));
   return std::make_shared<TransferCache>(robot, taker, taker_settings(text), store);
 }
 
@@ -67,7 +67,8 @@ std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem:
     one.hand_geometry =
         std::make_shared<const HandGeometry>(HandModel::load(hand_description(arm.hand)));
     one.cache = std::make_shared<GraspCache>(one.hand_geometry, lists, store);
-    one.transfers = make_transfer_cache(text, one.hand_geometry, store);
+    one.transfers = make_transfer_cache(text, text.taker, one.hand_geometry, store);
+    one.left_transfers = make_transfer_cache(text, text.taker_left, one.hand_geometry, store);
     arms.push_back(std::move(one));
   }
   return arms;

@@ -65,8 +65,9 @@ void Node::choose(const GraspRequest& request, bool reply) {
   if (work) candidates_.on_choice(object->T_world_object);
   const std::size_t arm = work ? arm_of(request, arms_) : 0;
   bus_.run_job(
-      [cache = arms_[arm].cache, transfers = arms_[arm].transfers, chooser = choosers_[arm],
-       request, scene = scene_, people = people_, model, result, work](const CancelToken& token) {
+      [cache = arms_[arm].cache, transfers = arms_[arm].transfers,
+       left_transfers = arms_[arm].left_transfers, chooser = choosers_[arm], request,
+       scene = scene_, people = people_, model, result, work](const CancelToken& token) {
         if (!work) return Duration{};
         const auto cancelled = [&token] { return token.cancelled(); };
         try {
@@ -76,10 +77,13 @@ void Node::choose(const GraspRequest& request, bool reply) {
             return Duration{};
           }
           const auto table = transfers ? transfers->known(model->name) : nullptr;
+          const auto left = left_transfers ? left_transfers->known(model->name) : nullptr;
           const Choice choice = chooser->choose(
               {request, page->list, *page->object, scene, people, cancelled, table.get()});
           write(choice, page->list, *result);
-          if (table && !request.for_human.empty()) add_partners(page->list, *table, *result);
+          if (request.for_human.empty()) return choice_time(choice);
+          if (table) add_partners(page->list, *table, Side::right, *result);
+          if (left) add_partners(page->list, *left, Side::left, *result);
           return choice_time(choice);
         } catch (const ConfigError& e) {
           result->reason = e.what();

@@ -39,6 +39,7 @@ struct Parts {
   Worker worker;                                   ///< long computations
   ActiveArm arm;                                   ///< the arm in use
   HeldObject held;                                 ///< what its hand holds
+  ReceiverHands receiver_hands;                    ///< of the person to give to, as last seen
   ControllerLink link;                             ///< commands to the controller
   HandCommander hand;                              ///< commands to its hand
   RetreatPlanner retreat;                          ///< away from people

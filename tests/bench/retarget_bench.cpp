@@ -26,6 +26,25 @@ constexpr unsigned kSeed = 21;
 constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
 constexpr double kUnderWay = 0.4;  // share of the time of the carrying motion when it is left
 
+/// Grasps of either hand of a person from four sides of an upright object, the thumb up.
+std::vector<PartnerGrasp> grasps_of_both_hands() {
+  std::vector<PartnerGrasp> grasps;
+  for (const Side side : {Side::right, Side::left}) {
+    for (int k = 0; k < 4; ++k) {
+      const double yaw = 1.5707963 * k, sign = side == Side::right ? 1 : -1;
+      PartnerGrasp grasp;
+      grasp.id = grasps.size();
+      grasp.side = side;
+      const Vector3 fingers(std::cos(yaw), std::sin(yaw), 0);
+      const Vector3 palm = sign * Vector3(-std::sin(yaw), std::cos(yaw), 0);
+      grasp.T_object_wrist.linear() << palm, fingers.cross(palm), fingers;
+      grasp.T_object_wrist.translation() = -0.12 * fingers;
+      grasps.push_back(grasp);
+    }
+  }
+  return grasps;
+}
+
 int run(int cases) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
   const Group& arm = robot.require_group("arm");
@@ -52,12 +71,17 @@ int run(int cases) {
   const auto tool_at = [&](const Vector& q) {
     return Pose(robot.link_pose(q, robot.tool_link()) * attachment.T_tool_object);
   };
-  const auto choose = [&](const HumanState& people, const Vector& q) {
+  const auto choose_with = [&](const HumanState& people, const Vector& q,
+                               const std::vector<PartnerGrasp>& partners) {
     const Pose T_world_object = tool_at(q);
     const manipulation_planner::OtpQuery query{
-        scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}, {}};
+        scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}, partners};
     return manipulation_planner::find_otp(robot, robot.require_group("arm"), query, q, settings);
   };
+  const auto choose = [&](const HumanState& people, const Vector& q) {
+    return choose_with(people, q, {});
+  };
+  const std::vector<PartnerGrasp> partners = grasps_of_both_hands();
   const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes,
                           const Vector& start) {
     TrajectoryRequest request;
@@ -71,7 +95,7 @@ int run(int cases) {
 
   std::mt19937 engine(kSeed);
   std::uniform_real_distribution<double> unit(0, 1);
-  Times point, path, motion, join, whole, anew;
+  Times point, pairs, path, motion, join, whole, anew;
   int tried = 0, led = 0, led_anew = 0;
   for (int k = 0; k < cases; ++k) {
     const Vector3 feet{1.35 + 0.3 * unit(engine), -0.4 + 0.8 * unit(engine), 0};
@@ -108,6 +132,7 @@ int run(int cases) {
       put(after);
       search = choose(after, problem.start);
     });
+    pairs.add(seconds([&] { choose_with(after, problem.start, partners); }));
     goals_of_search();
     if (!problem.goals.empty()) {
       const double t_path = seconds([&] {
@@ -142,11 +167,16 @@ int run(int cases) {
   std::printf("seed %u, %d cases: led to the new point %d, from rest %d\n", kSeed, tried, led,
               led_anew);
   point.print("exchange point");
+  pairs.print("point, both hands");
   path.print("path");
   motion.print("soft motion");
   join.print("joining what runs");
   whole.print("retarget while moving");
   anew.print("planned anew from rest");
+  std::printf(
+      "ratio to planned anew, exchange point with the grasps of both hands: median %.3f, p99 "
+      "%.3f\n",
+      pairs.at(0.5) / anew.at(0.5), pairs.at(0.99) / anew.at(0.99));
   std::printf("ratio of medians, planned anew / retarget: %.2f\n", anew.at(0.5) / whole.at(0.5));
   return 0;
 }

@@ -5,7 +5,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::size_t kMaxPartners = 4;  // of a grasp on the wire
+constexpr std::size_t kMaxPartners = 4;  // of a grasp and a hand of the person on the wire
 
 }  // namespace
 
@@ -54,17 +54,16 @@ void write(const Choice& choice, const GraspList& list, GraspReply& reply) {
   if (choice.grasps.empty()) reply.reason = choice.why_none(list);
 }
 
-void add_partners(const GraspList& list, const TransferTable& pairs, GraspReply& reply) {
+void add_partners(const GraspList& list, const TransferTable& pairs, Side side, GraspReply& reply) {
   for (Grasp& grasp : reply.grasps) {
     const auto listed = std::find_if(list.grasps.begin(), list.grasps.end(),
                                      [&](const auto& one) { return one.grasp.id == grasp.id; });
     if (listed == list.grasps.end()) continue;
     const auto index = static_cast<std::size_t>(listed - list.grasps.begin());
-    for (const TransferPartner& partner : pairs.partners(index)) {
-      if (grasp.partners.size() == kMaxPartners) break;
-      grasp.partners.push_back(
-          {partner.id, partner.T_object_wrist, partner.opposition, partner.quality});
-    }
+    const std::vector<TransferPartner>& partners = pairs.partners(index);
+    for (std::size_t i = 0; i < std::min(kMaxPartners, partners.size()); ++i)
+      grasp.partners.push_back({partners[i].id, side, partners[i].T_object_wrist,
+                                partners[i].opposition, partners[i].quality});
   }
 }
 

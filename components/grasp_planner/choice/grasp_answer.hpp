@@ -28,8 +28,9 @@ std::string objection(const GraspRequest& request, const Scene& scene, const Rob
 void write(const Choice& choice, const GraspList& list, GraspReply& reply);
 
 /// Adds to each grasp of the reply the grasps of the person that find room beside it. `list`: of
-/// the robot's hand; `pairs`: of this list and the hand of the person.
-void add_partners(const GraspList& list, const TransferTable& pairs, GraspReply& reply);
+/// the robot's hand; `pairs`: of this list and the hand of the person, which is
+/// that of `side`.
+void add_partners(const GraspList& list, const TransferTable& pairs, Side side, GraspReply& reply);
 
 /// Returns the modelled time of the work, from its counts: about what one core needs.
 Duration choice_time(const Choice& choice);

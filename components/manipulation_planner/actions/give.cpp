@@ -18,7 +18,7 @@ MotionSpec carry_motion(const Parts& parts, const std::string& object, const Otp
   carry.speed = parts.settings.carry_speed;
   carry.allowed = {object};
   carry.yields_to = receiver.id;
-  aim_at(search, receiver, carry);
+  aim_at(search, receiver, parts.receiver_hands, carry);
   return carry;
 }
 
@@ -70,7 +70,7 @@ bool is_drawn_out(const Parts& parts, const std::string& object) {
 /// Offers the object until the receiver takes it; else the hand keeps it.
 Routine<Outcome> offer(Parts& parts, const std::string& object, const std::string& receiver) {
   parts.action.phase = ActionPhase::offer;
-  show_offered(parts, receiver, parts.action);
+  show_offered(parts, receiver);
   parts.action.exchange_engaged = true;
   const Vector open = opening(parts);
   const double timeout = parts.settings.offer_timeout;
@@ -108,6 +108,7 @@ Routine<Outcome> give(Parts& parts, const std::string& object, const std::string
         : Outcome::failure("person " + human + " is not in sight", ActionFailure::not_visible);
   const std::string receiver = parts.now.person(human)->id;
   parts.action.human = receiver;
+  parts.receiver_hands = {};
   // In the hand, yet not borne by it: somebody has hold of the object already.
   const SceneObject* now = parts.now.object(object);
   const bool is_taken =

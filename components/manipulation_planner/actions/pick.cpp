@@ -14,6 +14,7 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kPickRetryPause = 0.5;  // before the person's reach is checked again [s]
+constexpr double kFullStrain = 1;        // of a wrist at an end of its ranges
 constexpr int kRounds = 2;               // of asking for grasps
 constexpr int kMaxExecuted = 3;          // grasps, after which the object may have moved
 
@@ -35,18 +36,24 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
   settings.exchange_goals = 1;
   return [result = std::move(result), grasps, settings, person, T_world_object,
           robot = parts.arm.shared_robot(), arm = parts.arm.group(), scene = parts.now.scene(),
-          layers = parts.now.layers(), q = parts.now.set_point()] {
+          layers = parts.now.layers(), q = parts.now.set_point(),
+          hands = hands_of(person, parts.now.scene(), parts.now.T_world_base().translation(),
+                           parts.settings)] {
+    const bool has_pairs = std::any_of(grasps.begin(), grasps.end(),
+                                       [](const Grasp& grasp) { return !grasp.partners.empty(); });
     for (std::size_t i = 0; i < grasps.size(); ++i) {
+      // Beside this one no hand of the person finds room, beside another one does.
+      const double strain = has_pairs && grasps[i].partners.empty() ? kFullStrain : 0.0;
       const Pose T_tool_object = grasps[i].T_object_hand.inverse();
       const std::vector<Vector3> barred = barred_directions(grasps[i]);
       const OtpQuery query{
-          scene, person, layers, T_world_object, T_tool_object, barred, grasps[i].partners};
+          scene, person, layers, T_world_object, T_tool_object, barred, grasps[i].partners, hands};
       const OtpSearch search = find_otp(*robot, arm, query, q, settings);
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
       else
-        result->givable.push_back(
-            {i, search.poses.front().cost + settings.w_grasp_rank * static_cast<double>(i)});
+        result->givable.push_back({i, search.poses.front().cost + settings.w_wrist * strain +
+                                          settings.w_grasp_rank * static_cast<double>(i)});
     }
   };
 }

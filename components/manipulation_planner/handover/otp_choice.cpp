@@ -1,19 +1,48 @@
 #include "components/manipulation_planner/handover/otp_choice.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 
+#include "common/cost/person_frame.hpp"
 #include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/parts.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinStep = 0.1;   // a receiver who moved less is where they were [m]
-constexpr double kMinGain = 0.05;  // cost that another object transfer point must save
+constexpr double kSameGoal = 0.03;  // max norm: a configuration this near to a goal is that [rad]
 
 const Vector3& trunk_of(const Person& person) {
   return person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+}
+
+ReceiverTarget target_of(const Person& person, const ReceiverHands& hands) {
+  const Vector3 facing = torso_axes(person).col(0).cwiseProduct(Vector3(1, 1, 0));
+  return {person.id, trunk_of(person), facing.stableNormalized(), hands};
+}
+
+/// Looks at the hands of the receiver again.
+const ReceiverHands& look_at_hands(Parts& parts, const Person& receiver) {
+  parts.receiver_hands =
+      hands_of(receiver, parts.now.scene(), parts.now.T_world_base().translation(), parts.settings,
+               &parts.receiver_hands);
+  return parts.receiver_hands;
+}
+
+/// Returns whether the receiver has gone away, turned, or changed hands.
+bool has_changed(const ReceiverTarget& before, const ReceiverTarget& now,
+                 const settings::ManipulationPlannerSettings& settings) {
+  return (now.p_world_torso - before.p_world_torso).norm() >= settings.follow_step ||
+         std::acos(std::clamp(now.facing.dot(before.facing), -1.0, 1.0)) >= settings.follow_turn ||
+         now.hands != before.hands;
+}
+
+bool is_goal_of(const MotionSpec& motion, const Vector& q) {
+  return std::any_of(motion.goals.begin(), motion.goals.end(), [&](const Vector& goal) {
+    return (goal - q).lpNorm<Eigen::Infinity>() < kSameGoal;
+  });
 }
 
 }  // namespace
@@ -36,8 +65,8 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
        T_now = parts.held.T_world_object(),
        barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{},
        partners = grasp ? grasp->partners : std::vector<PartnerGrasp>{},
-       settings = parts.settings] {
-        const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred, partners};
+       hands = look_at_hands(parts, *person), settings = parts.settings] {
+        const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred, partners, hands};
         choice->search = find_otp(*robot, arm, query, q, settings);
         if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
       };
@@ -45,36 +74,58 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
   co_return *choice;
 }
 
-void show(const OtpPose& pose, ActionStatus& action) {
-  action.exchange_point = pose.T_world_object.translation();
-  action.has_partner = pose.partner.has_value();
-  action.T_world_partner_wrist = pose.partner ? pose.partner->T_world_wrist : Pose::Identity();
-  action.partner_strain = pose.partner ? pose.partner->strain : 0.0;
+namespace {
+
+void show(const std::optional<PartnerPose>& partner, ActionStatus& action) {
+  action.has_partner = partner.has_value();
+  action.partner_side = partner ? partner->side : Side::right;
+  action.T_world_partner_wrist = partner ? partner->T_world_wrist : Pose::Identity();
+  action.partner_strain = partner ? partner->strain : 0.0;
 }
 
-void show_offered(const Parts& parts, const std::string& receiver, ActionStatus& action) {
+/// Returns the easiest grasp of the receiver for what the hand holds, at a pose of it; nullopt:
+/// none is known, or none fits.
+std::optional<PartnerPose> partner_at(const Parts& parts, const Person& receiver,
+                                      const Pose& T_world_object) {
+  const auto& grasp = parts.held.grasp();
+  if (!grasp) return std::nullopt;
+  return easiest_partner(taking_arms(receiver, parts.receiver_hands, parts.settings),
+                         grasp->partners, T_world_object);
+}
+
+}  // namespace
+
+void show(const OtpPose& pose, ActionStatus& action) {
+  action.exchange_point = pose.T_world_object.translation();
+  show(pose.partner, action);
+}
+
+void show_offered(Parts& parts, const std::string& receiver) {
   OtpPose offered;
   offered.T_world_object = parts.held.T_world_object();
   const Person* person = parts.now.person(receiver);
-  const auto arm = person != nullptr ? human_arm(*person, Side::right) : std::nullopt;
-  const auto& grasp = parts.held.grasp();
-  if (arm && grasp)
-    offered.partner = easiest_partner(*arm, grasp->partners, offered.T_world_object);
-  show(offered, action);
+  if (person != nullptr) {
+    if (parts.settings.follow_receiver) look_at_hands(parts, *person);
+    offered.partner = partner_at(parts, *person, offered.T_world_object);
+  }
+  show(offered, parts.action);
 }
 
-void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion) {
+void aim_at(const OtpSearch& search, const Person& receiver, const ReceiverHands& hands,
+            MotionSpec& motion) {
   motion.goals.clear();
   for (const auto& pose : search.poses) motion.goals.push_back(pose.arm_joints);
-  motion.receiver = ReceiverTarget{receiver.id, trunk_of(receiver)};
+  motion.receiver = target_of(receiver, hands);
 }
 
 Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& goal) {
+  const auto& settings = parts.settings;
   const std::string receiver = motion.receiver->person;
   const Person* person = parts.now.person(receiver);
-  if (person == nullptr) co_return false;
-  const Vector3 p_torso = trunk_of(*person);
-  if ((p_torso - motion.receiver->p_world_torso).norm() < kMinStep) co_return false;
+  if (!settings.follow_receiver || person == nullptr) co_return false;
+  const ReceiverTarget now = target_of(*person, look_at_hands(parts, *person));
+  const bool is_astray = parts.arm.at_rest() && !is_goal_of(motion, goal);
+  if (!is_astray && !has_changed(*motion.receiver, now, settings)) co_return false;
   const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), goal);
   const Pose T_world_object = parts.now.T_world_base() *
                               parts.arm.robot().link_pose(q, parts.arm.palm()) *
@@ -83,12 +134,17 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   person = parts.now.person(receiver);
   if (!choice.outcome.good || person == nullptr) co_return false;
   if (choice.search.poses.empty()) co_return !choice.present_cost;
-  if (choice.present_cost && *choice.present_cost <= choice.search.poses.front().cost + kMinGain) {
-    motion.receiver->p_world_torso = p_torso;
+  const double distance =
+      (T_world_object.translation() - parts.held.T_world_object().translation()).norm();
+  const double gain =
+      distance < settings.commit_distance ? settings.commit_gain : settings.follow_gain;
+  if (choice.present_cost && *choice.present_cost <= choice.search.poses.front().cost + gain) {
+    if (!is_goal_of(motion, goal)) motion.goals = {goal};
+    motion.receiver = now;
+    show(partner_at(parts, *person, T_world_object), parts.action);
     co_return false;
   }
-  aim_at(choice.search, *person, motion);
-  motion.receiver->p_world_torso = p_torso;
+  aim_at(choice.search, *person, now.hands, motion);
   show(choice.search.poses.front(), parts.action);
   co_return true;
 }

@@ -28,11 +28,14 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
 void show(const OtpPose& pose, ActionStatus& action);
 /// Reports where the object is offered now, and the easiest grasp of the receiver there: of
 /// several poses found, the arm goes to the one that it reaches first.
-void show_offered(const Parts& parts, const std::string& receiver, ActionStatus& action);
-/// Sets the goals of a motion to what was found for the receiver as they are now.
-void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion);
-/// Chooses other goals when the receiver has moved so far that `goal`, axes of the arm, is no good
-/// handover configuration any more. Returns whether it is none, even where there is no other.
+void show_offered(Parts& parts, const std::string& receiver);
+/// Sets the goals of a motion to what was found for the receiver as they are now. `hands`: of the
+/// receiver, as they were for the search.
+void aim_at(const OtpSearch& search, const Person& receiver, const ReceiverHands& hands,
+            MotionSpec& motion);
+/// Chooses other goals when the receiver has moved or turned so far, or has changed hands, that
+/// `goal`, axes of the arm, is no good handover configuration any more. Near the point more must be
+/// gained (`commit_distance`). Returns whether it is none, even where there is no other.
 Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& goal);
 
 }  // namespace handsel::manipulation_planner

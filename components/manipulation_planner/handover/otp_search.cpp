@@ -14,12 +14,12 @@ namespace {
 constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
 constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
-constexpr int kHeadings = 24;           // of the object at each place
-constexpr double kMinDistance = 0.05;   // between alternatives [m]
-constexpr double kMaxExtraCost = 0.25;  // of an alternative, over the best
-constexpr double kMaxBarred = 0.5;      // cosine of a finger and the person's pull
-constexpr double kNoPartner = 2;        // strain that counts where no grasp of the person fits
-constexpr double kMinFacing = -0.3;     // cosine: the hand must not come from the person's side
+constexpr int kHeadings = 24;          // of the object at each place
+constexpr double kMinDistance = 0.05;  // between alternatives [m]
+constexpr double kMaxExtraCost = 0.1;  // of an alternative, over the best
+constexpr double kMaxBarred = 0.5;     // cosine of a finger and the person's pull
+constexpr double kNoPartner = 2;       // strain that counts where no grasp of the person fits
+constexpr double kMinFacing = -0.3;    // cosine: the hand must not come from the person's side
 
 struct Candidate {
   Pose T_world_object;
@@ -53,7 +53,8 @@ class OtpCosts {
         settings_(settings),
         barred_(query.barred),
         partners_(query.partners),
-        right_arm_(human_arm(query.person, Side::right)),
+        taking_arms_(taking_arms(query.person, query.hands, settings)),
+        hands_(query.hands),
         p_now_(query.T_world_object.translation()),
         object_in_hand_(query.T_tool_object.linear().transpose() *
                         query.T_tool_object.translation()),
@@ -75,7 +76,7 @@ class OtpCosts {
   /// Adds up what speaks against a place; `cost` only of a good one.
   Place of_place(const Vector3& p, double& cost) const {
     if (furniture_.blocked_by(p) != nullptr || inside_box(scene_, p, 0.12)) return Place::blocked;
-    const double comfort = arm_comfort_cost(layers_.comfort_of(person_.id), arms_, p);
+    const double comfort = comfort_of_place(p);
     if (comfort >= 1) return Place::out_of_reach;
     const OutsideCost outside = layers_.outside_cost(p);
     if (outside.forbidden_by != nullptr) return Place::forbidden;
@@ -85,6 +86,18 @@ class OtpCosts {
            settings_.w_effort * (p - p_now_).norm() + outside.cost +
            settings_.w_preference * against_preference(p);
     return Place::good;
+  }
+  /// Cost of the arm that reaches the place: of the ready hand, where the other reaches too as
+  /// much as the least comfortable place of that one; 1: no free hand gets there.
+  double comfort_of_place(const Vector3& p) const {
+    constexpr double kBarelyReached = 0.99;
+    const double better = arm_comfort_cost(layers_.comfort_of(person_.id), arms_, p);
+    if (better >= 1) return 1;
+    if (hands_.left_free != hands_.right_free)
+      return std::max(better,
+                      arm_comfort_cost(person_, hands_.left_free ? Side::left : Side::right, p));
+    if (!hands_.ready) return better;
+    return std::clamp(arm_comfort_cost(person_, *hands_.ready, p), better, kBarelyReached);
   }
   /// Cost by the person's profile: the other side, another distance; 0 without a profile.
   double against_preference(const Vector3& p) const {
@@ -121,15 +134,17 @@ class OtpCosts {
     return settings_.w_legibility * ((1 - facing) / 2 + in_the_way);
   }
   /// Returns whether grasps of the person count: some are known, of a body whose arm is known.
-  bool has_partners() const { return !partners_.empty() && right_arm_ && settings_.w_wrist > 0; }
+  bool has_partners() const {
+    return !partners_.empty() && !taking_arms_.empty() && settings_.w_wrist > 0;
+  }
   /// Returns the easiest grasp of the person for an object at a pose; nullopt: there is none.
   std::optional<PartnerPose> partner_at(const Pose& T_world_object) const {
-    return easiest_partner(*right_arm_, partners_, T_world_object);
+    return easiest_partner(taking_arms_, partners_, T_world_object);
   }
   /// Cost of how the person has to hold wrist and arm.
   double of_partner(const std::optional<PartnerPose>& partner) const {
     if (!has_partners()) return 0;
-    return settings_.w_wrist * (partner ? partner->strain : kNoPartner);
+    return settings_.w_wrist * (partner ? partner->strain + partner->hand_cost : kNoPartner);
   }
 
  private:
@@ -139,7 +154,8 @@ class OtpCosts {
   const settings::ManipulationPlannerSettings& settings_;
   const std::vector<Vector3>& barred_;
   const std::vector<PartnerGrasp>& partners_;
-  std::optional<HumanArm> right_arm_;
+  std::vector<TakingArm> taking_arms_;
+  ReceiverHands hands_;
   Vector3 p_now_, object_in_hand_, toward_robot_;
   SimplifiedBody body_;
   ReachCheck furniture_;
@@ -254,15 +270,30 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
   return out;
 }
 
-std::optional<PartnerPose> easiest_partner(const HumanArm& arm,
+std::vector<TakingArm> taking_arms(const Person& person, const ReceiverHands& hands,
+                                   const settings::ManipulationPlannerSettings& settings) {
+  std::vector<TakingArm> arms;
+  for (const Side side : {Side::right, Side::left}) {
+    const std::optional<double> cost = hand_cost(hands, side, person.id, settings);
+    const std::optional<HumanArm> arm = human_arm(person, side);
+    if (cost && arm) arms.push_back({*arm, *cost});
+  }
+  return arms;
+}
+
+std::optional<PartnerPose> easiest_partner(const std::vector<TakingArm>& arms,
                                            const std::vector<PartnerGrasp>& partners,
                                            const Pose& T_world_object) {
   std::optional<PartnerPose> best;
-  for (const PartnerGrasp& partner : partners) {
-    const Pose T_world_wrist = T_world_object * partner.T_object_wrist;
-    const auto wrist = wrist_posture(arm, T_world_wrist);
-    if (!wrist || wrist->strain > 1 || (best && best->strain <= wrist->strain)) continue;
-    best = PartnerPose{partner.id, T_world_wrist, wrist->strain};
+  for (const TakingArm& taking : arms) {
+    for (const PartnerGrasp& partner : partners) {
+      if (partner.side != taking.arm.side) continue;
+      const Pose T_world_wrist = T_world_object * partner.T_object_wrist;
+      const auto wrist = wrist_posture(taking.arm, T_world_wrist);
+      if (!wrist || wrist->strain > 1) continue;
+      if (best && best->strain + best->hand_cost <= wrist->strain + taking.hand_cost) continue;
+      best = PartnerPose{partner.id, partner.side, T_world_wrist, wrist->strain, taking.hand_cost};
+    }
   }
   return best;
 }

@@ -13,14 +13,23 @@
 #include "common/messages/world.hpp"
 #include "common/model/human/human_wrist.hpp"
 #include "common/model/robot_model.hpp"
+#include "components/manipulation_planner/handover/receiver_hands.hpp"
 
 namespace handsel::manipulation_planner {
 
 /// A grasp of the person, where the object is offered.
 struct PartnerPose {
   std::uint64_t id{};                    ///< id of the grasp, see PartnerGrasp
+  Side side{Side::right};                ///< hand of the person
   Pose T_world_wrist{Pose::Identity()};  ///< wrist of the person's hand
   double strain{};                       ///< see WristPosture
+  double hand_cost{};                    ///< see TakingArm
+};
+
+/// An arm of a person that is free to take something.
+struct TakingArm {
+  HumanArm arm;        ///< where it starts, how long it is
+  double hand_cost{};  ///< added to the strain, as hand_cost() returns it
 };
 
 /// A pose in which an object is handed over.
@@ -47,8 +56,9 @@ struct OtpQuery {
   const Pose& T_world_object;          ///< where the object is now
   const Pose& T_tool_object;           ///< how the hand holds the object
   const std::vector<Vector3>& barred;  ///< as barred_directions() returns them
-  /// Right hands of the person that find room beside the robot's; empty: not known.
+  /// Hands of the person that find room beside the robot's; empty: not known.
   const std::vector<PartnerGrasp>& partners;
+  ReceiverHands hands{};  ///< which hands are free, and which is ready
 };
 
 /// Returns the directions, seen from the object, in which a hand that pinches stands (outward
@@ -56,9 +66,14 @@ struct OtpQuery {
 /// two fingers hold the object: they open away from it.
 std::vector<Vector3> barred_directions(const Grasp& grasp);
 
-/// Returns the grasp in which a person takes an object at `T_world_object` with the smallest strain
-/// of wrist and arm; nullopt: in none, wrist or arm do not get there.
-std::optional<PartnerPose> easiest_partner(const HumanArm& arm,
+/// Returns the arms with which a person can take something; empty: their body is not known, or both
+/// hands hold something.
+std::vector<TakingArm> taking_arms(const Person& person, const ReceiverHands& hands,
+                                   const settings::ManipulationPlannerSettings& settings);
+
+/// Returns the grasp in which a person takes an object at `T_world_object` with the smallest sum of
+/// strain of wrist and arm and cost of the hand; nullopt: in none, wrist or arm do not get there.
+std::optional<PartnerPose> easiest_partner(const std::vector<TakingArm>& arms,
                                            const std::vector<PartnerGrasp>& partners,
                                            const Pose& T_world_object);
 
@@ -66,7 +81,8 @@ std::optional<PartnerPose> easiest_partner(const HumanArm& arm,
 /// are searched [rad, m]. The object keeps its tilt; only its place and heading change. Places in,
 /// under or behind furniture as the person sees it, and those an outside layer forbids, are left
 /// out. The person must be able to draw the object toward them, and to grasp it with a wrist that
-/// is comfortable: the grasp of theirs with the smallest strain counts at each pose.
+/// is comfortable: the grasp of theirs with the smallest strain counts at each pose, of the hand
+/// that is ready where this is known. A hand that holds something takes nothing.
 OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
                    const Vector& q, const settings::ManipulationPlannerSettings& settings);
 

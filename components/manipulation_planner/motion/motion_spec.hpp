@@ -8,6 +8,7 @@
 
 #include "common/messages/planning.hpp"
 #include "common/messages/task.hpp"
+#include "components/manipulation_planner/handover/receiver_hands.hpp"
 #include "components/manipulation_planner/motion/motion_end.hpp"
 
 namespace handsel::manipulation_planner {
@@ -25,6 +26,8 @@ struct ObjectTarget {
 struct ReceiverTarget {
   std::string person;                      ///< id
   Vector3 p_world_torso{Vector3::Zero()};  ///< when the goals were chosen, world [m]
+  Vector3 facing{Vector3::UnitX()};        ///< of the torso then: level, unit, world
+  ReceiverHands hands{};                   ///< then
 };
 
 struct MotionSpec {

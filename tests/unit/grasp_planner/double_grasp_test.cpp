@@ -2,11 +2,14 @@
 // the pairs' own tests is used.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
 #include "common/collision/collision_world.hpp"
+#include "components/grasp_planner/choice/grasp_answer.hpp"
 #include "components/grasp_planner/pair/double_grasp.hpp"
 #include "tests/support/grasp_lists.hpp"
 
@@ -158,6 +161,53 @@ TEST(DoubleGrasps, of_passing_either_hand_gets_out_past_object_and_other_hand) {
       }
     }
   }
+}
+
+/// Returns the distance of a fingertip from the surface of the object [m].
+double tip_distance(const HandGeometry& hand, std::uint32_t finger, const Pose& T_object_hand,
+                    const Vector& q, const Graspable& object) {
+  const RobotModel& model = hand.hand.model();
+  const auto& tip = hand.hand.fingers()[finger];
+  return shape_distance(Shape(Sphere{tip.tip_radius}),
+                        T_object_hand * model.link_pose(q, model.link_index(tip.tip_link)),
+                        Shape(std::make_shared<TriangleMesh>(object.mesh())), Pose::Identity())
+      .distance;
+}
+
+TEST(DoubleGrasps, a_reply_pairs_either_hand_of_the_person_each_touching_the_object_and_not_ours) {
+  const HandOnObject& robot = hand_on_object("sah", "mug");
+  const std::map<Side, const HandOnObject*> human{
+      {Side::right, &hand_on_object("human_right", "mug")},
+      {Side::left, &hand_on_object("human_left", "mug")}};
+  GraspReply reply;
+  for (const ListedGrasp& listed : robot.list.grasps) reply.grasps.push_back(listed.grasp);
+  for (const Side side : {Side::right, Side::left})
+    add_partners(robot.list, TransferTable(side_of(robot), side_of(*human.at(side)), *robot.object),
+                 side, reply);
+  std::map<Side, int> checked;
+  for (const Grasp& ours : reply.grasps) {
+    std::map<Side, std::size_t> count;
+    for (const PartnerGrasp& partner : ours.partners) {
+      EXPECT_LE(++count[partner.side], 4U);
+      if (checked[partner.side] >= 60) continue;
+      const HandOnObject& hand = *human.at(partner.side);
+      const auto theirs = std::find_if(hand.list.grasps.begin(), hand.list.grasps.end(),
+                                       [&](const auto& g) { return g.grasp.id == partner.id; });
+      ASSERT_NE(theirs, hand.list.grasps.end());
+      const Vector& q = theirs->grasp.hand_joints;
+      EXPECT_GT(hands_distance(*robot.hand_geometry, ours.T_object_hand, ours.hand_joints,
+                               *hand.hand_geometry, partner.T_object_wrist, q),
+                0.0039);
+      // The fingers of a hand of the other side would not get to their contacts.
+      for (const Contact& contact : theirs->grasp.contacts)
+        EXPECT_LT(std::abs(tip_distance(*hand.hand_geometry, contact.finger, partner.T_object_wrist,
+                                        q, *robot.object)),
+                  0.004);
+      ++checked[partner.side];
+    }
+  }
+  EXPECT_GE(checked[Side::right], 30);
+  EXPECT_GE(checked[Side::left], 30);
 }
 
 TEST(DoubleGrasps, the_less_natural_arm_counts_and_grasps_out_of_reach_are_left_out) {

@@ -8,24 +8,28 @@
 
 #include "tests/support/cost_layer.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
+#include "tests/unit/manipulation_planner/partner_grasps.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
+using rig::from_all_sides;
+using rig::from_side;
+using rig::mirrored;
 using rig::Rig;
 
 class OtpSearchTest : public ::testing::Test {
  protected:
   OtpSearch find(const LayersNow& layers = {},
                  const std::vector<settings::PersonProfile>& people = {},
-                 const std::vector<PartnerGrasp>& partners = {}) {
+                 const std::vector<PartnerGrasp>& partners = {}, const ReceiverHands& hands = {}) {
     auto many = rig::settings();
     many.w_preference = 0.4;
     many.people = people;
     many.exchange_goals = 20;
     const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
                T_tool_mug = make_pose({0.08, 0.02, 0.23});
-    const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, partners};
+    const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, partners, hands};
     return find_otp(*rig_.robot, rig_.robot->require_group("arm"), query, rig_.q, many);
   }
   Rig rig_;
@@ -70,18 +74,6 @@ TEST_F(OtpSearchTest, is_where_the_profile_of_the_person_says) {
   EXPECT_EQ(find({}, {profile}).poses.front().cost, usual);
 }
 
-/// A grasp of a person's hand from one side of the object, its fingers level toward the object.
-PartnerGrasp from_side(double yaw) {
-  PartnerGrasp partner;
-  partner.id = 7;
-  const Vector3 fingers(std::cos(yaw), std::sin(yaw), 0), palm(-std::sin(yaw), std::cos(yaw), 0);
-  partner.T_object_wrist.linear().col(0) = palm;
-  partner.T_object_wrist.linear().col(1) = fingers.cross(palm);
-  partner.T_object_wrist.linear().col(2) = fingers;
-  partner.T_object_wrist.translation() = -0.12 * fingers;
-  return partner;
-}
-
 TEST_F(OtpSearchTest, turns_the_object_so_that_the_wrist_of_the_person_is_comfortable) {
   const OtpSearch without = find();
   ASSERT_FALSE(without.poses.empty()) << without.reason;
@@ -119,10 +111,121 @@ TEST_F(OtpSearchTest, takes_the_grasp_of_the_person_that_strains_the_wrist_least
   const OtpPose& pose = search.poses.front();
   ASSERT_TRUE(pose.partner);
   const auto arm = human_arm(anna_, Side::right);
+  EXPECT_EQ(pose.partner->side, Side::right);
   for (const PartnerGrasp& partner : partners)
     if (const auto wrist = wrist_posture(*arm, pose.T_world_object * partner.T_object_wrist)) {
       EXPECT_GE(wrist->strain, pose.partner->strain - 1e-9) << partner.id;
     }
+}
+
+TEST_F(OtpSearchTest, a_left_hand_strains_as_its_mirror_image_does) {
+  // Anna is symmetrical to the x-z plane of the world.
+  const std::vector<TakingArm> arms = taking_arms(anna_, {}, rig::settings());
+  ASSERT_EQ(arms.size(), 2U);
+  EXPECT_EQ(arms[0].hand_cost, 0);
+  EXPECT_GT(arms[1].hand_cost, 0) << "most people take with the right hand";
+  int fitting = 0;
+  for (int k = 0; k < 8; ++k) {
+    const PartnerGrasp right = from_side(2 * std::numbers::pi * k / 8);
+    const Pose T_right = make_pose({1.0, 0.15, 1.15}), T_left = make_pose({1.0, -0.15, 1.15});
+    const auto by_right = easiest_partner({arms[0]}, {right}, T_right),
+               by_left = easiest_partner({arms[1]}, {mirrored(right)}, T_left);
+    ASSERT_EQ(by_right.has_value(), by_left.has_value());
+    if (!by_right) continue;
+    ++fitting;
+    EXPECT_NEAR(by_right->strain, by_left->strain, 1e-3);
+    EXPECT_EQ(by_right->side, Side::right);
+    EXPECT_EQ(by_left->side, Side::left);
+    EXPECT_FALSE(easiest_partner({arms[0]}, {mirrored(right)}, T_left));
+  }
+  EXPECT_GE(fitting, 3);
+}
+
+TEST_F(OtpSearchTest, an_arm_across_the_body_strains_more_than_one_before_its_shoulder) {
+  const auto arm = human_arm(anna_, Side::right);
+  ASSERT_TRUE(arm);
+  const auto posture_at = [&](double aside) {
+    Pose T_world_wrist = make_pose(arm->shoulder + Vector3(-0.35, aside, -0.3));
+    // The fingers away from the shoulder, the thumb up.
+    const Vector3 fingers = Vector3(-0.35, aside, 0).normalized();
+    T_world_wrist.linear() << fingers.cross(-Vector3::UnitZ()), Vector3::UnitZ(), fingers;
+    return wrist_posture(*arm, T_world_wrist);
+  };
+  // She faces -x: her right shoulder is at +y.
+  const auto before = posture_at(0), across = posture_at(-0.25);
+  ASSERT_TRUE(before && across);
+  EXPECT_GT(across->adduction, before->adduction + 0.1);
+  EXPECT_GE(across->strain, across->adduction / kWristRanges.adduction - 1e-9);
+  EXPECT_GT(across->strain, before->strain + 0.05);
+}
+
+TEST_F(OtpSearchTest, the_hand_that_is_ready_changes_the_exchange_point_and_the_wrist) {
+  const std::vector<PartnerGrasp> partners = from_all_sides();
+  const auto plan = [&](Side ready) {
+    ReceiverHands hands;
+    hands.ready = ready;
+    const OtpSearch search = find({}, {}, partners, hands);
+    EXPECT_FALSE(search.poses.empty()) << search.reason;
+    return search.poses.front();
+  };
+  const OtpPose right = plan(Side::right), left = plan(Side::left);
+  ASSERT_TRUE(right.partner);
+  ASSERT_TRUE(left.partner);
+  EXPECT_EQ(right.partner->side, Side::right);
+  EXPECT_EQ(left.partner->side, Side::left);
+  EXPECT_FALSE(left.T_world_object.isApprox(right.T_world_object, 1e-3)) << "the same pose";
+  EXPECT_GT((left.partner->T_world_wrist.translation() - right.partner->T_world_wrist.translation())
+                .norm(),
+            0.05);
+  // What is planned for one hand is worse for the other.
+  const auto strain = [&](Side ready, const OtpPose& pose) {
+    ReceiverHands hands;
+    hands.ready = ready;
+    const auto partner =
+        easiest_partner(taking_arms(anna_, hands, rig::settings()), partners, pose.T_world_object);
+    return partner ? partner->strain + partner->hand_cost : 2.0;
+  };
+  EXPECT_GT(strain(Side::left, right), left.partner->strain);
+  EXPECT_GT(strain(Side::right, left), right.partner->strain);
+}
+
+TEST_F(OtpSearchTest, a_hand_that_holds_something_takes_nothing) {
+  ReceiverHands hands;
+  hands.right_free = false;
+  const OtpSearch search = find({}, {}, from_all_sides(), hands);
+  ASSERT_FALSE(search.poses.empty()) << search.reason;
+  for (const OtpPose& pose : search.poses) {
+    if (pose.partner) {
+      EXPECT_EQ(pose.partner->side, Side::left);
+    }
+    EXPECT_LT(arm_comfort_cost(anna_, Side::left, pose.T_world_object.translation()), 1);
+  }
+  hands.left_free = false;
+  EXPECT_TRUE(taking_arms(anna_, hands, rig::settings()).empty());
+}
+
+TEST_F(OtpSearchTest, the_ready_hand_is_the_one_extended_toward_the_robot) {
+  const settings::ManipulationPlannerSettings settings = rig::settings();
+  const auto hands = [&](const ReceiverHands* before) {
+    return hands_of(anna_, rig_.scene, Vector3::Zero(), settings, before);
+  };
+  const auto hand = [&](const char* name) -> Vector3& {
+    return anna_.joints[static_cast<std::size_t>(body_joint_index(name))].position;
+  };
+  EXPECT_FALSE(hands(nullptr).ready) << "both hang";
+  const Vector3 hanging = hand("l_hand");
+  hand("l_hand") += Vector3(-0.3, 0, 0.3);
+  const ReceiverHands left = hands(nullptr);
+  EXPECT_EQ(left.ready, Side::left);
+  hand("l_hand") = hanging;
+  EXPECT_EQ(hands(&left).ready, Side::left) << "until the other is ready";
+  hand("r_hand") += Vector3(-0.3, 0, 0.3);
+  EXPECT_EQ(hands(&left).ready, Side::right);
+  rig_.scene.objects.push_back(
+      {"phone", "", make_pose(hand("r_hand")), Holder::human, anna_.id, 0});
+  EXPECT_FALSE(hands(&left).right_free);
+  EXPECT_TRUE(hands(&left).left_free);
+  EXPECT_EQ(hands(&left).ready, Side::left) << "the right hand is busy";
 }
 
 TEST_F(OtpSearchTest, behind_a_wall_there_is_none_and_the_reason_says_so) {
