@@ -134,8 +134,8 @@ def at(x, y, z, roll=0.0, pitch=0.0):
 
 
 def cup_walls(R, H, wall, bottom):
-    """Walls of an open cup: a box behind each facet of its mesh, and its bottom."""
-    n = around(R)
+    """Walls of an open cup: boxes around it, and its bottom. Narrower boxes make contacts with strong fingers tremble."""
+    n = 16
     middle, width, thick = (R - wall / 2) * math.cos(math.pi / n), 2 * R * math.sin(math.pi / n), wall * math.cos(math.pi / n)
     out = [f"{at(0, 0, (bottom - H) / 2)} cylinder {{ radius: {R} length: {bottom} }}"]
     for k in range(n):
