@@ -112,7 +112,8 @@ void add_numeric_keys(const Descriptor* root, const Descriptor* type, const std:
                       const std::string& after, std::vector<NumericKey>& out) {
   for (int i = 0; i < type->field_count(); ++i) {
     const FieldDescriptor& field = *type->field(i);
-    if (field.message_type() == root) continue;  // a scenario in a variant of a scenario
+    // A scenario in a variant of a scenario, a wall of a part, which is a part: seen already.
+    if (field.message_type() == root || field.message_type() == type) continue;
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
       add_numeric_keys(root, field.message_type(), before + field.name() + " { ", " }" + after,
                        out);
