@@ -293,6 +293,7 @@ TEST(TakingOracleTest, the_arm_of_the_hand_that_takes_is_measured_at_the_release
     TakingOracle oracle;
     GroundTruth truth;
     oracle.observe(true, taker);
+    oracle.observe(true, taker);
     oracle.write(truth);
     EXPECT_FALSE(truth.taken) << "the robot has it still";
     oracle.observe(false, taker);
