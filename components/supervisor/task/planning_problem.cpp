@@ -55,12 +55,9 @@ void PlanningProblem::forbid(const PlannedAction& action, const std::string& rea
 }
 
 bool PlanningProblem::permit_placing(const std::string& object) {
-  const auto found = forbidden_places_.find(object);
-  if (found == forbidden_places_.end()) return false;
-  for (const std::string& text : found->second) forbidden_.erase(text);
-  forbidden_places_.erase(found);
-  permitted_.insert(object);
-  return true;
+  for (const std::string& text : forbidden_places_[object]) forbidden_.erase(text);
+  forbidden_places_.erase(object);
+  return permitted_.insert(object).second;
 }
 
 std::string PlanningProblem::why_impossible(const std::vector<PlannedAction>& actions,

@@ -42,9 +42,9 @@ class PlanningProblem {
   /// Excludes an action from all plans.
   void forbid(const PlannedAction& action, const std::string& reason);
   /// Admits the placing actions that were excluded since the robot's hold of the object did not
-  /// serve for them. Returns whether there were any.
+  /// serve for them. Returns whether this is the first time for the object.
   bool permit_placing(const std::string& object);
-  /// Returns whether permit_placing() has admitted an action of this object.
+  /// Returns whether permit_placing() was called for this object.
   bool has_permitted_placing(const std::string& object) const {
     return permitted_.count(object) > 0;
   }

@@ -293,8 +293,11 @@ void TaskRun::ended(TimePoint now) {
   effects_.expect(last);
   progress_.done();
   if (last.kind == ActionKind::give && !failures_.recovering() &&
-      problem_.permit_placing(last.object)) {
-    replan(now);
+      problem_.goal().kind == TaskKind::receive) {
+    if (problem_.permit_placing(last.object))
+      replan(now);
+    else
+      give_up(last.object + " was handed back twice: it cannot be put down as it is taken", now);
     return;
   }
   if (last.kind != ActionKind::receive || !last.object.empty()) return;

@@ -309,6 +309,26 @@ TEST(Supervisor, what_cannot_be_put_down_as_it_was_taken_is_handed_back_and_take
   }
 }
 
+TEST(Supervisor, what_has_no_place_once_it_is_taken_is_handed_back_at_most_twice) {
+  TaskRig rig;
+  rig.world.on.clear();
+  rig.world.held_by["mug"] = "anna";
+  const auto surfaces = rig.world.surfaces;
+  int takes = 0;
+  rig.fails = [&](const ActionGoal& goal) {
+    takes += goal.kind == ActionKind::receive;
+    if (goal.kind == ActionKind::receive) rig.world.surfaces.clear();
+    if (goal.kind == ActionKind::give) rig.world.surfaces = surfaces;
+    return Failure();
+  };
+  rig.run(2.5);
+  rig.ask(TaskKind::receive, "mug", "anna", "table");
+  ASSERT_TRUE(rig.finish());
+  EXPECT_EQ(takes, 2);
+  EXPECT_EQ(rig.last().state, TaskState::failed);
+  EXPECT_EQ(rig.last().reason, "mug was handed back twice: it cannot be put down as it is taken");
+}
+
 TEST(Supervisor, what_is_so_already_is_done_with_a_sentence) {
   TaskRig rig;
   rig.run(2.5);
