@@ -134,7 +134,7 @@ TEST_F(OfferDetectorTest, before_the_robots_hand_a_bent_arm_counts) {
 TEST_F(OfferDetectorTest, before_the_robots_hand_an_arm_bent_more_counts_after_a_long_rest) {
   hold_at(0.195);
   p_hand_ = scene_.objects[0].T_world_object.translation() - Vector3(0.42, 0, 0);
-  EXPECT_LT(bring(0.195, 0.195, 4.0), 0) << "kept there, not held out";
+  EXPECT_LT(bring(0.195, 0.195, 4.0), 0) << "kept there, not offered";
   EXPECT_LT(bring(0.195, 0.12, 0.0), 0);
   const double found = bring(0.12, 0.195, 4.0);
   EXPECT_GT(found, 1 + 1.5);

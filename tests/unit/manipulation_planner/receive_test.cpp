@@ -28,6 +28,14 @@ TEST(ManipulationPlanner, takes_what_a_person_holds_out_and_engages_them_only_wh
   EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "retreat"}));
 }
 
+/// Offers the mug and has it received, until the action is in this phase. Returns whether it is.
+bool receive_until(Rig& rig, const std::string& phase) {
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run_until(phase);
+  return phase_text(rig.planner.status()) == phase;
+}
+
 /// With the palm straight below the mug, or straight above it.
 Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
   const Group &arm = rig.robot->require_group("arm"), &hand = rig.robot->require_group("hand");
@@ -281,10 +289,7 @@ TEST(ManipulationPlanner, where_fingers_are_in_the_way_of_the_hand_it_does_not_g
 TEST(ManipulationPlanner, from_an_offer_that_is_moved_away_it_backs_off_with_the_hand_opened) {
   Rig rig;
   rig.moves = true;
-  rig.hold_out();
-  rig.start(ActionKind::receive);
-  rig.run_until("reaching the object");
-  ASSERT_EQ(phase_text(rig.planner.status()), "reaching the object");
+  ASSERT_TRUE(receive_until(rig, "reaching the object"));
   for (int i = 0; i < 10; ++i) rig.cycle();
   rig.draw_back();
   rig.run_until("watching for an offer");
@@ -315,10 +320,7 @@ TEST(ManipulationPlanner, an_unsure_grip_does_not_open_on_what_the_giver_has_rel
 TEST(ManipulationPlanner, a_sure_grip_does_not_open_on_what_nobody_else_holds) {
   Rig rig;
   rig.object_comes = false;
-  rig.hold_out();
-  rig.start(ActionKind::receive);
-  rig.run_until("waiting for release");
-  ASSERT_EQ(phase_text(rig.planner.status()), "waiting for release");
+  ASSERT_TRUE(receive_until(rig, "waiting for release"));
   rig.scene.objects[0].holder = Holder::nobody;
   rig.scene.objects[0].holder_id.clear();
   rig.run(200);

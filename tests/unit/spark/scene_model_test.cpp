@@ -66,44 +66,41 @@ class SceneObjects : public ::testing::Test {
   HumanState people_;
 };
 
-TEST_F(SceneObjects,
-       what_leans_on_the_fingertips_is_not_in_the_hand_what_was_in_it_may_be_farther_out) {
-  model_.emplace(
-      settings_, std::make_shared<const RobotModel>(test::planar_arm()),
-      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
-      std::vector<SceneBox>{});
-  people_.people = {person_at({2.2, 0, 0})};
-  RobotState robot;
-  robot.position = Vector::Zero(3);
-  robot.payload = mug_.mass;
-  model_->update(robot);
-  const auto holder = [&](double t, double before_palm) {
+/// An arm in the plane before a person, whose hand bears a load.
+class HeldObjects : public SceneObjects {
+ protected:
+  HeldObjects() {
+    model_.emplace(
+        settings_, std::make_shared<const RobotModel>(test::planar_arm()),
+        [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+        std::vector<SceneBox>{});
+    people_.people = {person_at({2.2, 0, 0})};
+  }
+  void bear(double mass) {
+    RobotState robot;
+    robot.position = Vector::Zero(3);
+    robot.payload = mass;
+    model_->update(robot);
+  }
+  Holder holder(double t, double before_palm) {
     see(t, {mug("mug", {before_palm, 0, 0})});
     return find(wait(t, t), "mug")->holder;
-  };
+  }
+};
+
+TEST_F(HeldObjects,
+       what_leans_on_the_fingertips_is_not_in_the_hand_what_was_in_it_may_be_farther_out) {
+  bear(mug_.mass);
   EXPECT_NE(holder(0, 0.33), Holder::robot);
   EXPECT_EQ(holder(0.1, 0.25), Holder::robot);
   EXPECT_EQ(holder(0.2, 0.33), Holder::robot);
-  robot.payload = 0;
-  model_->update(robot);
+  bear(0);
   EXPECT_NE(holder(0.3, 0.25), Holder::robot);
 }
 
-TEST_F(SceneObjects, a_hand_that_bears_the_end_of_a_long_object_holds_it) {
-  model_.emplace(
-      settings_, std::make_shared<const RobotModel>(test::planar_arm()),
-      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
-      std::vector<SceneBox>{});
+TEST_F(HeldObjects, a_hand_that_bears_the_end_of_a_long_object_holds_it) {
   for (Vector3& vertex : mug_.mesh.vertices) vertex.x() *= 4;
-  people_.people = {person_at({2.2, 0, 0})};
-  RobotState robot;
-  robot.position = Vector::Zero(3);
-  robot.payload = mug_.mass;
-  model_->update(robot);
-  const auto holder = [&](double t, double before_palm) {
-    see(t, {mug("mug", {before_palm, 0, 0})});
-    return find(wait(t, t), "mug")->holder;
-  };
+  bear(mug_.mass);
   EXPECT_NE(holder(0, 0.45), Holder::robot) << "its end leans on the fingertips";
   EXPECT_EQ(holder(0.1, 0.37), Holder::robot);
 }
