@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "deploy/handsel/eval/trial.hpp"
 #include "tests/support/processes/shell.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel {
 namespace {
@@ -73,6 +73,7 @@ int successes(const std::vector<Json>& lines) {
 
 TEST(Handover, seeds_over_dds_succeed_and_lockstep_agrees) {
   const int seeds = seed_count(), at_least = nine_of_ten(seeds);
+  ASSERT_GT(seeds, 0) << "HANDSEL_SEEDS is no number";
   const std::vector<Json> lockstep = in_lockstep("give_mug", seeds);
   ASSERT_EQ(lockstep.size(), static_cast<std::size_t>(seeds));
   EXPECT_GE(successes(lockstep), at_least) << "in lock-step";
@@ -131,11 +132,7 @@ TEST(Handover, mutants_fail_over_dds_too) {
 }
 
 TEST(Recorded, people_take_it_too) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  if (!data ||
-      !std::filesystem::is_directory(std::filesystem::path(data) / "motion/kth_handover")) {
-    GTEST_SKIP() << "HANDSEL_DATA names no folder with motion/kth_handover";
-  }
+  if (!test::reference_data("motion/kth_handover")) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const std::vector<Json> lines = in_lockstep("give_mug_recorded", 10);
   for (const Json& line : lines) expect_bounded(line, "recorded, seed " + line["seed"].dump());
   EXPECT_GE(successes(lines), 8);

@@ -2,7 +2,6 @@
 // a parallel gripper. Their URDFs are reference data.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,18 +11,12 @@
 #include "deploy/handsel/eval/trial.hpp"
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel {
 namespace {
 
 using Json = nlohmann::json;
-
-bool has_data() {
-  const char* data = std::getenv("HANDSEL_DATA");
-  return data != nullptr &&
-         std::filesystem::is_directory(std::filesystem::path(data) / "robots/franka_panda") &&
-         std::filesystem::is_directory(std::filesystem::path(data) / "robots/kuka_iiwa14");
-}
 
 std::vector<Json> in_lockstep(const std::string& scenario, const std::string& robot, int seeds) {
   std::vector<Trial> trials;
@@ -41,9 +34,8 @@ std::vector<Json> in_lockstep(const std::string& scenario, const std::string& ro
 class OwnRobot : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (!has_data())
-      GTEST_SKIP()
-          << "HANDSEL_DATA names no folder with robots/franka_panda and robots/kuka_iiwa14";
+    for (const char* robot : {"robots/franka_panda", "robots/kuka_iiwa14"})
+      if (!test::reference_data(robot)) GTEST_SKIP() << "HANDSEL_DATA is not set";
   }
   static void give(int seeds, int at_least) {
     const std::string robot = GetParam();
@@ -85,13 +77,12 @@ TEST_P(OwnRobot, lacks_nothing) {
 /// The integrator's folder: description, URDF and SRDF lie together, far from the project; a limit
 /// is forgotten.
 TEST(OwnRobotFolder, is_enough_and_a_robot_without_limits_is_refused) {
-  if (!has_data()) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
+  const auto data = test::reference_data("robots/kuka_iiwa14");
+  if (!data) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const test::TemporaryFolder folder;
   const std::filesystem::path source = robot_description("iiwa14").parent_path();
-  const std::filesystem::path data =
-      std::filesystem::path(std::getenv("HANDSEL_DATA")) / "robots/kuka_iiwa14";
-  std::filesystem::copy(data / "model.urdf", folder.path() / "model.urdf");
-  std::filesystem::copy(data / "meshes", folder.path() / "meshes");
+  std::filesystem::copy(*data / "model.urdf", folder.path() / "model.urdf");
+  std::filesystem::copy(*data / "meshes", folder.path() / "meshes");
   std::filesystem::copy(source / "iiwa14.srdf", folder.path() / "iiwa14.srdf");
   std::ifstream in(source / "iiwa14.txtpb");
   std::string text((std::istreambuf_iterator<char>(in)), {});
