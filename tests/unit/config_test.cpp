@@ -108,23 +108,28 @@ struct NumericKey {
       after;  ///< of a text on two lines that gives the key a value; the key stands on the second
 };
 
-void add_numeric_keys(const Descriptor* root, const Descriptor* type, const std::string& before,
+/// Adds the keys of the last message of `path`, which leads from a file to a message inside.
+void add_numeric_keys(std::vector<const Descriptor*> path, const std::string& before,
                       const std::string& after, std::vector<NumericKey>& out) {
+  const Descriptor* type = path.back();
+  path.push_back(nullptr);
   for (int i = 0; i < type->field_count(); ++i) {
     const FieldDescriptor& field = *type->field(i);
-    // A scenario in a variant of a scenario, a wall of a part, which is a part: seen already.
-    if (field.message_type() == root || field.message_type() == type) continue;
+    if (field.message_type() == path.front()) continue;  // a scenario in a variant of a scenario
+    // A wall of a part is a part, once.
+    if (std::count(path.begin(), path.end(), field.message_type()) > 1) continue;
+    path.back() = field.message_type();
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
-      add_numeric_keys(root, field.message_type(), before + field.name() + " { ", " }" + after,
-                       out);
+      add_numeric_keys(path, before + field.name() + " { ", " }" + after, out);
     else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE)
-      out.push_back({root, before, field.name(), after});
+      out.push_back({path.front(), before, field.name(), after});
+    path.back() = nullptr;
   }
 }
 
 std::vector<NumericKey> numeric_keys() {
   std::vector<NumericKey> out;
-  for (const Descriptor* type : texts()) add_numeric_keys(type, type, "# a comment\n", "\n", out);
+  for (const Descriptor* type : texts()) add_numeric_keys({type}, "# a comment\n", "\n", out);
   return out;
 }
 
