@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/config/located.hpp"
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"

@@ -1,4 +1,6 @@
 // Which hand of the receiver the planner plans for, from the choice of the grasp to the offer.
+#include <numbers>
+
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 #include "tests/unit/manipulation_planner/partner_grasps.hpp"
 
@@ -7,12 +9,13 @@ namespace {
 
 using rig::Rig;
 
-/// Raises one hand of the receiver before the body; the other hangs.
-void raise_hand(Rig& rig, Side side) {
+/// Raises one hand of the receiver before the body; the other hangs. `turn`: of the body, from the
+/// direction to the robot [rad].
+void raise_hand(Rig& rig, Side side, double turn = 0) {
   Person& anna = rig.people.people[0];
-  anna.joints = standing_body({1.45, 0, 0}, 3.14159, 1.75);
+  anna.joints = standing_body({1.45, 0, 0}, std::numbers::pi + turn, 1.75);
   anna.joints[static_cast<std::size_t>(body_joint_index(side == Side::left ? "l_hand" : "r_hand"))]
-      .position += Vector3(-0.3, 0, 0.35);
+      .position += Eigen::AngleAxisd(turn, Vector3::UnitZ()) * Vector3(-0.3, 0, 0.35);
 }
 
 /// Returns a grasp of the mug near where the arm is.
@@ -31,8 +34,8 @@ Grasp grasp_near_arm(const Rig& rig, std::uint64_t id, double first_axis) {
   return grasp;
 }
 
-TEST(ReceiverHands, a_change_of_hand_while_the_object_is_carried_changes_the_plan) {
-  Rig rig;
+/// Picks the mug up and carries it to the receiver, whose right hand is raised.
+void carry_to_receiver(Rig& rig) {
   rig.grasps = {grasp_near_arm(rig, 1, 0.2)};
   // The object stays in the hand as the hand is: level grasps of the person are turned into it.
   const Vector q =
@@ -52,14 +55,32 @@ TEST(ReceiverHands, a_change_of_hand_while_the_object_is_carried_changes_the_pla
   rig.run_until("carry");
   ASSERT_TRUE(rig.planner.status().has_partner);
   EXPECT_EQ(rig.planner.status().partner_side, Side::right);
-  const Pose T_before = rig.planner.status().T_world_partner_wrist;
-  raise_hand(rig, Side::left);
+}
+
+/// Returns how far the planned wrist of the receiver moves while the object is carried on [m].
+double wrist_shift(Rig& rig) {
+  const Vector3 before = rig.planner.status().T_world_partner_wrist.translation();
   for (int i = 0; i < 30 && phase_text(rig.planner.status()) == "carry"; ++i) rig.cycle();
-  ASSERT_TRUE(rig.planner.status().has_partner);
+  EXPECT_TRUE(rig.planner.status().has_partner);
+  return (rig.planner.status().T_world_partner_wrist.translation() - before).norm();
+}
+
+TEST(ReceiverHands, a_change_of_hand_while_the_object_is_carried_changes_the_plan) {
+  Rig rig;
+  carry_to_receiver(rig);
+  raise_hand(rig, Side::left);
+  EXPECT_GT(wrist_shift(rig), 0.05);
   EXPECT_EQ(rig.planner.status().partner_side, Side::left);
-  EXPECT_GT(
-      (rig.planner.status().T_world_partner_wrist.translation() - T_before.translation()).norm(),
-      0.05);
+}
+
+TEST(ReceiverHands, a_turn_in_place_while_the_object_is_carried_changes_the_plan) {
+  for (const double turn : {0.1, 0.8}) {
+    Rig rig;
+    carry_to_receiver(rig);
+    raise_hand(rig, Side::right, turn);
+    const double shift = wrist_shift(rig);
+    EXPECT_EQ(shift > 0.05, turn > 0.5) << "turned by " << turn << ": " << shift;
+  }
 }
 
 TEST(ReceiverHands, of_two_grasps_the_one_that_leaves_the_person_a_grasp_is_taken) {

@@ -310,6 +310,7 @@ TEST(TakingOracleTest, the_arm_of_the_hand_that_takes_is_measured_at_the_release
   };
   EXPECT_GT(strain(right), 0);
   EXPECT_LT(strain(right), 0.9);
+  EXPECT_LT(right.taking_arm_strain, right.taking_wrist_strain - 0.03) << "the upper arm hangs";
   EXPECT_NEAR(strain(right), strain(left), 0.1);
   EXPECT_GT(high.taking_arm_strain, left.taking_arm_strain + 0.1);
   EXPECT_GT(strain(high), strain(left) + 0.1);
