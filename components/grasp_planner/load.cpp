@@ -95,6 +95,7 @@ GraspListSettings list_settings(const settings::GraspPlannerSettings& t, std::ui
   s.tries_per_finger = t.tries_per_finger;
   s.opening = t.opening;
   s.open_clearance = t.open_clearance;
+  s.pad_hollow = t.pad_hollow;
   s.free_distance = t.free_distance;
   s.grip.max_normal = t.grip_force;
   s.grip.friction_fraction = t.grip_friction;

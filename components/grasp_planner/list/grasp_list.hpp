@@ -38,6 +38,7 @@ struct GraspListSettings {
   std::uint32_t tries_per_finger{24};    ///< candidates checked for them
   double depth{0.0008};   ///< how deep the model of a touching finger may be in the object [m]
   double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  double pad_hollow{0.003};      ///< a pad bridges a hollow that is no deeper [m]
   double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
   GripForceSettings grip;        ///< how hard it is held, and what it must bear
   /// Distance that a fingertip may creep over the surface, which turns the normal where the surface

@@ -13,7 +13,6 @@ constexpr int kGrid = 5;  // rays along each side of a pad
 constexpr double kPatch =
     0.0005;  // [m] what is nearer than this to a pad's plane touches: so far it yields
 constexpr double kInside = 0.0003;        // [m] what stands out farther keeps the pad off
-constexpr double kMaxHollow = 0.003;      // [m] a pad bridges a hollow that is no deeper
 constexpr double kBeside = 0.001;         // [m] off its middle, on both sides
 constexpr double kBackOff = 0.004;        // [m] the rays start this far behind the pad's plane
 constexpr double kFlat = 0.94;            // cosine: the surface faces the pad
@@ -190,7 +189,7 @@ std::optional<double> PinchSearch::settle(std::uint32_t finger, const Pose& T_ob
     if (p.hit.along < kBackOff - kInside) out.extend(p.on_pad);
   }
   const bool hollow = !out.isEmpty();
-  if (hollow && nearest < kBackOff - kMaxHollow) return std::nullopt;
+  if (hollow && nearest < kBackOff - settings_.pad_hollow) return std::nullopt;
   const double plane = hollow ? nearest : kBackOff;
   std::erase_if(places, [&](const Place& p) {
     return p.hit.along > plane + kPatch || -p.hit.normal.dot(z) < kFlat;

@@ -16,7 +16,6 @@ constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
 constexpr int kHeadings = 24;          // of the object at each place
 constexpr double kMinDistance = 0.05;  // between alternatives [m]
-constexpr double kMaxExtraCost = 0.1;  // of an alternative, over the best
 constexpr double kMaxBarred = 0.5;     // cosine of a finger and the person's pull
 constexpr double kNoPartner = 2;       // strain that counts where no grasp of the person fits
 constexpr double kMinFacing = -0.3;    // cosine: the hand must not come from the person's side
@@ -242,7 +241,8 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
   options.restarts = 0;
   int unreachable = 0;
   for (const Candidate& candidate : candidates.all) {
-    if (!out.poses.empty() && candidate.cost > out.poses.front().cost + kMaxExtraCost) break;
+    if (!out.poses.empty() && candidate.cost > out.poses.front().cost + settings.otp_extra_cost)
+      break;
     const bool is_near = std::any_of(out.poses.begin(), out.poses.end(), [&](const OtpPose& pose) {
       return (pose.T_world_object.translation() - candidate.T_world_object.translation()).norm() <
              kMinDistance;

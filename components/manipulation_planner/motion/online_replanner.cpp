@@ -16,7 +16,6 @@ constexpr double kMinLead =
 constexpr double kRetimedReach =
     0.3;  // the same path at another speed is joined within this, max norm [rad]
 constexpr double kReachStep = 0.1;      // or within this more, as often as braking needs it [rad]
-constexpr double kMinFactor = 0.2;      // a slower arm may be faster again before it switches [1]
 constexpr double kReturnTimeout = 1.0;  // for the controller to report the old command again [s]
 constexpr double kSameTime = 1e-6;      // [s]
 
@@ -63,8 +62,8 @@ PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
 Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, SwitchPoint& point) const {
   const ActiveTrajectory& active = parts_.now.active();
   // What the arm does within that time: less while it is slowed.
-  const double replan_time =
-      parts_.settings.replan_time * std::clamp(active.speed_factor, kMinFactor, 1.0);
+  const double replan_time = parts_.settings.replan_time *
+                             std::clamp(active.speed_factor, parts_.settings.live_min_factor, 1.0);
   if (active.trajectory != running.command ||
       active.rest.size() != static_cast<int>(parts_.arm.group().axes.size()))
     return Outcome::failure("the controller tells of another motion");
