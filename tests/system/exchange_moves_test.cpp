@@ -18,9 +18,11 @@ namespace handsel {
 namespace {
 
 constexpr const char* kScenario = R"(name: "exchange_moves" robot: "jido"
-boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 } supports: true }
+boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 }
+    supports: true }
 objects { id: "mug" model: "mug" on: "table" pose { xyz { x: 0.68 y: -0.42 } } jitter: 0.03 }
-people { id: "anna" x: 1.4 y: -0.05 yaw: 3.1416 stature: 1.72 behaviour: EXTERNAL external: "body_tracker" }
+people { id: "anna" x: 1.4 y: -0.05 yaw: 3.1416 stature: 1.72 behaviour: EXTERNAL
+    external: "body_tracker" }
 object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0.001 }
 timeout: 90
 )";

@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kScenario = R"(name: "hand_change" robot: "jido"
 boxes {
-  id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 } supports: true
+  id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 }
+    supports: true
 }
 objects { id: "mug" model: "mug" on: "table" pose { xyz { x: 0.68 y: -0.42 } } }
 people {

@@ -236,8 +236,10 @@ class Judge {
 /// An empty room with a table, the arm somewhere, the visitor's body as we tell it.
 std::string scenario_text(const RobotModel& robot, const Vector& start) {
   std::string text = R"(name: "live_run" robot: "jido"
-boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 } supports: true }
-people { id: "visitor" x: 3.0 y: 0.4 yaw: 3.1416 stature: 1.72 behaviour: EXTERNAL external: "body_tracker" }
+boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 }
+    supports: true }
+people { id: "visitor" x: 3.0 y: 0.4 yaw: 3.1416 stature: 1.72 behaviour: EXTERNAL
+    external: "body_tracker" }
 )";
   for (int axis : robot.require_group("arm").axes)
     text += "start { key: \"" + robot.axes()[axis].name +

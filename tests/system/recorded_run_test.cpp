@@ -64,7 +64,8 @@ TEST(RecordedRun, holds_everything_with_its_marks_and_comes_again) {
                     domain = " --domain " + std::to_string(kDomain);
   const auto scenario = folder.write("pick.txtpb", R"(
 name: "pick"
-boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 } supports: true }
+boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 }
+    supports: true }
 objects { id: "mug" model: "mug" on: "table" pose { xyz { x: 0.68 y: -0.42 } } }
 people { id: "anna" x: 1.60 y: 0.30 yaw: 3.1416 stature: 1.72 behaviour: STILL }
 human_sensors { source: "kinect" rate: 30 latency: 0.04 noise: 0.004 }

@@ -231,7 +231,8 @@ TEST(TaskPlanner, the_same_question_has_the_same_answer) {
 
 const char* const kSound = R"(
 actions { name: "rest" kind: "go_to" cost: 1 }
-actions { name: "up" parameters: "?o:object" kind: "pick" object: "?o" when { is: "hand_empty" } adds: "held_by_robot ?o" }
+actions { name: "up" parameters: "?o:object" kind: "pick" object: "?o" when { is: "hand_empty" })"
+                           R"( adds: "held_by_robot ?o" }
 tasks {
   name: "t"
   parameters: "?o:object"
@@ -304,8 +305,10 @@ TEST(TaskDomain, one_that_leads_ever_deeper_ends_with_a_reason) {
 TEST(TaskDomain, facts_of_its_own_hold_from_an_action_on) {
   const Domain domain = parse_domain(R"(
     predicates { name: "wiped" types: "surface" }
-    actions { name: "wipe" parameters: "?s:surface" kind: "go_to" surface: "?s" when { is: "not wiped ?s" } adds: "wiped ?s" cost: 2 }
-    tasks { name: "wipe_all" methods { steps { all { variables: "?s:surface" steps: "wipe ?s" } } } }
+    actions { name: "wipe" parameters: "?s:surface" kind: "go_to" surface: "?s"
+      when { is: "not wiped ?s" } adds: "wiped ?s" cost: 2 }
+    tasks { name: "wipe_all" methods { steps { all { variables: "?s:surface"
+      steps: "wipe ?s" } } } }
   )",
                                      "d.txtpb");
   TaskWorld world;
