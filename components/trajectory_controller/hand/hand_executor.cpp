@@ -113,6 +113,12 @@ std::string HandExecutor::accept(const HandCommand& command) {
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final = fingers_.inside(i, command.position[static_cast<Eigen::Index>(i)]);
   const bool holds = state_ == HandState::grasped;
+  if (command.action == HandAction::release && level_ > 0.0) {
+    phase_ = Phase::unloading;
+    state_ = HandState::moving;
+    unsure_ = false;
+    return {};
+  }
   start(command.action == HandAction::grasp     ? Phase::closing
         : command.action == HandAction::release ? Phase::releasing
                                                 : Phase::moving);
@@ -230,7 +236,7 @@ void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
 
 void HandExecutor::check_outcome(const RobotState& robot, double payload, double dt) noexcept {
   if (phase_ == Phase::closing || phase_ == Phase::seeking || phase_ == Phase::gripping) return;
-  if (phase_ == Phase::loosened) return;
+  if (phase_ == Phase::loosened || phase_ == Phase::unloading) return;
   if (phase_ == Phase::hold) {
     if (unsure_) {
       // Fingers that do not push as planned may still hold what the person then lets go of.
@@ -286,8 +292,10 @@ void HandExecutor::change_level(double dt) noexcept {
   if (phase_ == Phase::regripping) level_ = std::min(1.0, level_ + change);
   if (phase_ == Phase::loosened)
     level_ = std::max(std::min(level_, settings_.loosen_fraction), level_ - change);
-  if (phase_ == Phase::releasing || phase_ == Phase::moving)
+  if (phase_ == Phase::unloading || phase_ == Phase::releasing || phase_ == Phase::moving)
     level_ = std::max(0.0, level_ - change);
+  // Fingers that open while they still press drag the object along.
+  if (phase_ == Phase::unloading && level_ <= 0.0) start(Phase::releasing);
 }
 
 /// What was released may still be hooked on a finger while it is drawn away.

@@ -98,7 +98,17 @@ class HandExecutor {
   void follow(const Vector& robot_position, double dead_band) noexcept;
 
  private:
-  enum class Phase { hold, moving, closing, seeking, gripping, loosened, releasing, regripping };
+  enum class Phase {
+    hold,
+    moving,
+    closing,
+    seeking,
+    gripping,
+    loosened,
+    unloading,
+    releasing,
+    regripping
+  };
 
   void start(Phase phase);
   void retarget(std::size_t i, double target) noexcept;

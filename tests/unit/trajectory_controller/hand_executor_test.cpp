@@ -110,6 +110,41 @@ TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
   EXPECT_EQ(hand_.state(), HandState::grasped);
 }
 
+TEST_F(HandTest, fingers_open_only_after_the_grip_force_is_gone) {
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  ASSERT_EQ(hand_.state(), HandState::grasped);
+  const Vector closed = out_.position;
+  command(HandAction::release, 0.3);
+  EXPECT_EQ(hand_.state(), HandState::moving);
+  int still_gripping = 0;
+  for (double t = 0; t < 1.5 && hand_.state() == HandState::moving; t += kDt) {
+    run(kDt);
+    if (hand_.effort(0) == 0) continue;
+    ++still_gripping;
+    ASSERT_EQ(out_.position, closed) << "after " << t << " s with " << hand_.effort(0) << " Nm";
+  }
+  EXPECT_NEAR(still_gripping * kDt, HandSettings{}.grip_rise_time, 0.01);
+  EXPECT_EQ(hand_.state(), HandState::released);
+  EXPECT_NEAR(out_.position[0], 0.3, 1e-9);
+}
+
+TEST_F(HandTest, a_release_that_is_paused_goes_on_afterwards) {
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  command(HandAction::release, 0.3);
+  run(0.5 * HandSettings{}.grip_rise_time);
+  const double half = hand_.effort(0);
+  may_move_ = false;
+  run(1.0);
+  EXPECT_EQ(hand_.effort(0), half) << "a stop drops nothing";
+  may_move_ = true;
+  run(1.5);
+  EXPECT_EQ(hand_.state(), HandState::released);
+}
+
 TEST_F(HandTest, once_it_has_released_a_finger_gives_way_to_what_is_drawn_past_it) {
   block_ = {0.5, 0.5, 0.5, 0.5};
   command(HandAction::grasp, 0.7);
