@@ -49,7 +49,7 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver
     const double waited = to_seconds(parts.now.time() - waits_since);
     if (can_clear && !parts.offers.is_seen() && waited > parts.settings.offer_clear_after &&
         parts.area.is_occupied(giver)) {
-      Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);
+      Outcome cleared = co_await clear_offer_area_of_all(parts, giver, ClearUntil::any_offer);
       if (!cleared.good) parts.refuse("clearing the offer area", cleared.reason);
       can_clear = !parts.area.is_occupied(giver);
       waits_since = parts.now.time();

@@ -69,4 +69,19 @@ Routine<Outcome> clear_offer_area(Parts& parts, const std::string& giver, ClearU
   co_return cleared;
 }
 
+Routine<Outcome> clear_offer_area_of_all(Parts& parts, const std::string& giver, ClearUntil until) {
+  Outcome cleared = co_await clear_offer_area(parts, giver, until);
+  const std::string used = parts.arm.group().name;
+  for (const Manipulator& other : parts.arm.manipulators()) {
+    if (other.arm == nullptr || other.name == used) continue;
+    Outcome own = co_await use_arm(parts, other.name);
+    if (own.good && parts.area.is_occupied(giver))
+      own = co_await clear_offer_area(parts, giver, until);
+    Outcome back = co_await use_arm(parts, used);
+    if (!own.good && cleared.good) cleared = own;
+    if (!back.good) co_return back;
+  }
+  co_return cleared;
+}
+
 }  // namespace handsel::manipulation_planner

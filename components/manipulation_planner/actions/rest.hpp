@@ -23,5 +23,8 @@ Routine<Outcome> rest(Parts& parts);
 Routine<Outcome> rest_others(Parts& parts);
 /// Moves the arm in use out of the area in which a person offers objects; empty id: the nearest.
 Routine<Outcome> clear_offer_area(Parts& parts, const std::string& giver, ClearUntil until);
+/// Moves every arm that occupies that area out of there, the arm in use first: people hold back
+/// before the nearest hand, whichever arm it belongs to.
+Routine<Outcome> clear_offer_area_of_all(Parts& parts, const std::string& giver, ClearUntil until);
 
 }  // namespace handsel::manipulation_planner

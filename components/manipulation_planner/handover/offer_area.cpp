@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/model/arm_reach.hpp"
 #include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t kMaxConfigurations = 6;     // to wait in
 constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};  // from rest, away from the person [m]
 constexpr double kOfferAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
+constexpr double kSwing[] = {0.4, -0.4, 0.8, -0.8, 1.2, -1.2};  // from rest, at the shoulder [rad]
 
 Vector3 horizontal(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
@@ -67,16 +69,24 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
   std::vector<Place> places;
   IkOptions options;
   options.restarts = 0;
-  for (const double back : kBack) {
-    for (const double beside : kOfferAside) {
-      Pose T = T_rest;
-      T.translation() += back * away + beside * aside;
-      const auto joints =
-          arm_.robot().inverse(arm_.group(), now_.T_world_base().inverse() * T, q_rest, options);
-      if (!joints) continue;
-      const Vector q = RobotModel::with(arm_.configuration(), arm_.group(), *joints);
-      places.push_back({*joints, clearance(person, q), std::hypot(back, beside)});
-    }
+  const auto add = [&](const Pose& T) {
+    const auto joints =
+        arm_.robot().inverse(arm_.group(), now_.T_world_base().inverse() * T, q_rest, options);
+    if (!joints) return;
+    const Vector q = RobotModel::with(arm_.configuration(), arm_.group(), *joints);
+    const double from_rest = (T.translation() - T_rest.translation()).norm();
+    places.push_back({*joints, clearance(person, q), from_rest});
+  };
+  for (const double back : kBack)
+    for (const double beside : kOfferAside)
+      add(Eigen::Translation3d(back * away + beside * aside) * T_rest);
+  // An arm that is folded at rest moves no farther back, but it turns at the shoulder.
+  const int shoulder = arm_reach(arm_.robot(), &arm_.group(), arm_.palm()).shoulder;
+  if (shoulder >= 0) {
+    const Eigen::Translation3d T_shoulder(
+        (now_.T_world_base() * arm_.robot().link_pose(q_rest, shoulder)).translation());
+    for (const double angle : kSwing)
+      add(T_shoulder * Eigen::AngleAxisd(angle, Vector3::UnitZ()) * T_shoulder.inverse() * T_rest);
   }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     const bool is_clear = a.clearance >= 0;

@@ -127,6 +127,7 @@ class Rig {
   }
   void answer(const PathRequest& request) {
     last_path = request;
+    path_groups.push_back(request.group);
     if (request.cancel || !path_planner_lives) return;
     ++path_requests;
     PathReply reply;
@@ -250,6 +251,7 @@ class Rig {
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0}, led_over{0};
   PathRequest last_path;
+  std::vector<std::string> path_groups;  // of all paths asked for
   std::vector<Grasp> grasps;  // of the planner's answers; empty: one that is near the arm
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true},
       object_comes{true}, person_takes{true};
