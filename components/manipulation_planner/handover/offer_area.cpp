@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "common/model/arm_reach.hpp"
 #include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
@@ -81,13 +80,9 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
     for (const double beside : kOfferAside)
       add(Eigen::Translation3d(back * away + beside * aside) * T_rest);
   // An arm that is folded at rest moves no farther back, but it turns at the shoulder.
-  const int shoulder = arm_reach(arm_.robot(), &arm_.group(), arm_.palm()).shoulder;
-  if (shoulder >= 0) {
-    const Eigen::Translation3d T_shoulder(
-        (now_.T_world_base() * arm_.robot().link_pose(q_rest, shoulder)).translation());
-    for (const double angle : kSwing)
-      add(T_shoulder * Eigen::AngleAxisd(angle, Vector3::UnitZ()) * T_shoulder.inverse() * T_rest);
-  }
+  const Eigen::Translation3d T_shoulder(arm_.p_world_shoulder());
+  for (const double angle : kSwing)
+    add(T_shoulder * Eigen::AngleAxisd(angle, Vector3::UnitZ()) * T_shoulder.inverse() * T_rest);
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     const bool is_clear = a.clearance >= 0;
     if (is_clear != (b.clearance >= 0)) return is_clear;
