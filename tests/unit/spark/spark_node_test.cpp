@@ -142,9 +142,8 @@ TEST_F(SparkNode, a_source_that_is_always_late_is_not_live_and_its_people_are_as
 }
 
 TEST_F(SparkNode, a_camera_that_speaks_in_its_own_frame_is_brought_to_the_world) {
-  folder_.write(
-      "calibration.txtpb",
-      R"(sources { source: "side" speaks_in: CAMERA
+  folder_.write("calibration.txtpb",
+                R"(sources { source: "side" speaks_in: CAMERA
         T_world_camera { position { x: 1 y: 2 z: 0.1 } } })");
   start();
   see_person({1, 0, 0}, 5, "side");

@@ -45,6 +45,13 @@ class HandTest : public testing::Test {
     c.effort = effort;
     ASSERT_EQ(hand_.accept(c), "");
   }
+  /// Closes on an object that every finger meets at 0.5 rad.
+  void grasp_object() {
+    block_.assign(4, 0.5);
+    command(HandAction::grasp, 0.7);
+    run(3.0);
+    ASSERT_EQ(hand_.state(), HandState::grasped);
+  }
   void run(double seconds) {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       for (int i = 0; i < 4; ++i) {
@@ -111,10 +118,7 @@ TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
 }
 
 TEST_F(HandTest, fingers_open_only_after_the_grip_force_is_gone) {
-  block_ = {0.5, 0.5, 0.5, 0.5};
-  command(HandAction::grasp, 0.7);
-  run(3.0);
-  ASSERT_EQ(hand_.state(), HandState::grasped);
+  ASSERT_NO_FATAL_FAILURE(grasp_object());
   const Vector closed = out_.position;
   command(HandAction::release, 0.3);
   EXPECT_EQ(hand_.state(), HandState::moving);
@@ -131,9 +135,7 @@ TEST_F(HandTest, fingers_open_only_after_the_grip_force_is_gone) {
 }
 
 TEST_F(HandTest, a_release_that_is_paused_goes_on_afterwards) {
-  block_ = {0.5, 0.5, 0.5, 0.5};
-  command(HandAction::grasp, 0.7);
-  run(3.0);
+  ASSERT_NO_FATAL_FAILURE(grasp_object());
   command(HandAction::release, 0.3);
   run(0.5 * HandSettings{}.grip_rise_time);
   const double half = hand_.effort(0);
@@ -146,10 +148,7 @@ TEST_F(HandTest, a_release_that_is_paused_goes_on_afterwards) {
 }
 
 TEST_F(HandTest, once_it_has_released_a_finger_gives_way_to_what_is_drawn_past_it) {
-  block_ = {0.5, 0.5, 0.5, 0.5};
-  command(HandAction::grasp, 0.7);
-  run(3.0);
-  ASSERT_EQ(hand_.state(), HandState::grasped);
+  ASSERT_NO_FATAL_FAILURE(grasp_object());
   block_[0] = 0.45;
   run(1.0);
   EXPECT_GT(out_.position[0], 0.45) << "what it holds presses it, and it holds on";
