@@ -37,6 +37,18 @@ std::string told(const Snapshot& now) {
   return text + "; task " + name(now.task.sample.state) + " " + now.task.sample.reason;
 }
 
+/// Passes if the handover counts within two seconds: it does once the person has held the object
+/// alone for one second, and the task may end before that.
+testing::AssertionResult handover_counts(Session& session) {
+  const GroundTruth& truth = session.snapshot().ground_truth.sample;
+  if (session.wait(from_seconds(2), [&] { return truth.handover_done; }))
+    return testing::AssertionSuccess();
+  return testing::AssertionFailure()
+         << "held by '" << truth.carrier << "', lifted " << truth.max_lifted
+         << " m, contact before the release " << truth.human_contact_before_release
+         << " s, alone for " << truth.human_alone << " s, dropped " << truth.dropped;
+}
+
 class OnHosts : public testing::Test {
  protected:
   void SetUp() override {
@@ -116,7 +128,7 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
     return now.tasks.contains(task) && is_over(now.tasks.at(task).state);
   })) << told(now);
   EXPECT_EQ(now.tasks.at(task).state, TaskState::succeeded) << told(now);
-  EXPECT_TRUE(now.ground_truth.sample.handover_done);
+  EXPECT_TRUE(handover_counts(session));
   EXPECT_EQ(now.ground_truth.sample.limit_violations, 0u);
   EXPECT_EQ(now.ground_truth.sample.ssm_violations, 0u);
 }
@@ -174,7 +186,7 @@ TEST_F(OnHosts, the_link_to_perception_is_cut_for_two_seconds) {
     return now.tasks.contains(task) && is_over(now.tasks.at(task).state);
   })) << told(now);
   EXPECT_EQ(now.tasks.at(task).state, TaskState::succeeded) << told(now);
-  EXPECT_TRUE(now.ground_truth.sample.handover_done);
+  EXPECT_TRUE(handover_counts(session));
   EXPECT_FALSE(now.ground_truth.sample.dropped);
   EXPECT_EQ(now.ground_truth.sample.limit_violations, 0u);
   EXPECT_EQ(now.ground_truth.sample.ssm_violations, 0u);

@@ -67,6 +67,20 @@ bool is_drawn_out(const Parts& parts, const std::string& object) {
   return seen != nullptr && seen->holder == Holder::human && !parts.held.is_in_hand(*seen);
 }
 
+/// Returns whether the person has the object after a stop interrupted the hand while it opened.
+bool has_person_it(const Parts& parts, const std::string& object) {
+  const SceneObject* seen = parts.now.object(object);
+  return seen != nullptr && seen->holder == Holder::human;
+}
+
+/// Closes the hand on the object that it offers.
+Routine<Outcome> keep(Parts& parts) {
+  const Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
+  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout);
+  if (!held.outcome.good) parts.refuse("keeping the object", held.outcome.reason);
+  co_return held.outcome;
+}
+
 /// Offers the object until the receiver takes it; else the hand keeps it.
 Routine<Outcome> offer(Parts& parts, const std::string& object, const std::string& receiver) {
   parts.action.phase = ActionPhase::offer;
@@ -74,17 +88,24 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
   parts.action.exchange_engaged = true;
   const Vector open = opening(parts);
   const double timeout = parts.settings.offer_timeout;
+  const TimePoint deadline = parts.now.time() + from_seconds(timeout);
   const std::function<bool()> is_over = [&] { return is_drawn_out(parts, object); };
-  HandResult released = co_await parts.hand.release_on_pull(open, timeout, is_over);
-  if (released.outcome.good && released.state == HandState::released) co_return Outcome{};
-  if (released.outcome.good && is_over()) {
-    released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
-    co_return released.outcome;
+  HandResult released;
+  for (;;) {
+    const double left = to_seconds(deadline - parts.now.time());
+    released = co_await parts.hand.release_on_pull(open, left, is_over);
+    if (!released.outcome.good) break;
+    if (released.state == HandState::released) co_return Outcome{};
+    const bool interrupted = released.state == HandState::refused;
+    if (is_over() || (interrupted && has_person_it(parts, object))) {
+      released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
+      co_return released.outcome;
+    }
+    if (!interrupted || parts.now.time() >= deadline) break;
+    co_await keep(parts);
   }
   parts.action.exchange_engaged = false;
-  const Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
-  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout);
-  if (!held.outcome.good) parts.refuse("keeping the object", held.outcome.reason);
+  co_await keep(parts);
   if (!released.outcome.good) co_return released.outcome;
   co_return Outcome::failure(receiver + " did not take " + object + " within " +
                                  std::to_string(static_cast<int>(timeout)) + " s",

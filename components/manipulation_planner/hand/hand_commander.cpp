@@ -5,6 +5,7 @@ namespace {
 
 constexpr int kMaxHandTries = 20;       // to send a hand command
 constexpr double kHandTryPeriod = 0.3;  // between tries [s]
+constexpr int kMaxInterruptions = 5;    // by stops; a hand command is sent again after each
 
 }  // namespace
 
@@ -46,15 +47,20 @@ Routine<Outcome> HandCommander::await_open() {
 Routine<HandResult> HandCommander::run(HandAction action, const Vector& position, double timeout,
                                        const Vector* effort, double mass_ratio) {
   HandResult result;
-  result.outcome = co_await send(action, position, effort, mass_ratio);
-  if (!result.outcome.good) co_return result;
-  const std::uint64_t id = now_.execution()->hand_command;
-  const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };
-  const bool ended = co_await waiting_.until(
-      [&] { return is_lost() || arm_.hand_state() != HandState::moving; }, timeout);
-  if (is_lost()) result.outcome = Outcome::failure("the controller lost the hand command");
-  if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
-  result.state = arm_.hand_state();
+  for (int tries = 0; tries < kMaxInterruptions; ++tries) {
+    result.outcome = co_await send(action, position, effort, mass_ratio);
+    if (!result.outcome.good) co_return result;
+    const std::uint64_t id = now_.execution()->hand_command;
+    const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };
+    const bool ended = co_await waiting_.until(
+        [&] { return is_lost() || arm_.hand_state() != HandState::moving; }, timeout);
+    if (is_lost()) result.outcome = Outcome::failure("the controller lost the hand command");
+    if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
+    result.state = arm_.hand_state();
+    if (!result.outcome.good || result.state != HandState::refused) co_return result;
+  }
+  result.outcome = Outcome::failure("stops interrupted the hand " +
+                                    std::to_string(kMaxInterruptions) + " times");
   co_return result;
 }
 
@@ -65,7 +71,8 @@ Routine<HandResult> HandCommander::release_on_pull(const Vector& position, doubl
   const std::uint64_t id = now_.execution()->hand_command;
   const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };
   const auto has_ended = [&] {
-    return is_lost() || arm_.hand_state() == HandState::released || is_over();
+    const HandState state = arm_.hand_state();
+    return is_lost() || state == HandState::released || state == HandState::refused || is_over();
   };
   co_await waiting_.until(has_ended, timeout);
   if (is_lost()) result.outcome = Outcome::failure("the controller lost the hand command");

@@ -30,10 +30,12 @@ class HandCommander {
   /// hand bears. The references must outlive the routine.
   Routine<Outcome> send(HandAction action, const Vector& position, const Vector* effort = nullptr,
                         double mass_ratio = 1.0);
-  /// Sends a command as send() does and waits for its end, `timeout` [s] at most.
+  /// Sends a command as send() does and waits for its end, `timeout` [s] at most; sends it again
+  /// after a stop that interrupted the hand.
   Routine<HandResult> run(HandAction action, const Vector& position, double timeout,
                           const Vector* effort = nullptr, double mass_ratio = 1.0);
-  /// Waits for a pull that opens the hand, `timeout` [s] at most, or until `is_over`.
+  /// Waits for a pull that opens the hand, `timeout` [s] at most, until `is_over` or until a stop
+  /// interrupts the hand while it opens: the state is `refused` then.
   Routine<HandResult> release_on_pull(const Vector& position, double timeout,
                                       const std::function<bool()>& is_over);
   /// Waits until the fingers have ended a motion that was sent.

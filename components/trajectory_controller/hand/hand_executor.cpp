@@ -94,11 +94,19 @@ void HandExecutor::follow(const Vector& robot_position, double dead_band) noexce
     f.target = f.final = there ? f.mover.target() : measured;
     if (!there) f.mover.go_to(f.target, fingers_.comfort(i), fingers_.stop(i));
   }
-  phase_ = Phase::hold;
-  unsure_ = false;
-  // What was begun is not finished any more.
+  // What was begun is not finished any more, but fingers that still hold an object hold that firmly
+  // again, and a person who takes the object later is still felt.
+  const bool grips =
+      phase_ == Phase::loosened || phase_ == Phase::unloading || phase_ == Phase::regripping;
+  const bool opens = phase_ == Phase::releasing;
   if (state_ == HandState::moving) state_ = HandState::refused;
-  release_.disarm();
+  phase_ = grips ? Phase::regripping : Phase::hold;
+  unsure_ = false;
+  settled_for_ = 0.0;
+  if (opens)
+    release_.disarm();
+  else if (release_.armed())
+    release_.arm(release_.threshold());
 }
 
 std::string HandExecutor::accept(const HandCommand& command) {
@@ -181,7 +189,8 @@ void HandExecutor::start(Phase phase) {
     if (phase == Phase::closing && !closed_) f.opened = f.mover.state().position;
     retarget(i, f.final);
   }
-  closed_ = phase == Phase::closing || (closed_ && phase != Phase::releasing);
+  closed_ = phase == Phase::closing || phase == Phase::regripping ||
+            (closed_ && phase != Phase::releasing);
 }
 
 /// An axis that meets something on its way stops there.
@@ -289,10 +298,11 @@ void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
 /// The grip force follows what the hand does.
 void HandExecutor::change_level(double dt) noexcept {
   const double change = dt / settings_.grip_rise_time;
-  if (phase_ == Phase::regripping) level_ = std::min(1.0, level_ + change);
-  if (phase_ == Phase::loosened)
+  if (phase_ == Phase::regripping)
+    level_ = std::min(1.0, level_ + change);
+  else if (phase_ == Phase::loosened)
     level_ = std::max(std::min(level_, settings_.loosen_fraction), level_ - change);
-  if (phase_ == Phase::unloading || phase_ == Phase::releasing || phase_ == Phase::moving)
+  else if (phase_ == Phase::unloading || phase_ == Phase::moving || !closed_)
     level_ = std::max(0.0, level_ - change);
   // Fingers that open while they still press drag the object along.
   if (phase_ == Phase::unloading && level_ <= 0.0) start(Phase::releasing);

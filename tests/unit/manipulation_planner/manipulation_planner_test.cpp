@@ -119,6 +119,39 @@ TEST(ManipulationPlanner, what_a_person_has_drawn_out_of_the_closed_hand_is_give
   EXPECT_FALSE(rig.planner.status().holding);
 }
 
+TEST(ManipulationPlanner, an_opening_that_a_stop_interrupts_depends_on_whose_hand_has_the_object) {
+  for (const bool person_has_it : {true, false}) {
+    SCOPED_TRACE(person_has_it ? "the person" : "the robot");
+    Rig rig;
+    rig.start(ActionKind::pick);
+    rig.run(30);
+    rig.person_takes = false;
+    rig.start(ActionKind::give);
+    rig.run_until("offer");
+    for (int i = 0; i < 5; ++i) rig.cycle();
+    ASSERT_EQ(rig.hand_actions.back(), HandAction::release_on_pull);
+    const std::size_t before = rig.hand_actions.size();
+    if (person_has_it) {
+      rig.scene.objects[0].holder = Holder::human;
+      rig.scene.objects[0].holder_id = "anna";
+    }
+    rig.execution.hand = HandState::refused;
+    for (int i = 0; i < 50; ++i) rig.cycle();
+    const std::vector<HandAction> sent(rig.hand_actions.begin() + static_cast<long>(before),
+                                       rig.hand_actions.end());
+    if (person_has_it) {
+      EXPECT_EQ(sent, std::vector{HandAction::release});
+      rig.run(5);
+      EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+      EXPECT_FALSE(rig.planner.status().holding);
+    } else {
+      EXPECT_EQ(sent, (std::vector{HandAction::grasp, HandAction::release_on_pull}));
+      EXPECT_EQ(phase_text(rig.planner.status()), "offer");
+      EXPECT_TRUE(rig.planner.status().holding);
+    }
+  }
+}
+
 TEST(ManipulationPlanner, a_motion_that_is_stopped_is_planned_again) {
   Rig rig;
   rig.stops = 2;

@@ -203,6 +203,7 @@ class Rig {
   }
   void obey(const HandCommand& command) {
     execution.hand_command = command.id;
+    hand_actions.push_back(command.action);
     execution.hand = command.action == HandAction::grasp
                          ? (grasp_holds && !unsure ? HandState::grasped : HandState::empty)
                      : command.action == HandAction::release_on_pull ? HandState::grasped
@@ -257,6 +258,7 @@ class Rig {
       object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
+  std::vector<HandAction> hand_actions;  // of all hand commands
   int opens_for{}, opening{};  // the hand, told to move: cycles that it takes, and that are left
   double opens_by{};           // the first axis of the hand before a grasp [rad]
   bool moves{};                // trajectories take their time, paths are kept

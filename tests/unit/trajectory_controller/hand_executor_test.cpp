@@ -52,6 +52,22 @@ class HandTest : public testing::Test {
     run(3.0);
     ASSERT_EQ(hand_.state(), HandState::grasped);
   }
+  /// The hand is stopped and joins the robot again, as after a stop of all drives.
+  void stop_and_rejoin() {
+    may_move_ = false;
+    run(0.3);
+    hand_.follow(robot_.position, 0.1);
+    may_move_ = true;
+  }
+  /// The hand holds an object, offers it, and a person begins to pull.
+  void pull_for(double seconds) {
+    ASSERT_NO_FATAL_FAILURE(grasp_object());
+    command(HandAction::release_on_pull, 0.0);
+    run(1.0);
+    firm_ = hand_.effort(0);
+    force_ += Vector3(8.0, 0, 2.0);
+    run(seconds);
+  }
   void run(double seconds) {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       for (int i = 0; i < 4; ++i) {
@@ -85,6 +101,7 @@ class HandTest : public testing::Test {
   std::vector<double> block_;
   std::array<double, 4> jammed_{1, 1, 1, 1};  // share of the effort that reaches the object
   Vector3 force_{0, 0, -3.0};
+  double firm_{};  // effort of a finger before the person pulled [Nm]
   double person_distance_{0.1};
   bool may_move_{true};
   TimePoint now_{from_seconds(10)};
@@ -383,6 +400,46 @@ TEST_F(HandTest, opens_when_the_person_pulls) {
       << "loosened, but still pressing";
   run(0.2);
   EXPECT_EQ(hand_.state(), HandState::moving);
+  run(1.5);
+  EXPECT_EQ(hand_.state(), HandState::released);
+}
+
+TEST_F(HandTest, a_grip_loosened_before_a_stop_is_firm_again_and_a_pull_still_opens_it) {
+  ASSERT_NO_FATAL_FAILURE(pull_for(0.3));
+  ASSERT_LT(hand_.effort(0), 0.9 * firm_) << "loosened";
+  force_ = {0, 0, -3.0};
+  stop_and_rejoin();
+  run(1.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  EXPECT_NEAR(hand_.effort(0), firm_, 1e-9);
+  force_ += Vector3(8.0, 0, 2.0);
+  run(2.0);
+  EXPECT_EQ(hand_.state(), HandState::released);
+}
+
+TEST_F(HandTest, a_stop_before_the_pull_leaves_the_offer_in_force) {
+  ASSERT_NO_FATAL_FAILURE(grasp_object());
+  command(HandAction::release_on_pull, 0.0);
+  run(0.5);
+  stop_and_rejoin();
+  run(1.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  force_ += Vector3(8.0, 0, 2.0);
+  run(2.0);
+  EXPECT_EQ(hand_.state(), HandState::released);
+}
+
+TEST_F(HandTest, an_opening_that_a_stop_interrupts_is_reported_and_presses_no_more) {
+  ASSERT_NO_FATAL_FAILURE(pull_for(0.7));
+  ASSERT_EQ(hand_.state(), HandState::moving);
+  stop_and_rejoin();
+  const double position = out_.position[0];
+  run(1.0);
+  EXPECT_EQ(hand_.state(), HandState::refused);
+  EXPECT_GT(position, 0.0) << "still on the way";
+  EXPECT_NEAR(out_.position[0], position, 0.02) << "the planner says what follows";
+  EXPECT_EQ(hand_.effort(0), 0.0);
+  command(HandAction::release, 0.0);
   run(1.5);
   EXPECT_EQ(hand_.state(), HandState::released);
 }
