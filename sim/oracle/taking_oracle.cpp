@@ -8,7 +8,7 @@
 
 #include "common/model/human/human_body.hpp"
 #include "common/model/human/human_wrist.hpp"
-#include "sim/physics/object_surface.hpp"
+#include "common/model/object_surface.hpp"
 
 namespace handsel::sim {
 namespace {

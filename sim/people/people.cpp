@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "common/model/object_surface.hpp"
 #include "sim/physics/contacts.hpp"
-#include "sim/physics/object_surface.hpp"
 
 namespace handsel::sim {
 

@@ -1,9 +1,9 @@
 // Where body, arms and gaze of a person are, and where a hand holds an object.
 #include <algorithm>
 
+#include "common/model/object_surface.hpp"
 #include "sim/people/person.hpp"
 #include "sim/people/person_parts.hpp"
-#include "sim/physics/object_surface.hpp"
 
 namespace handsel::sim {
 

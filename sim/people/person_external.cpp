@@ -4,9 +4,9 @@
 // comes back to where it is told to be.
 #include <algorithm>
 
+#include "common/model/object_surface.hpp"
 #include "sim/people/person.hpp"
 #include "sim/people/person_parts.hpp"
-#include "sim/physics/object_surface.hpp"
 
 namespace handsel::sim {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "common/model/object_model.hpp"
 
-namespace handsel::sim {
+namespace handsel {
 
 /// Returns the distance [m], negative inside; the point is in the object frame. A mesh part counts
 /// as its bounding box. +inf without parts.
 double surface_distance(const ObjectModel&, const Vector3& p_object);
 
-}  // namespace handsel::sim
+}  // namespace handsel

@@ -1,9 +1,9 @@
-#include "sim/physics/object_surface.hpp"
+#include "common/model/object_surface.hpp"
 
 #include <algorithm>
 #include <limits>
 
-namespace handsel::sim {
+namespace handsel {
 
 namespace {
 
@@ -41,4 +41,4 @@ double surface_distance(const ObjectModel& model, const Vector3& p_object) {
   return least;
 }
 
-}  // namespace handsel::sim
+}  // namespace handsel
