@@ -62,12 +62,19 @@ std::optional<Vector> ActiveArm::reach(const Pose& T_world_tool) const {
                          options);
 }
 
-std::optional<Grasp> ActiveArm::grasp_at(const Pose& T_world_object, const Grasp& grasp) const {
+Pose ActiveArm::T_grasp_standoff(const Grasp& grasp) const {
   const auto T_root_hand_at = [this](const Vector& joints) {
     return robot_->link_pose(set_point_with(joints), palm_);
   };
-  const Pose T_grasp_standoff =
-      T_root_hand_at(grasp.arm_joints).inverse() * T_root_hand_at(grasp.approach_joints);
+  return T_root_hand_at(grasp.arm_joints).inverse() * T_root_hand_at(grasp.approach_joints);
+}
+
+Vector3 ActiveArm::direction_back(const Grasp& grasp) const {
+  const Vector3 back = T_grasp_standoff(grasp).translation();
+  return back.norm() > 1e-6 ? back.normalized() : Vector3(-Vector3::UnitZ());
+}
+
+std::optional<Grasp> ActiveArm::grasp_at(const Pose& T_world_object, const Grasp& grasp) const {
   const Pose T_root_hand = now_.T_world_base().inverse() * T_world_object * grasp.T_object_hand;
   IkOptions options;
   options.restarts = 0;
@@ -75,7 +82,7 @@ std::optional<Grasp> ActiveArm::grasp_at(const Pose& T_world_object, const Grasp
   const auto at = robot_->inverse(group_, T_root_hand, set_point_with(grasp.arm_joints), options);
   if (!at) return std::nullopt;
   const auto before =
-      robot_->inverse(group_, T_root_hand * T_grasp_standoff, set_point_with(*at), options);
+      robot_->inverse(group_, T_root_hand * T_grasp_standoff(grasp), set_point_with(*at), options);
   if (!before) return std::nullopt;
   found.arm_joints = *at;
   found.approach_joints = *before;

@@ -58,10 +58,15 @@ class ActiveArm {
   Vector3 p_world_shoulder() const;
   /// Returns axes of the arm near the present ones that put the hand there; nullopt: out of reach.
   std::optional<Vector> reach(const Pose& T_world_tool) const;
+  /// Returns the direction in which the hand comes off an object it has grasped, towards the
+  /// stand-off of the grasp (unit vector, tool frame).
+  Vector3 direction_back(const Grasp& grasp) const;
   /// Returns the grasp for an object that is there now; nullopt: the arm does not reach it.
   std::optional<Grasp> grasp_at(const Pose& T_world_object, const Grasp& grasp) const;
 
  private:
+  Pose T_grasp_standoff(const Grasp& grasp) const;
+
   std::shared_ptr<const RobotModel> robot_;
   const Snapshot& now_;
   std::vector<Manipulator> manipulators_;

@@ -1,4 +1,5 @@
 // The action give.
+#include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/handover/otp_choice.hpp"
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double kRetryPause = 0.5;  // before the person's reach is checked again [s]
 constexpr double kTakePause = 0.5;   // before the hand retreats from what was taken [s]
+constexpr double kDrawnOut = 0.7;    // cosine of a pull and the direction out of the fingers
 
 /// Returns the motion that carries the object to the receiver.
 MotionSpec carry_motion(const Parts& parts, const std::string& object, const OtpSearch& search,
@@ -112,6 +114,19 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
                              ActionFailure::not_taken);
 }
 
+/// Returns whether a pull toward the person draws the object out of the opened fingers, not against
+/// one of them, as where a finger is inside a cup.
+bool is_drawn_past_fingers(const Parts& parts, const std::string& object,
+                           const std::string& receiver) {
+  const Person* person = parts.now.person(receiver);
+  if (person == nullptr) return true;
+  const Vector3& p_trunk =
+      person->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const Vector3 pull =
+      (p_trunk - parts.arm.T_world_tool().translation()).cwiseProduct(Vector3(1, 1, 0));
+  return pull.stableNormalized().dot(-retreat_direction(parts, object)) >= kDrawnOut;
+}
+
 }  // namespace
 
 Routine<Outcome> give(Parts& parts, const std::string& object, const std::string& human) {
@@ -142,7 +157,7 @@ Routine<Outcome> give(Parts& parts, const std::string& object, const std::string
   if (!offered.good) co_return offered;
   parts.held.release();
   parts.action.phase = ActionPhase::retreat;
-  co_await parts.waiting.pause(kTakePause);
+  if (is_drawn_past_fingers(parts, object, receiver)) co_await parts.waiting.pause(kTakePause);
   Outcome back = co_await retreat(parts, receiver, object);
   if (!back.good) parts.refuse("retreat", back.reason);
   co_return Outcome{};

@@ -8,8 +8,20 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kMaxStraightTurn = 0.9;  // of one axis; with more the tool swings around [rad]
-constexpr double kRetreatRatios[] = {1.0, 0.75, 0.5, 0.3};  // of the retreat distance
-constexpr double kLiftRatios[] = {1.0, 0.85, 0.6, 0.4};     // of the lift height
+constexpr int kRetreatSteps = 3;          // from the longest to the shortest retreat
+constexpr double kBeside = 0.5;           // of the directions beside that of the retreat [rad]
+constexpr double kLiftRatios[] = {1.0, 0.85, 0.6, 0.4};  // of the lift height
+
+/// Returns the four directions around `back`, by `kBeside` off it.
+std::vector<Vector3> directions_beside(const Vector3& back) {
+  const Vector3 across = back.unitOrthogonal();
+  std::vector<Vector3> directions;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Vector3 axis = Eigen::AngleAxisd(quarter * M_PI_2, back) * across;
+    directions.push_back(Eigen::AngleAxisd(kBeside, axis) * back);
+  }
+  return directions;
+}
 
 /// Lifts what was grasped straight up.
 Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string& for_human) {
@@ -162,43 +174,55 @@ Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::s
                              ActionFailure::left_behind);
 }
 
-/// Returns the direction of the retreat in the world: back along the grasp, else off the object.
-static Vector3 retreat_direction(const Parts& parts, const std::string& object) {
+Vector3 retreat_direction(const Parts& parts, const std::string& object) {
   const Pose T_now = parts.arm.T_world_tool();
   Vector3 back = -Vector3::UnitZ();  // tool frame
-  if (const auto& grasp = parts.held.grasp()) {
-    const auto T_root_hand = [&](const Vector& joints) {
-      return parts.arm.robot().link_pose(parts.arm.set_point_with(joints), parts.arm.palm());
-    };
-    const Pose T_root_grasp = T_root_hand(grasp->arm_joints);
-    const Pose T_root_standoff = T_root_hand(grasp->approach_joints);
-    back = (T_root_grasp.inverse() * T_root_standoff).translation();
-  } else if (const SceneObject* left = parts.now.object(object)) {
-    back = -(T_now.inverse() * left->T_world_object.translation());
-  }
-  return T_now.linear() * back.normalized();
+  if (const auto& grasp = parts.held.grasp())
+    back = parts.arm.direction_back(*grasp);
+  else if (const SceneObject* left = parts.now.object(object))
+    back = -(T_now.inverse() * left->T_world_object.translation()).normalized();
+  return T_now.linear() * back;
 }
 
-Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::string& object) {
+namespace {
+
+/// Retreats straight in a direction of the world, as far as the arm can.
+Routine<Outcome> retreat_along(Parts& parts, const Vector3& away, MotionSpec& motion) {
+  const double farthest = parts.settings.retreat_distance,
+               least = std::min(farthest, parts.settings.min_retreat);
   const Pose T_now = parts.arm.T_world_tool();
-  const Vector3 away = retreat_direction(parts, object);
-  MotionSpec motion;
-  motion.phase = ActionPhase::retreat;
-  motion.is_straight = true;
-  motion.allowed = {object};
-  if (!person.empty()) motion.allowed.push_back(person);
-  std::string why = "no configuration of the arm lies there";
-  for (const double ratio : kRetreatRatios) {
+  Outcome last = Outcome::failure("no configuration of the arm lies there");
+  for (int step = 0; step <= kRetreatSteps; ++step) {
     Pose T = T_now;
-    T.translation() += ratio * parts.settings.retreat_distance * away;
+    T.translation() += (farthest - (farthest - least) * step / kRetreatSteps) * away;
     const auto joints = parts.arm.reach(T);
     const bool is_straight =
         joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() < kMaxStraightTurn;
     if (!is_straight) continue;
     motion.goals = {*joints};
-    Outcome outcome = co_await move(parts, motion);
+    last = co_await move(parts, motion);
+    if (last.good) break;
+  }
+  co_return last;
+}
+
+}  // namespace
+
+Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::string& object) {
+  MotionSpec motion;
+  motion.phase = ActionPhase::retreat;
+  motion.is_straight = true;
+  motion.allowed = {object};
+  if (!person.empty()) motion.allowed.push_back(person);
+  const Vector3 back = retreat_direction(parts, object);
+  Outcome outcome = co_await retreat_along(parts, back, motion);
+  const std::string why = outcome.reason;
+  if (outcome.good) co_return outcome;
+  // Beside that direction the fingers still come off the object, though not as far from it.
+  const std::vector<Vector3> beside = directions_beside(back);
+  for (const Vector3& direction : beside) {
+    outcome = co_await retreat_along(parts, direction, motion);
     if (outcome.good) co_return outcome;
-    why = outcome.reason;
   }
   co_return Outcome::failure("the hand finds no straight path back from " + object + ": " + why);
 }

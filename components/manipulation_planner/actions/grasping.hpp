@@ -26,7 +26,11 @@ MotionSpec reach_along(const Parts& parts, const std::string& object, const Gras
 /// Approaches an object, closes the hand and lifts the object. `for_human`: as of pick().
 Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human,
                            const Grasp& grasp);
-/// Retreats the opened hand straight from what it has released. `person`: who may be touched,
+/// Returns the direction in which the hand comes off what it holds or has released, back along the
+/// grasp (unit vector, world).
+Vector3 retreat_direction(const Parts& parts, const std::string& object);
+/// Retreats the opened hand straight from what it has released, back along the grasp or, where the
+/// arm cannot, a little beside that direction. `person`: who may be touched,
 /// empty: nobody.
 Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::string& object);
 /// Returns the positions of the fingers that open the hand about what it holds.

@@ -34,11 +34,14 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
                                   const Pose& T_world_object) {
   auto settings = parts.settings;
   settings.exchange_goals = 1;
+  std::vector<Vector3> backs;
+  for (const Grasp& grasp : grasps) backs.push_back(parts.arm.direction_back(grasp));
   return [result = std::move(result), grasps, settings, person, T_world_object,
           robot = parts.arm.shared_robot(), arm = parts.arm.group(), scene = parts.now.scene(),
           layers = parts.now.layers(), q = parts.now.set_point(),
           hands = hands_of(person, parts.now.scene(), parts.now.T_world_base().translation(),
-                           parts.settings)] {
+                           parts.settings),
+          backs = std::move(backs)] {
     const bool has_pairs = std::any_of(grasps.begin(), grasps.end(),
                                        [](const Grasp& grasp) { return !grasp.partners.empty(); });
     for (std::size_t i = 0; i < grasps.size(); ++i) {
@@ -47,7 +50,8 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
       const Pose T_tool_object = grasps[i].T_object_hand.inverse();
       const std::vector<Vector3> barred = barred_directions(grasps[i]);
       const OtpQuery query{
-          scene, person, layers, T_world_object, T_tool_object, barred, grasps[i].partners, hands};
+          scene, person,  layers, T_world_object, T_tool_object, barred, grasps[i].partners,
+          hands, backs[i]};
       const OtpSearch search = find_otp(*robot, arm, query, q, settings);
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});

@@ -65,8 +65,10 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
        T_now = parts.held.T_world_object(),
        barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{},
        partners = grasp ? grasp->partners : std::vector<PartnerGrasp>{},
-       hands = look_at_hands(parts, *person), settings = parts.settings] {
-        const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred, partners, hands};
+       hands = look_at_hands(parts, *person), settings = parts.settings,
+       back = grasp ? std::optional<Vector3>(parts.arm.direction_back(*grasp)) : std::nullopt] {
+        const OtpQuery query{scene,  who,      layers, T_now, T_tool_object,
+                             barred, partners, hands,  back};
         choice->search = find_otp(*robot, arm, query, q, settings);
         if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
       };

@@ -14,11 +14,12 @@ namespace {
 constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
 constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
-constexpr int kHeadings = 24;          // of the object at each place
-constexpr double kMinDistance = 0.05;  // between alternatives [m]
-constexpr double kMaxBarred = 0.5;     // cosine of a finger and the person's pull
-constexpr double kNoPartner = 2;       // strain that counts where no grasp of the person fits
-constexpr double kMinFacing = -0.3;    // cosine: the hand must not come from the person's side
+constexpr int kHeadings = 24;            // of the object at each place
+constexpr double kMinDistance = 0.05;    // between alternatives [m]
+constexpr double kMaxBarred = 0.5;       // cosine of a finger and the person's pull
+constexpr double kNoPartner = 2;         // strain that counts where no grasp of the person fits
+constexpr double kMaxRetreatTurn = 0.9;  // of one axis while the hand retreats [rad]
+constexpr double kMinFacing = -0.3;      // cosine: the hand must not come from the person's side
 
 struct Candidate {
   Pose T_world_object;
@@ -215,6 +216,16 @@ void add_partners(const OtpCosts& costs, std::size_t count, std::vector<Candidat
   std::stable_sort(poses.begin(), poses.end(), cheaper);
 }
 
+/// Returns whether the hand can retreat straight from a configuration, given by the joints of the
+/// arm and by all axes, to a pose of the hand.
+bool can_retreat(const RobotModel& robot, const Group& arm, const Vector& joints, const Vector& q,
+                 const Pose& T_root_retreat) {
+  IkOptions options;
+  options.restarts = 0;
+  const auto back = robot.inverse(arm, T_root_retreat, q, options);
+  return back && (*back - joints).cwiseAbs().maxCoeff() < kMaxRetreatTurn;
+}
+
 }  // namespace
 
 std::vector<Vector3> barred_directions(const Grasp& grasp) {
@@ -240,24 +251,35 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
   IkOptions options;
   options.restarts = 0;
   int unreachable = 0;
+  std::vector<OtpPose> confined;  // the hand could not retreat
   for (const Candidate& candidate : candidates.all) {
     if (!out.poses.empty() && candidate.cost > out.poses.front().cost + settings.otp_extra_cost)
       break;
-    const bool is_near = std::any_of(out.poses.begin(), out.poses.end(), [&](const OtpPose& pose) {
+    const auto is_near = [&](const OtpPose& pose) {
       return (pose.T_world_object.translation() - candidate.T_world_object.translation()).norm() <
              kMinDistance;
-    });
-    if (is_near) continue;
+    };
+    if (std::any_of(out.poses.begin(), out.poses.end(), is_near)) continue;
     if (out.poses.size() >= settings.exchange_goals || out.tried >= settings.handover_tries) break;
     ++out.tried;
     const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object *
                             query.T_tool_object.inverse();
-    if (auto joints = robot.inverse(arm, T_root_tip, q, options))
-      out.poses.push_back(
-          {candidate.T_world_object, std::move(*joints), candidate.cost, candidate.partner});
-    else
+    auto joints = robot.inverse(arm, T_root_tip, q, options);
+    if (!joints) {
       ++unreachable;
+      continue;
+    }
+    Pose T_root_retreat = T_root_tip;
+    if (query.back)
+      T_root_retreat.translation() += settings.min_retreat * (T_root_tip.linear() * *query.back);
+    const bool retreats =
+        !query.back ||
+        can_retreat(robot, arm, *joints, RobotModel::with(q, arm, *joints), T_root_retreat);
+    (retreats ? out.poses : confined)
+        .push_back(
+            {candidate.T_world_object, std::move(*joints), candidate.cost, candidate.partner});
   }
+  if (out.poses.empty() && !confined.empty()) out.poses = {confined.front()};
   if (out.poses.empty())
     out.reason = "no exchange point with " + query.person.id + ": " +
                  std::to_string(candidates.out_of_reach) + " places beyond their reach, " +

@@ -59,6 +59,8 @@ struct OtpQuery {
   /// Hands of the person that find room beside the robot's; empty: not known.
   const std::vector<PartnerGrasp>& partners;
   ReceiverHands hands{};  ///< which hands are free, and which is ready
+  /// Unit vector in which the hand retreats after the release, tool frame; nullopt: not known.
+  std::optional<Vector3> back{};
 };
 
 /// Returns the directions, seen from the object, in which a hand that pinches stands (outward
@@ -82,7 +84,8 @@ std::optional<PartnerPose> easiest_partner(const std::vector<TakingArm>& arms,
 /// under or behind furniture as the person sees it, and those an outside layer forbids, are left
 /// out. The person must be able to draw the object toward them, and to grasp it with a wrist that
 /// is comfortable: the grasp of theirs with the smallest strain counts at each pose, of the hand
-/// that is ready where this is known. A hand that holds something takes nothing.
+/// that is ready where this is known. A hand that holds something takes nothing. Poses from which
+/// the robot's hand cannot retreat by `min_retreat` are returned only where there are no others.
 OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
                    const Vector& q, const settings::ManipulationPlannerSettings& settings);
 

@@ -300,6 +300,38 @@ TEST_F(OtpSearchTest, a_finger_in_the_direction_of_the_pull_makes_a_pose_impossi
   EXPECT_FALSE(otp_cost(query, T_best, rig::settings()));
 }
 
+TEST_F(OtpSearchTest, poses_from_which_the_hand_cannot_retreat_are_left_out) {
+  auto settings = rig::settings();
+  settings.exchange_goals = 20;
+  settings.otp_extra_cost = 10;
+  settings.min_retreat = 0.25;
+  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+             T_tool_mug = make_pose({0.08, 0.02, 0.23});
+  const LayersNow layers;
+  const Vector3 back = -Vector3::UnitZ();
+  const Group& arm = rig_.robot->require_group("arm");
+  const auto count_confined = [&](const OtpSearch& search) {
+    return std::count_if(search.poses.begin(), search.poses.end(), [&](const OtpPose& pose) {
+      Pose T = rig_.scene.T_world_base.inverse() * pose.T_world_object * T_tool_mug.inverse();
+      T.translation() += settings.min_retreat * (T.linear() * back);
+      const Vector from = RobotModel::with(rig_.q, arm, pose.arm_joints);
+      IkOptions options;
+      options.restarts = 0;
+      return !rig_.robot->inverse(arm, T, from, options);
+    });
+  };
+  OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, {}};
+  const OtpSearch any = find_otp(*rig_.robot, arm, query, rig_.q, settings);
+  EXPECT_GT(count_confined(any), 0);
+  query.back = back;
+  const OtpSearch search = find_otp(*rig_.robot, arm, query, rig_.q, settings);
+  ASSERT_FALSE(search.poses.empty()) << search.reason;
+  EXPECT_EQ(count_confined(search), 0);
+  settings.min_retreat = 2;
+  const OtpSearch nowhere = find_otp(*rig_.robot, arm, query, rig_.q, settings);
+  EXPECT_EQ(nowhere.poses.size(), 1u) << "better than no handover";
+}
+
 TEST_F(OtpSearchTest, only_a_hand_that_pinches_bars_directions) {
   Grasp grasp;
   grasp.contacts.resize(3);
