@@ -1,25 +1,35 @@
 #include "components/manipulation_planner/hand/held_object.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "common/model/human/human_body.hpp"
+#include "common/model/object_surface.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kMaxHandDistance = 0.15;  // middle of a hand to that of what it takes hold of [m]
+constexpr double kMaxSurfaceDistance = 0.1;  // middle of a hand to the surface of it [m]
 constexpr double kMaxOffset =
     0.2;                           // farther from where the hand would have it: not in the hand [m]
 constexpr double kSlipTime = 0.2;  // so long out of the hand: slipped [s]
 
+using HandPoints = std::array<Vector3, 2>;
+
+/// Returns the middles of the hands of a person (world).
+HandPoints hands_of_person(const Person& person) {
+  const auto joint = [&](const char* name) {
+    return person.joints[static_cast<std::size_t>(body_joint_index(name))].position;
+  };
+  return {joint("l_hand"), joint("r_hand")};
+}
+
 /// Returns whether a hand of the person is within `distance` [m] of a point of the world.
 bool has_hand_near(const Person& person, const Vector3& p_world, double distance) {
-  const auto near = [&](const char* hand) {
-    const Vector3& p_hand =
-        person.joints[static_cast<std::size_t>(body_joint_index(hand))].position;
-    return (p_hand - p_world).norm() < distance;
-  };
-  return near("l_hand") || near("r_hand");
+  const HandPoints hands = hands_of_person(person);
+  return std::any_of(hands.begin(), hands.end(),
+                     [&](const Vector3& p_hand) { return (p_hand - p_world).norm() < distance; });
 }
 
 }  // namespace
@@ -49,8 +59,15 @@ bool HeldObject::is_held_by_hand(const std::string& object) const {
 bool HeldObject::is_at_hand_of(const std::string& person, const std::string& object) const {
   const SceneObject* thing = now_.object(object);
   const Person* found = now_.person(person);
-  return thing != nullptr && found != nullptr &&
-         has_hand_near(*found, thing->T_world_object.translation(), kMaxHandDistance);
+  if (thing == nullptr || found == nullptr) return false;
+  const ObjectModel* model = now_.model_of(object);
+  if (model == nullptr)
+    return has_hand_near(*found, thing->T_world_object.translation(), kMaxHandDistance);
+  const HandPoints hands = hands_of_person(*found);
+  const Pose T_object_world = thing->T_world_object.inverse();
+  return std::any_of(hands.begin(), hands.end(), [&](const Vector3& p_hand) {
+    return surface_distance(*model, T_object_world * p_hand) < kMaxSurfaceDistance;
+  });
 }
 
 bool HeldObject::is_taken_by(const std::string& person) const {

@@ -151,6 +151,8 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
     parts.action.phase = motion.phase;
     const bool ready = co_await parts.link.await_permission();
     if (!ready) co_return parts.link.not_permitted();
+    if (parts.held.is_taken_by(motion.yields_to))
+      co_return parts.monitor.why_ended(motion, parts.now.time());
     const Vector start = parts.arm.configuration();
     PlannedPath planned = co_await plan_path(parts, start, motion);
     std::string in_the_way;

@@ -119,6 +119,25 @@ TEST(ManipulationPlanner, what_a_person_has_drawn_out_of_the_closed_hand_is_give
   EXPECT_FALSE(rig.planner.status().holding);
 }
 
+TEST(ManipulationPlanner, a_person_at_the_far_end_of_something_long_has_taken_hold_of_it) {
+  for (const bool is_long : {true, false}) {
+    SCOPED_TRACE(is_long);
+    Rig rig;
+    if (is_long) rig.mug.parts.push_back({Box{{0.05, 0.05, 0.6}}, Pose::Identity()});
+    rig.start(ActionKind::pick);
+    rig.run(30);
+    rig.phases.clear();
+    const Pose T_world_mug = rig.scene.objects[0].T_world_object;
+    const auto hand = static_cast<std::size_t>(body_joint_index("r_hand"));
+    rig.people.people[0].joints[hand].position = T_world_mug * Vector3(0.03, 0, 0.25);
+    rig.person_takes = false;
+    rig.start(ActionKind::give);
+    for (int i = 0; i < 10; ++i) rig.cycle();
+    EXPECT_EQ(phase_text(rig.planner.status()), "offer");
+    EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "carry"), is_long ? 0 : 1);
+  }
+}
+
 TEST(ManipulationPlanner, an_opening_that_a_stop_interrupts_depends_on_whose_hand_has_the_object) {
   for (const bool person_has_it : {true, false}) {
     SCOPED_TRACE(person_has_it ? "the person" : "the robot");
@@ -297,7 +316,7 @@ TEST(ManipulationPlanner, what_slips_out_of_the_hand_ends_the_action_with_that_r
     for (int i = 0; i < 20; ++i) rig.cycle();
     const ActionStatus& status = rig.planner.status();
     if (to_a_person) {
-      EXPECT_EQ(status.state, ActionState::running) << status.reason;
+      EXPECT_NE(status.state, ActionState::failed) << status.reason;
       continue;
     }
     EXPECT_EQ(status.state, ActionState::failed);
