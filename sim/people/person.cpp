@@ -14,6 +14,8 @@ constexpr double kGone =
     0.2;  // who reaches for an object follows it up to this speed, who is early ...
 constexpr double kGoneEarly = 0.5;   // ... up to this [m/s]
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
+constexpr double kTakenUp = 0.1;     // from its place, before a person reaches for it [m]
+constexpr double kGiveWay = 0.5;     // pace of giving way, of that of withdrawing
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
 constexpr double kStepBack = 0.2;    // with what it took [m]
 constexpr double kStay = 2.0;        // who has fetched something goes then [s]
@@ -112,6 +114,11 @@ void PersonModel::step(double dt, const PersonView& view) {
   if (!frozen_ && dt > 0) {
     clock_ += dt;
     if (view.held_by_robot) carried_since_ = std::min(carried_since_, clock_);
+    if (!view.held_by_robot)
+      p_gripped_.reset();
+    else if (!seen_held_ && !wants_grip_)
+      p_gripped_ = view.T_world_object.translation();
+    seen_held_ = view.held_by_robot;
     if (settings_.kind == PersonKind::external) {
       accompany(dt, view);
     } else if (settings_.kind != PersonKind::still) {
@@ -221,6 +228,10 @@ bool PersonModel::offered(const PersonView& view, int side) const {
       view.object_velocity.norm() > fastest)
     return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
+  // What the robot has only begun to lift from its place is not held out to anybody.
+  const bool is_taken_up = settings_.kind != PersonKind::taker || !p_gripped_ ||
+                           (view.T_world_object.translation() - *p_gripped_).norm() >= kTakenUp;
+  if (!is_taken_up) return false;
   if (settings_.kind == PersonKind::partner && announcement_ != Announcement::offers) return false;
   return (object_centre(view) - shoulder(side)).norm() <
          reach_ + (settings_.recording ? kStep : kLeanReach);
@@ -338,6 +349,7 @@ void PersonModel::pull(double dt, const PersonView& view) {
     duration_ = 1.2;
     lean_from_ = lean_;
     home_ = feet_;
+    held_below_ = below_hand(view);
     enter(PersonPhase::withdrawing);
   }
 }
@@ -346,7 +358,9 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   if (!wants_grip_) return give_up();
   sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
   if (sore_time_ > 0.3) return give_up();
-  progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
+  // People pull no harder than twice as usual, and give way where the object is caught.
+  const double pace = 2 - view.grip_force.norm() / settings_.pull;
+  progress_ = std::max(0.0, progress_ + dt / duration_ * std::clamp(pace, -kGiveWay, 1.0));
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
   if (!settings_.behaviour.seated) feet_ = home_ - s * kStepBack * forward();

@@ -196,6 +196,7 @@ class PersonModel {
   Vector3 keep_point() const;
   double height_above_furniture(const Vector3& hand) const;
   void keep_above_furniture(const Vector3& robot_hand);
+  double below_hand(const PersonView&) const;
   double since() const { return clock_ - phase_since_; }
   Vector3 hand_point() const { return hands_[index()].T_world_body.translation(); }
   int index() const { return side_ == Side::left ? 0 : 1; }
@@ -212,8 +213,11 @@ class PersonModel {
   double step_clock_{0};   // of the sidestep
   // When the robot first had the object, by the clock of the person [s]; infinity: not yet.
   double carried_since_{std::numeric_limits<double>::infinity()};
-  double ready_{0};    // fraction of the time of raising the hand
-  double ignored_{0};  // the offer, so long [s]
+  bool seen_held_{true};              // the robot held the object in the step before
+  std::optional<Vector3> p_gripped_;  // where it gripped the object; nullopt: not seen
+  double held_below_{0};              // how far the held object extends below the hand [m]
+  double ready_{0};                   // fraction of the time of raising the hand
+  double ignored_{0};                 // the offer, so long [s]
   Announcement announcement_{Announcement::none};
   double announced_at_{0};  // by the clock of the person [s]
   int steps_nearer_{0};

@@ -28,6 +28,7 @@ constexpr double kBend = 0.01;  // ... where the arm need not bend for it by mor
 // [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it,
 // and lower with every step away from there.
 constexpr double kAbove = 0.12, kBeside = 0.12;
+constexpr double kOverFurniture = 0.02;  // of the lowest point of what is held [m]
 // Who waits for something raises a hand so long [s], to so far ahead of the shoulder and below it,
 // over the stature: the forearm level.
 constexpr double kReadyTime = 0.7, kReadyAhead = 0.18, kReadyBelow = 0.19;
@@ -241,7 +242,8 @@ double PersonModel::height_above_furniture(const Vector3& hand) const {
                  z = box.T_world_box.translation().z();
     if (hand.z() < z - up) continue;  // it hangs over them
     const double beside = (p.cwiseAbs() - half).cwiseMax(0).head<2>().norm();
-    least = std::max(least, z + up + kAbove - std::max(0.0, beside - kBeside));
+    const double above = std::max(kAbove, held_below_ + kOverFurniture);
+    least = std::max(least, z + up + above - std::max(0.0, beside - kBeside));
   }
   return least;
 }
@@ -256,8 +258,20 @@ void PersonModel::keep_above_furniture(const Vector3& robot_hand) {
   const double share = phase_ == PersonPhase::withdrawing
                            ? std::min(min_jerk(since() / kLift), min_jerk(away))
                            : 1.0;
-  hand_target_.z() +=
-      share * std::max(0.0, height_above_furniture(hand_target_) - hand_target_.z());
+  const double least = height_above_furniture(hand_target_);
+  hand_target_.z() += share * std::max(0.0, least - hand_target_.z());
+  // Nobody presses what they hold down on furniture.
+  if (phase_ == PersonPhase::withdrawing)
+    hand_target_.z() = std::max(hand_target_.z(), std::min(least, before_[kHand[index()]].z()));
+}
+
+/// Returns how far the object extends below the hand [m].
+double PersonModel::below_hand(const PersonView& view) const {
+  if (view.object == nullptr) return 0;
+  double lowest = hand_target_.z();
+  for (const Vector3& p : view.object->mesh.vertices)
+    lowest = std::min(lowest, (view.T_world_object * p).z());
+  return hand_target_.z() - lowest;
 }
 
 Vector3 PersonModel::looked_at(const PersonView& view) const {

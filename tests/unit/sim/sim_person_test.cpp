@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "sim/physics/object_surface.hpp"
+#include "common/model/object_surface.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
 namespace handsel::sim {
@@ -299,6 +299,73 @@ TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
     ASSERT_LT((hand - before).norm(), 0.004) << i;
     before = hand;
   }
+}
+
+TEST(SimPerson, what_the_robot_has_only_begun_to_lift_is_not_reached_for) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  PersonView view = offer({0.95, 0.05, 1.0});
+  view.held_by_robot = false;
+  for (int i = 0; i < 500; ++i) person.step(0.001, view);
+  view.held_by_robot = true;
+  for (int i = 0; i < 1000; ++i) person.step(0.001, view);
+  view.T_world_object.translation().z() += 0.05;
+  for (int i = 0; i < 4000; ++i) person.step(0.001, view);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+  view.T_world_object.translation().z() += 0.06;
+  for (int i = 0; i < 4000 && person.phase() != PersonPhase::pulling; ++i) person.step(0.001, view);
+  EXPECT_EQ(person.phase(), PersonPhase::pulling);
+}
+
+/// A person who has drawn an object out of the robot's hand and begins to withdraw it. The hand is
+/// above the object's middle; `view` follows.
+PersonModel withdrawing_person(PersonSettings settings, PersonView& view) {
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i) person.step(0.001, view);
+  view.held_by_robot = false;
+  for (int i = 0; i < 1000 && person.phase() != PersonPhase::withdrawing; ++i)
+    person.step(0.001, view);
+  EXPECT_EQ(person.phase(), PersonPhase::withdrawing);
+  return person;
+}
+
+TEST(SimPerson, who_withdraws_gives_way_where_the_object_is_caught) {
+  PersonView view = offer({0.95, 0.05, 1.05});
+  PersonModel person = withdrawing_person({}, view);
+  for (int i = 0; i < 500; ++i) person.step(0.001, view);
+  const Vector3 caught = person.hand().T_world_body.translation();
+  view.grip_force = Vector3(25, 0, 0);
+  for (int i = 0; i < 250; ++i) person.step(0.001, view);
+  const Vector3 eased = person.hand().T_world_body.translation();
+  EXPECT_LT(eased.x(), caught.x() - 0.01) << "toward the robot again";
+  EXPECT_EQ(person.phase(), PersonPhase::withdrawing);
+  view.grip_force.setZero();
+  for (int i = 0; i < 2000; ++i) person.step(0.001, view);
+  EXPECT_EQ(person.phase(), PersonPhase::keeping);
+}
+
+TEST(SimPerson, who_withdraws_something_long_does_not_press_it_on_the_table) {
+  PersonView view = offer({0.95, 0.05, 1.05});
+  ObjectModel tall = *view.object;
+  for (Vector3& p : tall.mesh.vertices) p.z() -= 0.15;  // 15 cm farther down than a mug
+  view.object = &tall;
+  double lowest = 1e9;
+  for (const Vector3& p : tall.mesh.vertices)
+    lowest = std::min(lowest, (view.T_world_object * p).z());
+  PersonSettings settings;
+  settings.furniture = {{make_pose({1.1, 0, (lowest - 0.01) / 2}), {1.4, 1.6, lowest - 0.01}}};
+  PersonModel person = withdrawing_person(settings, view);
+  const double below = person.hand().T_world_body.translation().z() - lowest;
+  for (int i = 0; i < 3000; ++i) {
+    person.step(0.001, view);
+    const double bottom = person.hand().T_world_body.translation().z() - below;
+    ASSERT_GT(bottom, lowest - 0.01) << "in the table after " << i << " ms";
+  }
+  EXPECT_EQ(person.phase(), PersonPhase::keeping);
 }
 
 TEST(SimPerson, who_is_ignored_comes_nearer_and_holds_it_out_anew_twice) {
