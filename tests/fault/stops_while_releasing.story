@@ -10,7 +10,7 @@ wait carrier human within 10s
 silence trajectory_controller for 100ms
 expect mode stop within 500ms
 expect mode normal within 2s
-expect handover within 4s
-expect task done within 10s
+expect handover within 10s
+expect task done within 20s
 expect nothing dropped
 stop

@@ -69,18 +69,17 @@ bool is_drawn_out(const Parts& parts, const std::string& object) {
   return seen != nullptr && seen->holder == Holder::human && !parts.held.is_in_hand(*seen);
 }
 
-/// Returns whether the person has the object after a stop interrupted the hand while it opened.
-bool has_person_it(const Parts& parts, const std::string& object) {
-  const SceneObject* seen = parts.now.object(object);
-  return seen != nullptr && seen->holder == Holder::human;
-}
-
-/// Closes the hand on the object that it offers.
-Routine<Outcome> keep(Parts& parts) {
-  const Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
-  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout);
+/// Closes the hand on the object that it offers; `is_open`: the fingers have begun to open.
+Routine<HandResult> keep(Parts& parts, bool is_open) {
+  Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers()), effort;
+  if (const std::optional<Grasp>& grasp = parts.held.grasp(); is_open && grasp) {
+    grip = grasp->hand_joints;
+    effort = grasp->hand_effort;
+  }
+  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout,
+                                            effort.size() > 0 ? &effort : nullptr);
   if (!held.outcome.good) parts.refuse("keeping the object", held.outcome.reason);
-  co_return held.outcome;
+  co_return held;
 }
 
 /// Offers the object until the receiver takes it; else the hand keeps it.
@@ -99,15 +98,20 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
     if (!released.outcome.good) break;
     if (released.state == HandState::released) co_return Outcome{};
     const bool interrupted = released.state == HandState::refused;
-    if (is_over() || (interrupted && has_person_it(parts, object))) {
+    bool has_person_it = is_over() || (interrupted && !is_held_by_robot(parts, object));
+    if (interrupted && !has_person_it) {
+      const HandResult held = co_await keep(parts, true);
+      // Closed on nothing: the person has drawn the object out, or a finger is caught on it.
+      has_person_it = held.outcome.good && held.state != HandState::grasped;
+    }
+    if (has_person_it) {
       released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
       co_return released.outcome;
     }
     if (!interrupted || parts.now.time() >= deadline) break;
-    co_await keep(parts);
   }
   parts.action.exchange_engaged = false;
-  co_await keep(parts);
+  co_await keep(parts, false);
   if (!released.outcome.good) co_return released.outcome;
   co_return Outcome::failure(receiver + " did not take " + object + " within " +
                                  std::to_string(static_cast<int>(timeout)) + " s",

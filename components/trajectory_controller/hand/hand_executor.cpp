@@ -215,7 +215,7 @@ bool HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   bool done = true;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
-    if (f.contact || std::abs(f.effort) < kMinor * max_effort_) continue;
+    if (f.contact || f.effort == 0.0 || std::abs(f.effort) < kMinor * max_effort_) continue;
     const double met = std::copysign(1.0, f.effort) * fingers_.pressed(robot, i);
     f.pressed_for = met > settings_.touch_effort / f.lever ? f.pressed_for + dt : 0.0;
     const double max_travel = settings_.seek_travel * f.lever * std::abs(f.effort) / max_effort_;

@@ -351,6 +351,12 @@ TEST_F(HandTest, a_grasp_in_doubt_is_grasped_once_the_person_has_left_the_object
   EXPECT_EQ(hand_.state(), HandState::empty) << "fingers that press on nothing hold nothing";
 }
 
+TEST_F(HandTest, a_grasp_that_moves_no_finger_and_names_no_effort_ends) {
+  command(HandAction::grasp, 0.0);
+  run(2.0);
+  EXPECT_EQ(hand_.state(), HandState::empty);
+}
+
 TEST_F(HandTest, closing_on_nothing_is_empty) {
   command(HandAction::grasp, 0.7);
   run(3.0);
