@@ -8,6 +8,7 @@ namespace handsel::sim {
 
 namespace {
 
+constexpr double kGravity = 9.81;   // [m/s^2]
 constexpr double kMaxHelped = 1.0;  // [kg] the constraint helps to hold no more than this
 
 }  // namespace
@@ -27,6 +28,7 @@ void SimWorld::Impl::update_robot_hands() {
     RobotHandState& seen = robot_hands[i];
     seen.palm = tool_state(hands[i]);
     seen.gripped = hands[i].gripped;
+    seen.holds_firmly = holds_firmly(hands[i]);
     seen.fingers.clear();
     for (const LinkCapsule& c : finger_capsules) {
       if (hands[i].grasp.chain_of(robot->body_of(c.link)) < 1) continue;
@@ -59,6 +61,16 @@ void SimWorld::Impl::release(Hand& hand) {
 /// wrist can answer within a step.
 bool SimWorld::Impl::helped(int object) const {
   return settings.constraint && objects[object].model().mass <= kMaxHelped;
+}
+
+/// Returns whether friction of all hands that grip the object of this one bears its weight.
+bool SimWorld::Impl::holds_firmly(const Hand& hand) const {
+  if (hand.gripped < 0 || hand.grip.holding()) return hand.gripped >= 0;
+  const ObjectModel& object = objects[hand.gripped].model();
+  double pressure = 0;
+  for (const Hand& one : hands)
+    if (one.gripped == hand.gripped) pressure += one.grasp.pressure(touches, one.gripped);
+  return pressure * object.friction >= object.mass * kGravity;
 }
 
 bool SimWorld::Impl::grips(int object) const {
@@ -141,7 +153,7 @@ bool SimWorld::robot_state(RobotState& out) {
     const Impl::Hand& hand = w.hands[i];
     if (!(w.side.payload(i) > 0) || hand.palm < 0)
       continue;  // what it was told to hold is part of the robot's own model
-    const Wrench weight{Vector3(0, 0, 9.81 * w.side.payload(i)), Vector3::Zero()};
+    const Wrench weight{Vector3(0, 0, kGravity * w.side.payload(i)), Vector3::Zero()};
     w.robot->project(w.robot->body_of(hand.palm), w.tool_state(hand).T_world_body.translation(),
                      weight, out.external_torque);
   }

@@ -81,7 +81,8 @@ struct SimWorld::Impl {
   static void release(Hand& hand);  ///< ends grasp and constraint
   /// Returns whether the grasp constraint helps to hold the object.
   bool helped(int object) const;
-  bool grips(int object) const;   ///< whether any hand holds the object
+  bool grips(int object) const;  ///< whether any hand holds the object
+  bool holds_firmly(const Hand&) const;
   bool grips_something() const;   ///< whether any hand holds an object
   bool of_hand(int body) const;   ///< whether the robot's body is part of a hand
   void update_grasp(Hand& hand);  ///< from the contacts of the step

@@ -186,6 +186,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.T_world_object = object.T_world_object();
     view.object_velocity = object.state().velocity;
     view.held_by_robot = gripped == person.object;
+    view.held_firmly = view.held_by_robot && robot.holds_firmly;
     view.grip_force = person.grip.wrench().force;
     view.p_hand_object =
         person.hand().state().T_world_body.inverse() * view.T_world_object.translation();

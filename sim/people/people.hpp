@@ -33,6 +33,7 @@ struct RobotHandState {
   BodyState palm;             ///< world
   std::vector<Ball> fingers;  ///< ends of their links, while any person minds them
   int gripped{-1};            ///< object in the hand; -1: none
+  bool holds_firmly{};        ///< with what grips that object, its weight could be borne
 };
 
 class People {

@@ -78,6 +78,7 @@ struct PersonView {
   Pose T_world_object{Pose::Identity()};     ///< of `object`
   Vector3 object_velocity{Vector3::Zero()};  ///< of its centre of mass, world [m/s]
   bool held_by_robot{};                      ///< `object` is in a hand of the robot
+  bool held_firmly{};                        ///< and would not fall if nobody else held it
   /// Left, right: how far forces keep the hand from where it is wanted [m].
   std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
   bool grip_broke{};                    ///< it slipped out of this person's hand

@@ -107,7 +107,8 @@ void PersonModel::take_part() {
 }
 
 void PersonModel::offer(double dt, const PersonView& view) {
-  lost_time_ = view.held_by_robot ? lost_time_ + dt : 0;
+  // Fingers that only touch the object could not bear it.
+  lost_time_ = view.held_firmly ? lost_time_ + dt : 0;
   if (lost_time_ > kLetGo) {
     take_part();
     return give_up();

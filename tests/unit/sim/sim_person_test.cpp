@@ -115,7 +115,7 @@ PersonSettings giver() {
 PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool robot_holds_it) {
   PersonView view = offer(person.hand().T_world_body * Vector3(0.08, 0, 0));
   view.robot_hand = robot_hand;
-  view.held_by_robot = robot_holds_it;
+  view.held_by_robot = view.held_firmly = robot_holds_it;
   return view;
 }
 
@@ -139,6 +139,20 @@ TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_rob
   EXPECT_FALSE(person.wants_grip());
   live(person, 2, robot_hand, true);
   EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, who_gives_keeps_what_the_robot_only_touches) {
+  PersonModel person(giver());
+  const Vector3 robot_hand(0.4, 0.3, 1.0);
+  live(person, 3, robot_hand);
+  for (int i = 0; i < 3000; ++i) {
+    PersonView view = holding(person, robot_hand, true);
+    view.held_firmly = false;
+    person.step(0.001, view);
+  }
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 0.7, robot_hand, true);
+  EXPECT_FALSE(person.wants_grip());
 }
 
 TEST(SimPerson, giver_takes_back_what_the_robot_hands_back_and_offers_it_when_asked) {
