@@ -40,10 +40,10 @@ std::shared_ptr<const Graspable> graspable(const ObjectModel& o) {
                                            small_settings().step_fraction, 1);
 }
 
-GraspList list_of(const ObjectModel& o) {
+GraspList list_of(const ObjectModel& o, const GraspListSettings& settings = small_settings()) {
   return list_grasps(gripper(),
                      std::make_shared<const FingerWorkspaces>(make_workspaces(*gripper())),
-                     graspable(o), small_settings());
+                     graspable(o), settings);
 }
 
 /// Signed distance of a point of the object from a pad's plane, positive before it, and where it is
@@ -125,6 +125,22 @@ TEST(Pinch, holds_an_empty_mug_by_its_rim_with_one_pad_inside) {
     }
   }
   EXPECT_GE(by_rim, 5U);
+}
+
+TEST(Pinch, bridges_no_hollow_deeper_than_the_setting) {
+  GraspListSettings flat = small_settings();
+  flat.pad_hollow = 0;
+  for (const ListedGrasp& listed : list_of(object("mug"), flat).grasps) {
+    std::array<double, 2> low{1, 1}, high{-1, -1};
+    for (const Contact& c : listed.grasp.contacts) {
+      if (off_axis(c) >= kInsideMug) continue;
+      const Vector3 p = on_pad(listed.grasp, c.finger, c.position);
+      low[c.finger] = std::min(low[c.finger], p.x());
+      high[c.finger] = std::max(high[c.finger], p.x());
+    }
+    for (const std::size_t finger : {0, 1})
+      EXPECT_FALSE(low[finger] < -0.005 && high[finger] > 0.005) << "rests on two edges";
+  }
 }
 
 TEST(Pinch, enters_no_cup_that_is_filled) {

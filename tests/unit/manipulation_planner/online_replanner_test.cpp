@@ -47,13 +47,13 @@ class OnlineReplannerTest : public testing::Test {
     execution_.motion = state;
     parts_.now.on(execution_);
   }
-  /// The controller has come so far along the motion [s].
-  void run_at(double time) {
+  /// The controller has come so far along the motion [s], at this part of its speed.
+  void run_at(double time, double speed_factor = 1) {
     ActiveTrajectory active;
     active.trajectory = kCommand;
     active.time = time;
     active.rest = whole_;
-    active.speed_factor = 1;
+    active.speed_factor = speed_factor;
     const MotionState3 state = whole_.at(time);
     active.position = RobotModel::with(robot_->rest_configuration(), arm(), state.position);
     active.velocity = Vector::Zero(robot_->dof());
@@ -113,6 +113,18 @@ TEST_F(OnlineReplannerTest, asks_for_a_path_from_where_the_arm_will_be) {
   EXPECT_LT((RobotModel::part(request.start, arm()) - expected).norm(), 1e-9);
   EXPECT_EQ(request.running.size(), running_.waypoints.size());
   EXPECT_EQ(parts_.replanner.counts().checks, 1u);
+}
+
+TEST_F(OnlineReplannerTest, a_slowed_arm_does_less_meanwhile_but_may_be_faster_again) {
+  const double least = parts_.settings.live_min_factor;
+  for (const double factor : {0.5, 0.5 * least, 0.0}) {
+    run_at(0.3, factor);
+    start();
+    const double counted = std::max(factor, least);
+    const Vector expected = whole_.at(0.3 + counted * parts_.settings.replan_time).position;
+    const Vector asked = RobotModel::part(parts_.outbox.path_requests.back().start, arm());
+    EXPECT_LT((asked - expected).norm(), 1e-9) << factor;
+  }
 }
 
 TEST_F(OnlineReplannerTest, leaves_a_motion_alone_that_is_not_its_own_or_nearly_over) {

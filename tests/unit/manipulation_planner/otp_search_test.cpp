@@ -300,6 +300,26 @@ TEST_F(OtpSearchTest, a_finger_in_the_direction_of_the_pull_makes_a_pose_impossi
   EXPECT_FALSE(otp_cost(query, T_best, rig::settings()));
 }
 
+TEST_F(OtpSearchTest, alternatives_cost_no_more_than_the_setting_allows) {
+  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+             T_tool_mug = make_pose({0.08, 0.02, 0.23});
+  const LayersNow layers;
+  const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, {}};
+  auto settings = rig::settings();
+  settings.exchange_goals = 20;
+  std::size_t before = 0;
+  for (const double extra : {0.0, 0.05, 0.3}) {
+    settings.otp_extra_cost = extra;
+    const OtpSearch search =
+        find_otp(*rig_.robot, rig_.robot->require_group("arm"), query, rig_.q, settings);
+    ASSERT_FALSE(search.poses.empty()) << search.reason;
+    for (const OtpPose& pose : search.poses)
+      EXPECT_LE(pose.cost, search.poses.front().cost + extra);
+    EXPECT_GT(search.poses.size(), before) << extra;
+    before = search.poses.size();
+  }
+}
+
 TEST_F(OtpSearchTest, poses_from_which_the_hand_cannot_retreat_are_left_out) {
   auto settings = rig::settings();
   settings.exchange_goals = 20;
