@@ -74,8 +74,10 @@ int run(int cases) {
   const auto choose_with = [&](const HumanState& people, const Vector& q,
                                const std::vector<PartnerGrasp>& partners) {
     const Pose T_world_object = tool_at(q);
+    const Vector3 back = -Vector3::UnitZ();
     const manipulation_planner::OtpQuery query{
-        scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}, partners};
+        scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}, partners, {},
+        back};
     return manipulation_planner::find_otp(robot, robot.require_group("arm"), query, q, settings);
   };
   const auto choose = [&](const HumanState& people, const Vector& q) {
