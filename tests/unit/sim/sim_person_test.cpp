@@ -27,6 +27,24 @@ PersonView offer(const Vector3& where) {
 
 int joint(const char* name) { return body_joint_index(name); }
 
+/// Lets a person live until they are in a phase, `max_time` [s] at most.
+void step_until(PersonModel& person, const PersonView& view, PersonPhase phase, double max_time) {
+  for (int i = 0; i < 1000 * max_time && person.phase() != phase; ++i) person.step(0.001, view);
+}
+
+/// Lets a person live for a while [s].
+void step_for(PersonModel& person, const PersonView& view, double time) {
+  for (int i = 0; i < 1000 * time; ++i) person.step(0.001, view);
+}
+
+/// A person who stands before what offer() offers.
+PersonSettings taker() {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  return settings;
+}
+
 TEST(SimPerson, reaches_smoothly_and_its_hand_ends_at_the_mug) {
   PersonSettings settings;
   settings.id = "anna";
@@ -316,49 +334,43 @@ TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
 }
 
 TEST(SimPerson, what_the_robot_has_only_begun_to_lift_is_not_reached_for) {
-  PersonSettings settings;
-  settings.feet = Vector3(1.5, 0, 0);
-  settings.yaw = M_PI;
-  PersonModel person(settings);
+  PersonModel person(taker());
   PersonView view = offer({0.95, 0.05, 1.0});
   view.held_by_robot = false;
-  for (int i = 0; i < 500; ++i) person.step(0.001, view);
+  step_for(person, view, 0.5);
   view.held_by_robot = true;
-  for (int i = 0; i < 1000; ++i) person.step(0.001, view);
+  step_for(person, view, 1);
   view.T_world_object.translation().z() += 0.05;
-  for (int i = 0; i < 4000; ++i) person.step(0.001, view);
+  step_for(person, view, 4);
   EXPECT_EQ(person.phase(), PersonPhase::watching);
   view.T_world_object.translation().z() += 0.06;
-  for (int i = 0; i < 4000 && person.phase() != PersonPhase::pulling; ++i) person.step(0.001, view);
+  step_until(person, view, PersonPhase::pulling, 4);
   EXPECT_EQ(person.phase(), PersonPhase::pulling);
 }
 
-/// A person who has drawn an object out of the robot's hand and begins to withdraw it. The hand is
-/// above the object's middle; `view` follows.
-PersonModel withdrawing_person(PersonSettings settings, PersonView& view) {
-  settings.feet = Vector3(1.5, 0, 0);
-  settings.yaw = M_PI;
+/// A person who has drawn an object out of the robot's hand and begins to withdraw it; in `view`
+/// the robot then holds the object no more.
+PersonModel withdrawing_person(const PersonSettings& settings, PersonView& view) {
   PersonModel person(settings);
-  for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i) person.step(0.001, view);
+  step_until(person, view, PersonPhase::pulling, 6);
   view.held_by_robot = false;
-  for (int i = 0; i < 1000 && person.phase() != PersonPhase::withdrawing; ++i)
-    person.step(0.001, view);
+  step_until(person, view, PersonPhase::withdrawing, 1);
   EXPECT_EQ(person.phase(), PersonPhase::withdrawing);
   return person;
 }
 
 TEST(SimPerson, who_withdraws_gives_way_where_the_object_is_caught) {
   PersonView view = offer({0.95, 0.05, 1.05});
-  PersonModel person = withdrawing_person({}, view);
-  for (int i = 0; i < 500; ++i) person.step(0.001, view);
+  PersonModel person = withdrawing_person(taker(), view);
+  step_for(person, view, 0.5);
   const Vector3 caught = person.hand().T_world_body.translation();
   view.grip_force = Vector3(25, 0, 0);
-  for (int i = 0; i < 250; ++i) person.step(0.001, view);
+  step_for(person, view, 0.25);
   const Vector3 eased = person.hand().T_world_body.translation();
   EXPECT_LT(eased.x(), caught.x() - 0.01) << "toward the robot again";
   EXPECT_EQ(person.phase(), PersonPhase::withdrawing);
   view.grip_force.setZero();
-  for (int i = 0; i < 2000; ++i) person.step(0.001, view);
+  step_for(person, view, 2);
   EXPECT_EQ(person.phase(), PersonPhase::keeping);
 }
 
@@ -370,7 +382,7 @@ TEST(SimPerson, who_withdraws_something_long_does_not_press_it_on_the_table) {
   double lowest = 1e9;
   for (const Vector3& p : tall.mesh.vertices)
     lowest = std::min(lowest, (view.T_world_object * p).z());
-  PersonSettings settings;
+  PersonSettings settings = taker();
   settings.furniture = {{make_pose({1.1, 0, (lowest - 0.01) / 2}), {1.4, 1.6, lowest - 0.01}}};
   PersonModel person = withdrawing_person(settings, view);
   const double below = person.hand().T_world_body.translation().z() - lowest;
