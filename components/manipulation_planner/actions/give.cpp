@@ -9,8 +9,6 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kRetryPause = 0.5;  // before the person's reach is checked again [s]
-constexpr double kTakePause = 0.5;   // before the hand retreats from what was taken [s]
-constexpr double kDrawnOut = 0.7;    // cosine of a pull and the direction out of the fingers
 
 /// Returns the motion that carries the object to the receiver.
 MotionSpec carry_motion(const Parts& parts, const std::string& object, const OtpSearch& search,
@@ -128,7 +126,8 @@ bool is_drawn_past_fingers(const Parts& parts, const std::string& object,
       person->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   const Vector3 pull =
       (p_trunk - parts.arm.T_world_tool().translation()).cwiseProduct(Vector3(1, 1, 0));
-  return pull.stableNormalized().dot(-retreat_direction(parts, object)) >= kDrawnOut;
+  return pull.stableNormalized().dot(-retreat_direction(parts, object)) >=
+         parts.settings.drawn_out_cosine;
 }
 
 }  // namespace
@@ -161,7 +160,8 @@ Routine<Outcome> give(Parts& parts, const std::string& object, const std::string
   if (!offered.good) co_return offered;
   parts.held.release();
   parts.action.phase = ActionPhase::retreat;
-  if (is_drawn_past_fingers(parts, object, receiver)) co_await parts.waiting.pause(kTakePause);
+  if (is_drawn_past_fingers(parts, object, receiver))
+    co_await parts.waiting.pause(parts.settings.take_pause);
   Outcome back = co_await retreat(parts, receiver, object);
   if (!back.good) parts.refuse("retreat", back.reason);
   co_return Outcome{};

@@ -7,18 +7,16 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMaxStraightTurn = 0.9;  // of one axis; with more the tool swings around [rad]
-constexpr int kRetreatSteps = 3;          // from the longest to the shortest retreat
-constexpr double kBeside = 0.5;           // of the directions beside that of the retreat [rad]
+constexpr int kRetreatSteps = 3;                         // from the longest to the shortest retreat
 constexpr double kLiftRatios[] = {1.0, 0.85, 0.6, 0.4};  // of the lift height
 
-/// Returns the four directions around `back`, by `kBeside` off it.
-std::vector<Vector3> directions_beside(const Vector3& back) {
+/// Returns the four directions around `back`, by `angle` [rad] off it.
+std::vector<Vector3> directions_beside(const Vector3& back, double angle) {
   const Vector3 across = back.unitOrthogonal();
   std::vector<Vector3> directions;
   for (int quarter = 0; quarter < 4; ++quarter) {
     const Vector3 axis = Eigen::AngleAxisd(quarter * M_PI_2, back) * across;
-    directions.push_back(Eigen::AngleAxisd(kBeside, axis) * back);
+    directions.push_back(Eigen::AngleAxisd(angle, axis) * back);
   }
   return directions;
 }
@@ -196,8 +194,8 @@ Routine<Outcome> retreat_along(Parts& parts, const Vector3& away, MotionSpec& mo
     Pose T = T_now;
     T.translation() += (farthest - (farthest - least) * step / kRetreatSteps) * away;
     const auto joints = parts.arm.reach(T);
-    const bool is_straight =
-        joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() < kMaxStraightTurn;
+    const bool is_straight = joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() <
+                                           parts.settings.max_straight_turn;
     if (!is_straight) continue;
     motion.goals = {*joints};
     last = co_await move(parts, motion);
@@ -219,7 +217,7 @@ Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::str
   const std::string why = outcome.reason;
   if (outcome.good) co_return outcome;
   // Beside that direction the fingers still come off the object, though not as far from it.
-  const std::vector<Vector3> beside = directions_beside(back);
+  const std::vector<Vector3> beside = directions_beside(back, parts.settings.retreat_beside);
   for (const Vector3& direction : beside) {
     outcome = co_await retreat_along(parts, direction, motion);
     if (outcome.good) co_return outcome;

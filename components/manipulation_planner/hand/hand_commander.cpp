@@ -5,7 +5,6 @@ namespace {
 
 constexpr int kMaxHandTries = 20;       // to send a hand command
 constexpr double kHandTryPeriod = 0.3;  // between tries [s]
-constexpr int kMaxInterruptions = 5;    // by stops; a hand command is sent again after each
 
 }  // namespace
 
@@ -47,7 +46,7 @@ Routine<Outcome> HandCommander::await_open() {
 Routine<HandResult> HandCommander::run(HandAction action, const Vector& position, double timeout,
                                        const Vector* effort, double mass_ratio) {
   HandResult result;
-  for (int tries = 0; tries < kMaxInterruptions; ++tries) {
+  for (std::uint32_t tries = 0; tries < settings_.hand_interruptions; ++tries) {
     result.outcome = co_await send(action, position, effort, mass_ratio);
     if (!result.outcome.good) co_return result;
     const std::uint64_t id = now_.execution()->hand_command;
@@ -60,7 +59,7 @@ Routine<HandResult> HandCommander::run(HandAction action, const Vector& position
     if (!result.outcome.good || result.state != HandState::refused) co_return result;
   }
   result.outcome = Outcome::failure("stops interrupted the hand " +
-                                    std::to_string(kMaxInterruptions) + " times");
+                                    std::to_string(settings_.hand_interruptions) + " times");
   co_return result;
 }
 

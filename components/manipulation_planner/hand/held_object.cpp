@@ -10,7 +10,6 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kMaxHandDistance = 0.15;  // middle of a hand to that of what it takes hold of [m]
-constexpr double kMaxSurfaceDistance = 0.1;  // middle of a hand to the surface of it [m]
 constexpr double kMaxOffset =
     0.2;                           // farther from where the hand would have it: not in the hand [m]
 constexpr double kSlipTime = 0.2;  // so long out of the hand: slipped [s]
@@ -66,7 +65,7 @@ bool HeldObject::is_at_hand_of(const std::string& person, const std::string& obj
   const HandPoints hands = hands_of_person(*found);
   const Pose T_object_world = thing->T_world_object.inverse();
   return std::any_of(hands.begin(), hands.end(), [&](const Vector3& p_hand) {
-    return surface_distance(*model, T_object_world * p_hand) < kMaxSurfaceDistance;
+    return surface_distance(*model, T_object_world * p_hand) < settings_.taken_range;
   });
 }
 

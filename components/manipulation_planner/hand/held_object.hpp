@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/base/time.hpp"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/messages/planning.hpp"
 #include "components/manipulation_planner/active_arm.hpp"
 
@@ -13,7 +14,9 @@ namespace handsel::manipulation_planner {
 class HeldObject {
  public:
   /// The references must outlive what is made.
-  HeldObject(const ActiveArm& arm, const Snapshot& now) : arm_(arm), now_(now) {}
+  HeldObject(const ActiveArm& arm, const Snapshot& now,
+             const settings::ManipulationPlannerSettings& settings)
+      : arm_(arm), now_(now), settings_(settings) {}
 
   /// Notes that the hand holds the object where the scene has it.
   void hold(const SceneObject& object);
@@ -52,6 +55,7 @@ class HeldObject {
 
   const ActiveArm& arm_;
   const Snapshot& now_;
+  const settings::ManipulationPlannerSettings& settings_;
   Attachment attachment_;
   std::optional<Grasp> grasp_;
   TimePoint seen_in_hand_{};

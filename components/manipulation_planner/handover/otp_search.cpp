@@ -14,12 +14,11 @@ namespace {
 constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
 constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
-constexpr int kHeadings = 24;            // of the object at each place
-constexpr double kMinDistance = 0.05;    // between alternatives [m]
-constexpr double kMaxBarred = 0.5;       // cosine of a finger and the person's pull
-constexpr double kNoPartner = 2;         // strain that counts where no grasp of the person fits
-constexpr double kMaxRetreatTurn = 0.9;  // of one axis while the hand retreats [rad]
-constexpr double kMinFacing = -0.3;      // cosine: the hand must not come from the person's side
+constexpr int kHeadings = 24;          // of the object at each place
+constexpr double kMinDistance = 0.05;  // between alternatives [m]
+constexpr double kMaxBarred = 0.5;     // cosine of a finger and the person's pull
+constexpr double kNoPartner = 2;       // strain that counts where no grasp of the person fits
+constexpr double kMinFacing = -0.3;    // cosine: the hand must not come from the person's side
 
 struct Candidate {
   Pose T_world_object;
@@ -216,14 +215,14 @@ void add_partners(const OtpCosts& costs, std::size_t count, std::vector<Candidat
   std::stable_sort(poses.begin(), poses.end(), cheaper);
 }
 
-/// Returns whether the hand can retreat straight from a configuration, given by the joints of the
-/// arm and by all axes, to a pose of the hand.
-bool can_retreat(const RobotModel& robot, const Group& arm, const Vector& joints, const Vector& q,
-                 const Pose& T_root_retreat) {
+/// Returns whether the hand can retreat straight from a configuration of the arm to a pose, no axis
+/// turning by more than `max_turn` [rad]. `q`: all axes in that configuration.
+bool can_retreat(const RobotModel& robot, const Group& arm, const Vector& q,
+                 const Pose& T_root_retreat, double max_turn) {
   IkOptions options;
   options.restarts = 0;
   const auto back = robot.inverse(arm, T_root_retreat, q, options);
-  return back && (*back - joints).cwiseAbs().maxCoeff() < kMaxRetreatTurn;
+  return back && (*back - RobotModel::part(q, arm)).cwiseAbs().maxCoeff() < max_turn;
 }
 
 }  // namespace
@@ -272,9 +271,8 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
     Pose T_root_retreat = T_root_tip;
     if (query.back)
       T_root_retreat.translation() += settings.min_retreat * (T_root_tip.linear() * *query.back);
-    const bool retreats =
-        !query.back ||
-        can_retreat(robot, arm, *joints, RobotModel::with(q, arm, *joints), T_root_retreat);
+    const bool retreats = !query.back || can_retreat(robot, arm, RobotModel::with(q, arm, *joints),
+                                                     T_root_retreat, settings.max_straight_turn);
     (retreats ? out.poses : confined)
         .push_back(
             {candidate.T_world_object, std::move(*joints), candidate.cost, candidate.partner});
