@@ -239,8 +239,8 @@ TEST_F(FactsTest, either_arm_of_two_reaches) {
     return find(finder.find(scene_, people_, at(t)), FactKind::reachable_by_robot, "mug") !=
            nullptr;
   };
-  EXPECT_TRUE(reaches(0.9, 1)) << "the left arm";
-  EXPECT_TRUE(reaches(-0.9, 2)) << "the right arm";
+  EXPECT_TRUE(reaches(0.65, 1)) << "the left arm";
+  EXPECT_TRUE(reaches(-0.65, 2)) << "the right arm";
   EXPECT_FALSE(reaches(1.8, 3));
   EXPECT_FALSE(reaches(-1.8, 4));
 }
