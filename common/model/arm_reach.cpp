@@ -11,14 +11,13 @@ ArmReach arm_reach(const RobotModel& robot, const Group* arm, int palm) {
                         ? -1
                         : robot.axes()[static_cast<std::size_t>(arm->axes.front())].joint;
   ArmReach reach;
-  bool whole = false;
+  double length = kObjectBeyondTool;  // to the frame of `link`
   for (int link = palm; link > 0;) {
     const int up = robot.links()[static_cast<std::size_t>(link)].parent_joint;
     const Joint& joint = robot.joints()[static_cast<std::size_t>(up)];
-    if (whole && joint.kind != JointKind::fixed) break;  // a torso carries it
-    if (joint.kind != JointKind::fixed) reach.shoulder = link;
-    whole = whole || up == first;
-    reach.length += joint.T_parent_joint.translation().norm();
+    if (joint.kind != JointKind::fixed) reach = {link, length};
+    if (up == first) break;
+    length += joint.T_parent_joint.translation().norm();
     link = joint.parent;
   }
   return reach;

@@ -5,10 +5,15 @@
 
 namespace handsel {
 
+/// Distance by which the far end of an object in the hand may lie beyond the frame of the tool,
+/// e.g. the foot of a bottle that is held below its neck [m].
+inline constexpr double kObjectBeyondTool = 0.25;
+
 /// Of the arm that carries the tool link.
 struct ArmReach {
-  int shoulder{-1};  ///< link where its chain of moving joints begins; -1: no arm
-  /// Sum of the joint offsets from the tool to the root or to the axis that carries the arm [m].
+  int shoulder{-1};  ///< link that the first axis of the arm moves; -1: no arm
+  /// Distance from the origin of that link within which objects can be: the sum of the joint
+  /// offsets to the tool and kObjectBeyondTool [m].
   double length{};
 };
 

@@ -1,4 +1,4 @@
-handsel_test(model SOURCES ${CMAKE_CURRENT_LIST_DIR}/model/model_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/model_input_test.cpp
+handsel_test(model SOURCES ${CMAKE_CURRENT_LIST_DIR}/model/model_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/model_input_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/arm_reach_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/model/human_body_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/robot_capsules_test.cpp
              LINK handsel_model LABEL unit)
 handsel_test(srs_arm_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/srs_arm_property_test.cpp LINK handsel_model

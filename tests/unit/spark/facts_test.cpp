@@ -241,8 +241,8 @@ TEST_F(FactsTest, either_arm_of_two_reaches) {
   };
   EXPECT_TRUE(reaches(0.65, 1)) << "the left arm";
   EXPECT_TRUE(reaches(-0.65, 2)) << "the right arm";
-  EXPECT_FALSE(reaches(1.8, 3));
-  EXPECT_FALSE(reaches(-1.8, 4));
+  EXPECT_FALSE(reaches(1.1, 3));
+  EXPECT_FALSE(reaches(-1.1, 4));
 }
 
 // ---- a real handover between two people (120 Hz, both upper bodies, an object with force sensors)
