@@ -119,7 +119,7 @@ struct Ability {
     double reach{};                     ///< from the shoulder [m]
   };
   std::vector<Arm> arms{};  ///< empty: not known, everything counts as within reach
-  double spot{0.2};         ///< distance kept between things on a surface [m]
+  double spot{0.15};        ///< distance kept between things on a surface [m]
   /// Finds an object model by the name of the model; nullptr: unknown.
   std::function<const ObjectModel*(const std::string&)> objects{};
 };

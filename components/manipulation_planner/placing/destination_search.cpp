@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <numbers>
 
 #include "components/manipulation_planner/parts.hpp"
 
@@ -12,6 +13,9 @@ namespace {
 constexpr std::size_t kMaxPlaces = 24;         // of a surface that are tried first
 constexpr std::size_t kMaxAllPlaces = 400;     // that are tried where none of those serves
 constexpr std::size_t kMaxConfigurations = 6;  // that motions are planned to
+constexpr std::size_t kMaxPassedPlaces = 16;   // for an object that changes hands before
+constexpr double kPassedTurns[] = {0, 0.5 * std::numbers::pi, std::numbers::pi,
+                                   -0.5 * std::numbers::pi};  // about the vertical [rad]
 
 /// What a job needs of arm and scene, as values.
 struct PlacingJob {
@@ -61,13 +65,26 @@ std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
   return free_places(in, object, surface, T_now, max_places, placing);
 }
 
+/// Returns the best free places of the surface, where there are none with room for the hand beside
+/// other things, those without.
+std::vector<Pose> best_places_on(const PlacingJob& job, const SceneBox& surface,
+                                 const std::string& object, const Pose& T_now,
+                                 std::size_t max_places) {
+  std::vector<Pose> places = places_on(job, surface, object, T_now, max_places);
+  PlacingSettings crowded;
+  crowded.beside = PlacingSettings{}.min_beside;
+  if (places.empty()) places = places_on(job, surface, object, T_now, max_places, crowded);
+  return places;
+}
+
 /// Returns every free place of the surface; where one was chosen, the object is turned as there and
-/// at that height, and the nearest places come first.
+/// at that height, and the nearest places come first. `beside`: distance to other things [m].
 std::vector<Pose> all_places_on(const PlacingJob& job, const SceneBox& surface,
                                 const std::string& object, const Pose& T_now,
-                                const std::optional<Destination>& chosen) {
+                                const std::optional<Destination>& chosen, double beside) {
   PlacingSettings every;
   every.apart = 0;
+  every.beside = beside;
   std::vector<Pose> places = places_on(job, surface, object, T_now, kMaxAllPlaces, every);
   if (!chosen) return places;
   const auto distance = [&](const Pose& T) {
@@ -127,7 +144,7 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
     set_world(in);
     std::vector<std::vector<Pose>> upright;
     for (const SceneBox& box : surfaces)
-      upright.push_back(places_on(in, box, object, T_now, limits.max_places));
+      upright.push_back(best_places_on(in, box, object, T_now, limits.max_places));
     for (const double margin : {in.margin, 0.0}) {
       for (std::size_t s = 0; s < surfaces.size(); ++s)
         found->objections =
@@ -142,6 +159,25 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
           0.0, grasps, limits, *found);
   };
   found->outcome = co_await parts.worker.run(job);
+  co_return *found;
+}
+
+Routine<std::vector<Pose>> find_standing_places(Parts& parts, const SceneBox& surface,
+                                                const std::string& taker) {
+  PlacingJob placing = placing_job(parts);
+  search_for(parts, taker, placing);
+  auto found = std::make_shared<std::vector<Pose>>();
+  const std::function<void()> job = [found, box = surface, object = parts.held.id(),
+                                     in = std::move(placing), T_now = parts.held.T_world_object()] {
+    for (const Pose& place : best_places_on(in, box, object, T_now, kMaxPassedPlaces)) {
+      for (const double turn : kPassedTurns) {
+        Pose T = place;
+        T.linear() = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * place.linear();
+        found->push_back(T);
+      }
+    }
+  };
+  co_await parts.worker.run(job);
   co_return *found;
 }
 
@@ -160,7 +196,7 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
                                      in = std::move(placing), T_now = parts.held.T_world_object(),
                                      place_drop = parts.settings.place_drop] {
     set_world(in);
-    std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
+    std::vector<Pose> places = best_places_on(in, box, held.object, T_now, kMaxPlaces);
     if (chosen) places.insert(places.begin(), chosen->T_world_object);
     const std::vector<Pose> coarse = places;
     const Vector opened = RobotModel::with(in.q, in.fingers, opening);
@@ -173,7 +209,9 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
     };
     // What has slipped in the hand may fit only beside the chosen place, or a little higher.
     if (stand(places)) return;
-    places = all_places_on(in, box, held.object, T_now, chosen);
+    places = all_places_on(in, box, held.object, T_now, chosen, PlacingSettings{}.beside);
+    if (stand(places)) return;
+    places = all_places_on(in, box, held.object, T_now, chosen, PlacingSettings{}.min_beside);
     if (stand(places)) return;
     for (Pose& T : places) T.translation().z() += place_drop;
     if (stand(places)) return;

@@ -42,6 +42,10 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
                                          const std::string& surface,
                                          const std::vector<Grasp>& grasps,
                                          const DestinationLimits& limits);
+/// Searches places on a surface where what is held can stand, turned in several ways, in reach of
+/// the arm `taker` but perhaps not of the arm in use. Returns T_world_object, the best place first.
+Routine<std::vector<Pose>> find_standing_places(Parts& parts, const SceneBox& surface,
+                                                const std::string& taker);
 /// Searches places on a surface for what is held; the one that was found before the grasp comes
 /// first. `opening`: fingers after the release. `taker`: arm that is to reach the place well,
 /// because it takes the object from there; empty: the arm in use.

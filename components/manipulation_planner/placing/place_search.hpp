@@ -19,6 +19,7 @@ inline constexpr double kAbovePlace = 0.004;
 
 struct PlacingSettings {
   double beside{0.05};              ///< left free around it, for the hand [m]
+  double min_beside{0.01};          ///< the same where no place has `beside`: the hand may fit [m]
   double edge{0.03};                ///< of the surface that is kept free [m]
   double grid{0.04};                ///< places are tried so far apart [m]
   double apart{0.12};               ///< those that are given are at least so far apart [m]
