@@ -233,14 +233,23 @@ enum class RegraspKind : std::uint8_t {
   join,   ///< `to` takes hold besides `from`
 };
 
+/// Where an object may stand.
+struct StandingPlace {
+  Pose T_world_object{Pose::Identity()};  ///< pose of the object there
+};
+
 /// Topic RegraspRequest, profile request: hands to take an object with, one after the other or two
 /// at once.
 struct RegraspRequest {
-  Stamp stamp{};                        ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;                         ///< repeated by the reply
-  std::string object;                   ///< scene object id
-  Vector start;                         ///< all axes of the robot
-  Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
+  Stamp stamp{};       ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;        ///< repeated by the reply
+  std::string object;  ///< scene object id
+  Vector start;        ///< all axes of the robot
+  std::string holder;  ///< group of the arm whose hand holds the object; empty: it stands
+  /// Grasp of `holder`, as the object lies in the hand; no meaning where nobody holds it.
+  Grasp grasp;
+  /// Where the object may stand at the end, any of them, the best first; not empty, at most 64.
+  std::vector<StandingPlace> goals;
   bool both{};  ///< two hands at once, which carry it there together; else from hand to hand
   std::uint64_t seed{};  ///< seed of the random choices
 };

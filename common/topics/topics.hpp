@@ -78,7 +78,7 @@ struct TopicRow {
   X(GraspRequest, "grasp_request", request, 0, 0, 1024, "manipulation_planner", "grasp_planner") \
   X(GraspReply, "grasp_reply", reply, 0, 0, 1179648, "grasp_planner", "manipulation_planner") \
   X(GraspCandidates, "grasp_candidates", advice, 2, 0, 1179648, "grasp_planner", "bridge") \
-  X(RegraspRequest, "regrasp_request", request, 0, 0, 1024, "manipulation_planner", "grasp_planner") \
+  X(RegraspRequest, "regrasp_request", request, 0, 0, 16384, "manipulation_planner", "grasp_planner") \
   X(RegraspReply, "regrasp_reply", reply, 0, 0, 425984, "grasp_planner", "manipulation_planner") \
   X(StateQuery, "state_query", request, 0, 0, 4194304, "handsel ros2_lane", "collision_checker") \
   X(StateVerdict, "state_verdict", reply, 0, 0, 6144, "collision_checker", "handsel ros2_lane") \

@@ -165,15 +165,22 @@ void describe(WireIo& io, GraspReply& m, handsel_GraspReply& w) {
   io.list("rejected", m.rejected, w.rejected, 256, true);
 }
 
+void describe(WireIo& io, StandingPlace& m, handsel_StandingPlace& w) {
+  io.pose("T_world_object", m.T_world_object, w.T_world_object);
+}
+
 void describe(WireIo& io, RegraspRequest& m, handsel_RegraspRequest& w) {
   io.stamp(m.stamp, w.stamp);
   io.part("id", m.id, w.id);
   io.text("object", m.object, w.object, Text::name);
   io.vector("start", m.start, w.start, kCoordinate);
-  io.pose("T_world_goal", m.T_world_goal, w.T_world_goal);
+  io.text("holder", m.holder, w.holder, Text::maybe_empty);
+  io.part("grasp", m.grasp, w.grasp);
+  io.list("goals", m.goals, w.goals, 64);
   io.flag("both", m.both, w.both);
   io.integer("seed", m.seed, w.seed);
   io.check(m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
+  io.check(!m.goals.empty(), "goals", "is empty, at least one place is needed");
 }
 
 void describe(WireIo& io, RegraspStep& m, handsel_RegraspStep& w) {

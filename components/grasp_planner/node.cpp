@@ -116,7 +116,7 @@ void Node::answer(const RegraspRequest& request) {
   regrasps_.add(request.id);
   auto answer = std::make_shared<RegraspAnswer>();
   answer->reply.id = request.id;
-  answer->reply.reason = objection(request, scene_, *robot_, arms_.size(), objects_);
+  answer->reply.reason = objection(request, scene_, *robot_, arms_, objects_);
   const bool work = answer->reply.reason.empty();
   const ObjectModel* model = work ? objects_(object_in(scene_, request.object)->model) : nullptr;
   bus_.run_job(

@@ -33,8 +33,9 @@ struct ObjectState {
 };
 
 struct RegraspTask {
-  ObjectState start, goal;       ///< where the object is, and where it is to be
-  std::vector<Pose> placements;  ///< T_world_object: where else it can be put down
+  ObjectState start, goal;        ///< where the object is, and where it is to be
+  std::vector<Pose> other_goals;  ///< T_world_object: where it may stand instead of at the goal
+  std::vector<Pose> placements;   ///< T_world_object: where else it can be put down
 };
 
 enum class RegraspStepKind { pick, pass, place, join };

@@ -46,6 +46,30 @@ handsel::RegraspStep message_of(const RegraspStep& step, const std::vector<Regra
   return out;
 }
 
+/// Returns the index of the arm that holds the object; -1: the object stands.
+int holder_of(const RegraspRequest& request, const std::vector<ArmGrasps>& arms) {
+  const auto holder = std::find_if(
+      arms.begin(), arms.end(), [&](const ArmGrasps& a) { return a.arm.name == request.holder; });
+  return holder == arms.end() ? -1 : static_cast<int>(holder - arms.begin());
+}
+
+/// Returns why the object cannot be passed on by the hand that is said to hold it; empty: it can.
+std::string objection_to_holder(const RegraspRequest& request, const SceneObject& object,
+                                const std::vector<ArmGrasps>& arms) {
+  const int index = holder_of(request, arms);
+  if (index < 0) return "the robot has no arm \"" + request.holder + "\" with a hand";
+  const Group& fingers = *arms[static_cast<std::size_t>(index)].arm.fingers;
+  const bool is_that_hand =
+      object.holder_id.empty() ? index == 0 : object.holder_id == fingers.name;
+  if (object.holder != Holder::robot || !is_that_hand)
+    return "the hand of " + request.holder + " does not hold " + request.object;
+  const auto axes = static_cast<Eigen::Index>(fingers.axes.size());
+  if (request.grasp.hand_joints.size() != axes || request.grasp.pregrasp_joints.size() != axes)
+    return "the grasp does not have one value per axis of " + fingers.name + ", closed and opened";
+  if (request.both) return request.object + " is held: two hands take only what stands";
+  return {};
+}
+
 void write(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, RegraspReply& reply) {
   reply.solved = plan.solved;
   reply.reason = plan.reason;
@@ -57,9 +81,9 @@ void write(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, Regrasp
 }  // namespace
 
 std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
-                      std::size_t arms, const ObjectLibrary& library) {
-  if (arms != 2)
-    return "the robot has " + std::to_string(arms) +
+                      const std::vector<ArmGrasps>& arms, const ObjectLibrary& library) {
+  if (arms.size() != 2)
+    return "the robot has " + std::to_string(arms.size()) +
            " arms with hands, to pass an object it needs two";
   if (!scene.robot_known) return "the place of the robot is not known yet";
   if (request.start.size() != robot.dof())
@@ -68,70 +92,65 @@ std::string objection(const RegraspRequest& request, const Scene& scene, const R
   const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
                                    [&](const SceneObject& o) { return o.id == request.object; });
   if (object == scene.objects.end()) return "object " + request.object + " is not in the scene";
-  if (object->holder == Holder::robot || object->holder == Holder::human)
-    return request.object + " is held: it must stand first";
   if (library(object->model) == nullptr)
     return "there is no description of " + request.object + ", grasps need one";
+  if (!request.holder.empty()) return objection_to_holder(request, *object, arms);
+  if (object->holder == Holder::robot || object->holder == Holder::human)
+    return request.object + " is held: it must stand first";
   return {};
 }
 
-RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
-                             const ObjectModel& model, const std::function<bool()>& cancelled) {
-  const std::vector<ArmGrasps>& arms = stage.arms;
-  const Scene& scene = stage.scene;
-  RegraspAnswer answer;
-  answer.reply.id = request.id;
-  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
-                                   [&](const SceneObject& o) { return o.id == request.object; });
-  if (object == scene.objects.end()) {
-    answer.reply.reason = "object " + request.object + " is not in the scene";
-    return answer;
-  }
+namespace {
+
+/// The grasps of all arms on the object.
+struct ListedGrasps {
   std::vector<std::shared_ptr<const CachedGrasps>> pages;
-  std::vector<GraspList> whole(arms.size());
-  for (std::size_t a = 0; a < arms.size(); ++a) {
-    pages.push_back(arms[a].cache->page(model, cancelled));
-    if (!pages.back()) {
-      answer.reply.reason = "cancelled";
-      return answer;
-    }
-    whole[a].grasps = pages.back()->list.grasps;
-    answer.listed += whole[a].grasps.size();
-  }
-  RegraspTask task;
-  task.start.T_world_object = object->T_world_object;
-  task.goal.T_world_object = request.T_world_goal;
-  if (request.both) {
-    std::vector<RegraspArm> sides;
-    for (std::size_t a = 0; a < arms.size(); ++a)
-      sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &whole[a]});
-    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
-                           request.object);
-    planner.set_settings(stage.settings);
-    const RegraspPlan plan =
-        planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
-    answer.checked = plan.checked;
+  std::vector<GraspList> whole;  // one an arm
+};
+
+void answer_together(const RegraspRequest& request, const RegraspStage& stage,
+                     const ListedGrasps& listed, const Pose& T_world_start,
+                     const std::function<bool()>& cancelled, RegraspAnswer& answer) {
+  std::vector<RegraspArm> sides;
+  for (std::size_t a = 0; a < stage.arms.size(); ++a)
+    sides.push_back({stage.arms[a].arm, stage.arms[a].hand_geometry.get(), &listed.whole[a]});
+  RegraspPlanner planner(stage.robot, sides, *listed.pages.front()->object, stage.library,
+                         stage.scene, request.object);
+  planner.set_settings(stage.settings);
+  for (const StandingPlace& goal : request.goals) {
+    const RegraspPlan plan = planner.plan_together(T_world_start, goal.T_world_object, cancelled);
+    answer.checked += plan.checked;
     write(plan, sides, answer.reply);
     for (std::size_t a = 0; a < plan.load_shares.size(); ++a) {
       answer.reply.steps[a].grasp.hand_effort = plan.load_shares[a].effort;
       answer.reply.steps[a].grasp.margin = plan.load_shares[a].margin;
     }
-    return answer;
+    if (plan.solved || (cancelled && cancelled())) return;
   }
+}
+
+void answer_one_after_the_other(const RegraspRequest& request, const RegraspStage& stage,
+                                const ListedGrasps& listed, RegraspTask task,
+                                const std::function<bool()>& cancelled, RegraspAnswer& answer) {
+  const std::vector<ArmGrasps>& arms = stage.arms;
   for (const double min_margin : kMinMargins) {
     std::vector<GraspList> firm(arms.size());
     std::vector<RegraspArm> sides;
     for (std::size_t a = 0; a < arms.size(); ++a) {
-      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(),
-                   std::back_inserter(firm[a].grasps),
+      const std::vector<ListedGrasp>& all = listed.whole[a].grasps;
+      std::copy_if(all.begin(), all.end(), std::back_inserter(firm[a].grasps),
                    [min_margin](const ListedGrasp& g) { return g.grasp.margin >= min_margin; });
+      if (task.start.arm == static_cast<int>(a)) {
+        task.start.grasp = firm[a].grasps.size();
+        firm[a].grasps.push_back({request.grasp, {}, 0});
+      }
       sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &firm[a]});
     }
     const bool any = std::all_of(firm.begin(), firm.end(),
                                  [](const GraspList& list) { return !list.grasps.empty(); });
     if (!any && min_margin != kMinMargins.back()) continue;
-    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
-                           request.object);
+    RegraspPlanner planner(stage.robot, sides, *listed.pages.front()->object, stage.library,
+                           stage.scene, request.object);
     planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan(task, cancelled);
     answer.checked += plan.checked;
@@ -143,6 +162,42 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
     const bool better_by_weaker = min_margin >= 0 && answer.reply.steps.size() > kFewest;
     if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;
   }
+}
+
+}  // namespace
+
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
+                             const ObjectModel& model, const std::function<bool()>& cancelled) {
+  RegraspAnswer answer;
+  answer.reply.id = request.id;
+  const std::vector<SceneObject>& objects = stage.scene.objects;
+  const auto object = std::find_if(objects.begin(), objects.end(),
+                                   [&](const SceneObject& o) { return o.id == request.object; });
+  if (object == objects.end()) {
+    answer.reply.reason = "object " + request.object + " is not in the scene";
+    return answer;
+  }
+  ListedGrasps listed;
+  for (const ArmGrasps& arm : stage.arms) {
+    listed.pages.push_back(arm.cache->page(model, cancelled));
+    if (!listed.pages.back()) {
+      answer.reply.reason = "cancelled";
+      return answer;
+    }
+    listed.whole.emplace_back().grasps = listed.pages.back()->list.grasps;
+    answer.listed += listed.whole.back().grasps.size();
+  }
+  if (request.both) {
+    answer_together(request, stage, listed, object->T_world_object, cancelled, answer);
+    return answer;
+  }
+  RegraspTask task;
+  task.start.arm = request.holder.empty() ? -1 : holder_of(request, stage.arms);
+  task.start.T_world_object = object->T_world_object;
+  task.goal.T_world_object = request.goals.front().T_world_object;
+  for (std::size_t i = 1; i < request.goals.size(); ++i)
+    task.other_goals.push_back(request.goals[i].T_world_object);
+  answer_one_after_the_other(request, stage, listed, task, cancelled, answer);
   return answer;
 }
 

@@ -22,9 +22,9 @@ struct RegraspAnswer {
 };
 
 /// Returns why no hands can be searched for the request, one sentence; empty: they can. `arms`:
-/// number of arms with hands.
+/// those with hands.
 std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
-                      std::size_t arms, const ObjectLibrary& library);
+                      const std::vector<ArmGrasps>& arms, const ObjectLibrary& library);
 
 /// What an answer is worked out from.
 struct RegraspStage {
@@ -35,7 +35,7 @@ struct RegraspStage {
   const RegraspSettings& settings;     ///< of the planner
 };
 
-/// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no
+/// objection() is empty; `model`: of the object. The reply says why when there is no
 /// sequence.
 RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
                              const ObjectModel& model, const std::function<bool()>& cancelled = {});

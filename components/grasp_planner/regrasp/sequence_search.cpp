@@ -40,8 +40,10 @@ void SequenceSearch::add_places() {
     places_.push_back(task_.start.T_world_object);
   }
   if (task_.goal.arm < 0) {
-    standing_goal_ = GraphNode{-1, places_.size()};
+    goals_.first = places_.size();
     places_.push_back(task_.goal.T_world_object);
+    places_.insert(places_.end(), task_.other_goals.begin(), task_.other_goals.end());
+    goals_.end = places_.size();
   }
   places_.insert(places_.end(), task_.placements.begin(), task_.placements.end());
 }
@@ -87,7 +89,8 @@ void SequenceSearch::add_passes() {
 }
 
 bool SequenceSearch::at_goal(const GraphNode& node) const {
-  if (standing_goal_) return node == *standing_goal_;
+  if (task_.goal.arm < 0)
+    return node.arm < 0 && node.index >= goals_.first && node.index < goals_.end;
   return node.arm == task_.goal.arm && (!task_.goal.grasp || node.index == *task_.goal.grasp);
 }
 

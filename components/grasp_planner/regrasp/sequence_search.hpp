@@ -44,9 +44,14 @@ class SequenceSearch {
   StepCheck& check_;
   CheckedPasses& passes_;
   const RegraspTask& task_;
-  std::vector<Pose> places_;  // start and goal where the object stands, and those between
+  /// Places of `places_`, the end not among them.
+  struct PlaceRange {
+    std::size_t first{}, end{};
+  };
+
+  std::vector<Pose> places_;  // start and goals where the object stands, and those between
   GraphNode start_;
-  std::optional<GraphNode> standing_goal_;
+  PlaceRange goals_;
   std::vector<HandSide> sides_;
   StepGraph graph_;
   DoubleList doubles_;

@@ -33,12 +33,17 @@ Routine<Outcome> use_arm(Parts& parts, const std::string& arm) {
   co_return Outcome{};
 }
 
-std::vector<std::string> arms_for(const Parts& parts, const Vector3& p_world,
-                                  const SceneBox* surface) {
-  struct Candidate {
-    std::string arm;
-    double stretch;  // distance over reach
-  };
+namespace {
+
+/// An arm and how far it must stretch.
+struct Candidate {
+  std::string arm;
+  double stretch;  // distance over reach
+};
+
+/// Returns all arms with the distance that `distance_from` gives for their shoulder [m].
+template <class Distance>
+std::vector<Candidate> stretches(const Parts& parts, const Distance& distance_from) {
   std::vector<Candidate> all;
   const RobotModel& robot = parts.arm.robot();
   for (const Manipulator& m : parts.arm.manipulators()) {
@@ -47,11 +52,20 @@ std::vector<std::string> arms_for(const Parts& parts, const Vector3& p_world,
     const Vector3 p_shoulder =
         (parts.now.T_world_base() * robot.link_pose(parts.now.set_point(), reach.shoulder))
             .translation();
-    double distance = (p_world - p_shoulder).norm();
-    if (surface != nullptr)
-      distance = std::max(distance, (nearest_on_top(*surface, p_shoulder) - p_shoulder).norm());
-    all.push_back({m.name, distance / reach.length});
+    all.push_back({m.name, distance_from(p_shoulder) / reach.length});
   }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> arms_for(const Parts& parts, const Vector3& p_world,
+                                  const SceneBox* surface) {
+  std::vector<Candidate> all = stretches(parts, [&](const Vector3& p_shoulder) {
+    const double distance = (p_world - p_shoulder).norm();
+    if (surface == nullptr) return distance;
+    return std::max(distance, (nearest_on_top(*surface, p_shoulder) - p_shoulder).norm());
+  });
   std::stable_sort(all.begin(), all.end(),
                    [](const Candidate& a, const Candidate& b) { return a.stretch < b.stretch; });
   const bool is_any_near = !all.empty() && all.front().stretch < 1;
@@ -59,6 +73,15 @@ std::vector<std::string> arms_for(const Parts& parts, const Vector3& p_world,
   for (const Candidate& one : all)
     if (one.stretch < 1 || !is_any_near) out.push_back(one.arm);
   return out;
+}
+
+bool another_arm_reaches(const Parts& parts, const SceneBox& surface) {
+  const std::vector<Candidate> all = stretches(parts, [&](const Vector3& p_shoulder) {
+    return (nearest_on_top(surface, p_shoulder) - p_shoulder).norm();
+  });
+  return std::any_of(all.begin(), all.end(), [&](const Candidate& one) {
+    return one.arm != parts.arm.group().name && one.stretch < 1;
+  });
 }
 
 }  // namespace handsel::manipulation_planner

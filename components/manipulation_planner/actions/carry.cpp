@@ -34,7 +34,8 @@ Routine<CarryPlan> plan_carry(Parts& parts, const ActionGoal& goal) {
   found.outcome = Outcome::failure("there is no free place on a surface called " + goal.surface);
   const std::vector<Pose> places = places_for(parts, goal, *parts.now.object(goal.object));
   for (const Pose& place : places) {
-    found = co_await ask_regrasp(parts, goal.object, place, true);
+    const std::vector<Pose> this_one{place};
+    found = co_await ask_regrasp(parts, goal.object, this_one, true);
     if (found.outcome.good) break;
   }
   plan.outcome = found.outcome;

@@ -30,6 +30,69 @@ bool is_person_near_hand(const Parts& parts) {
   });
 }
 
+bool has_other_arm(const Parts& parts) {
+  const auto& all = parts.arm.manipulators();
+  return std::any_of(all.begin(), all.end(), [&](const Manipulator& m) {
+    return m.arm != nullptr && m.name != parts.arm.group().name;
+  });
+}
+
+Outcome no_place_on(const std::string& onto, const std::string& taker, const FoundPlaces& found) {
+  return Outcome::failure("no free place on " + onto + " within the reach of " +
+                          (taker.empty() ? "the arm: " : "both arms: ") + found.objections);
+}
+
+/// Searches places for the held object; its outcome says why there can be none. `taker`: as of
+/// put_on().
+Routine<FoundPlaces> places_in_reach(Parts& parts, const std::string& object,
+                                     const std::string& onto, const std::string& taker) {
+  FoundPlaces found;
+  const SceneBox* surface = parts.now.surface(onto);
+  if (!parts.held.is_holding() || parts.held.id() != object)
+    found.outcome = Outcome::failure("the hand does not hold " + object);
+  else if (surface == nullptr)
+    found.outcome = Outcome::failure("there is no surface called " + onto);
+  else if (parts.now.model_of(object) == nullptr)
+    found.outcome = Outcome::failure("object " + object + " has no model");
+  if (!found.outcome.good) co_return found;
+  parts.action.phase = ActionPhase::choosing_place;
+  const Vector open = opening(parts);
+  found = co_await find_places(parts, *surface, open, taker);
+  co_return found;
+}
+
+/// Puts the held object down at one of the places. `taker`: as of put_on().
+Routine<Outcome> put_down_at(Parts& parts, const std::string& object, const std::string& onto,
+                             const std::string& taker, const FoundPlaces& found) {
+  if (!found.outcome.good) co_return found.outcome;
+  if (found.configurations.empty()) co_return no_place_on(onto, taker, found);
+  if (found.is_lying) parts.refuse("place upright", found.objections);
+  Outcome lowered;
+  if (taker.empty()) {
+    lowered = co_await lower(parts, found.configurations);
+  } else {
+    // The best place for the taker, not the nearest to the arm in use.
+    for (const PlacingConfiguration& configuration : found.configurations) {
+      const std::vector<PlacingConfiguration> this_one{configuration};
+      lowered = co_await lower(parts, this_one);
+      if (lowered.good) break;
+    }
+  }
+  if (!lowered.good) co_return lowered;
+  parts.destinations.clear();
+  co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); },
+                               parts.settings.place_person_timeout);
+  const Vector open = opening(parts);
+  HandResult released =
+      co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
+  if (!released.outcome.good) co_return released.outcome;
+  parts.held.release();
+  const std::string nobody;
+  Outcome back = co_await retreat(parts, nobody, object);
+  if (!back.good) parts.refuse("retreat", back.reason);
+  co_return Outcome{};
+}
+
 }  // namespace
 
 Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
@@ -85,50 +148,27 @@ Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places) {
 }
 
 Routine<Outcome> place(Parts& parts, const std::string& object, const std::string& onto) {
-  const std::string none;
-  Outcome done = co_await put_on(parts, object, onto, none);
+  const std::string nobody;
+  const FoundPlaces found = co_await places_in_reach(parts, object, onto, nobody);
+  if (found.outcome.good && found.configurations.empty() && has_other_arm(parts)) {
+    const Outcome none = no_place_on(onto, nobody, found);
+    parts.refuse("place by the hand that holds the object", none.reason);
+    ActionGoal goal;
+    goal.object = object;
+    goal.surface = onto;
+    Outcome passed = co_await regrasp(parts, goal);
+    if (passed.good) co_return passed;
+    co_return Outcome::failure(none.reason + "; by the other hand: " + passed.reason, passed.kind);
+  }
+  Outcome done = co_await put_down_at(parts, object, onto, nobody, found);
   co_return done;
 }
 
 Routine<Outcome> put_on(Parts& parts, const std::string& object, const std::string& onto,
                         const std::string& taker) {
-  if (!parts.held.is_holding() || parts.held.id() != object)
-    co_return Outcome::failure("the hand does not hold " + object);
-  const SceneBox* surface = parts.now.surface(onto);
-  if (surface == nullptr) co_return Outcome::failure("there is no surface called " + onto);
-  if (parts.now.model_of(object) == nullptr)
-    co_return Outcome::failure("object " + object + " has no model");
-  parts.action.phase = ActionPhase::choosing_place;
-  const Vector open = opening(parts);
-  FoundPlaces found = co_await find_places(parts, *surface, open, taker);
-  if (!found.outcome.good) co_return found.outcome;
-  if (found.configurations.empty())
-    co_return Outcome::failure("no free place on " + onto + " within the reach of " +
-                               (taker.empty() ? "the arm: " : "both arms: ") + found.objections);
-  if (found.is_lying) parts.refuse("place upright", found.objections);
-  Outcome lowered;
-  if (taker.empty()) {
-    lowered = co_await lower(parts, found.configurations);
-  } else {
-    // The best place for the taker, not the nearest to the arm in use.
-    for (const PlacingConfiguration& configuration : found.configurations) {
-      const std::vector<PlacingConfiguration> this_one{configuration};
-      lowered = co_await lower(parts, this_one);
-      if (lowered.good) break;
-    }
-  }
-  if (!lowered.good) co_return lowered;
-  parts.destinations.clear();
-  co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); },
-                               parts.settings.place_person_timeout);
-  HandResult released =
-      co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
-  if (!released.outcome.good) co_return released.outcome;
-  parts.held.release();
-  const std::string nobody;
-  Outcome back = co_await retreat(parts, nobody, object);
-  if (!back.good) parts.refuse("retreat", back.reason);
-  co_return Outcome{};
+  const FoundPlaces found = co_await places_in_reach(parts, object, onto, taker);
+  Outcome done = co_await put_down_at(parts, object, onto, taker, found);
+  co_return done;
 }
 
 }  // namespace handsel::manipulation_planner

@@ -1,6 +1,7 @@
 // The action receive: waits for an offer, clears the area for one, and takes the object.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "common/model/human/human_body.hpp"
@@ -138,16 +139,22 @@ Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first,
 /// Grasps of what is offered, by one arm.
 struct OfferGrasps {
   GraspList list;
-  bool serves{};  ///< the object can be put down by some of them
+  bool serves{};  ///< the object can be put down by some of them, or perhaps by the other hand
 };
 
-/// Asks for grasps by one arm after the other, the nearest first, until the object can be put down
-/// by some; uses that arm, else the first one that has grasps.
+/// Asks for grasps by one arm after the other, those first that reach the surface too, until the
+/// object can be put down by some; uses that arm, else the first one that has grasps, whose hand
+/// can pass the object on.
 Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
                                            const std::string& onto, const Vector3& p_object) {
   OfferGrasps first;
   std::string first_arm;
-  const std::vector<std::string> arms = arms_for(parts, p_object, parts.now.surface(onto));
+  const SceneBox* surface = parts.now.surface(onto);
+  std::vector<std::string> arms = arms_for(parts, p_object, surface);
+  const std::vector<std::string> near = arms_for(parts, p_object, nullptr);
+  std::copy_if(near.begin(), near.end(), std::back_inserter(arms), [&arms](const std::string& arm) {
+    return std::find(arms.begin(), arms.end(), arm) == arms.end();
+  });
   for (const std::string& arm : arms) {
     Outcome used = co_await use_arm(parts, arm);
     OfferGrasps found;
@@ -164,6 +171,7 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
     }
   }
   if (first_arm != arms.back()) co_await use_arm(parts, first_arm);
+  first.serves = surface != nullptr && another_arm_reaches(parts, *surface);
   co_return first;
 }
 

@@ -9,6 +9,7 @@
 #include "components/manipulation_planner/actions/rest.hpp"
 #include "components/manipulation_planner/actions/two_hands.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
+#include "components/manipulation_planner/placing/destination_search.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -240,26 +241,54 @@ Routine<Outcome> execute_step(Parts& parts, const std::string& object, const Reg
   co_return done;
 }
 
+/// Returns places on a surface that the arm which is not in use reaches well; empty: none.
+Routine<std::vector<Pose>> places_for_other_arm(Parts& parts, const std::string& onto) {
+  const SceneBox* surface = parts.now.surface(onto);
+  std::vector<Pose> places;
+  if (surface == nullptr) co_return places;
+  for (const Manipulator& other : parts.arm.manipulators()) {
+    if (other.arm == nullptr || other.name == parts.arm.group().name) continue;
+    places = co_await find_standing_places(parts, *surface, other.name);
+    break;
+  }
+  co_return places;
+}
+
+/// Executes one step; where a pass fails, the arm that still holds the object is in use again.
+Routine<Outcome> execute_or_keep(Parts& parts, const std::string& object, const RegraspStep& step,
+                                 bool is_first_pass) {
+  const std::optional<Grasp> grasp = parts.held.grasp();
+  Outcome done = co_await execute_step(parts, object, step, is_first_pass);
+  if (done.good || step.kind != RegraspKind::pass) co_return done;
+  Outcome back = co_await use_arm(parts, step.from);
+  if (back.good && parts.held.is_held_by_hand(object)) parts.held.set_grasp(grasp);
+  co_return done;
+}
+
 }  // namespace
 
 Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal) {
   const std::string object = goal.object;
-  Outcome ready = co_await await_put_down(parts, object);
-  if (!ready.good) co_return ready;
-  TwoHandPlan plan;
-  plan.outcome = Outcome::failure(
-      goal.surface.empty() ? "it was not said where " + object + " is to stand"
-                           : "there is no free place on a surface called " + goal.surface);
-  const std::vector<Pose> places = places_for(parts, goal, *parts.now.object(object));
-  for (const Pose& place : places) {
-    plan = co_await ask_regrasp(parts, object, place, false);
-    if (plan.outcome.good) break;
+  const bool is_held = parts.held.is_holding() && parts.held.id() == object;
+  if (!is_held) {
+    Outcome ready = co_await await_put_down(parts, object);
+    if (!ready.good) co_return ready;
   }
+  std::vector<Pose> places = places_for(parts, goal, *parts.now.object(object));
+  if (is_held && !goal.has_goal) places = co_await places_for_other_arm(parts, goal.surface);
+  if (places.empty())
+    co_return Outcome::failure(goal.surface.empty()
+                                   ? "it was not said where " + object + " is to stand"
+                                   : "there is no free place on a surface called " + goal.surface);
+  TwoHandPlan plan = co_await ask_regrasp(parts, object, places, false);
   if (!plan.outcome.good) co_return plan.outcome;
-  Outcome alone = co_await rest_all(parts);  // where the steps begin
+  // Where the steps begin.
+  Outcome alone = co_await rest_others(parts);
+  if (!is_held) alone = co_await rest_all(parts);
   if (!alone.good) co_return alone;
+  const std::size_t first_pass = is_held ? 0 : 1;
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
-    Outcome done = co_await execute_step(parts, object, plan.steps[i], i == 1);
+    Outcome done = co_await execute_or_keep(parts, object, plan.steps[i], i == first_pass);
     if (!done.good) co_return done;
   }
   Outcome rested = co_await rest_all(parts);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/model/object_extent.hpp"
+#include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
 
 namespace handsel::manipulation_planner {
@@ -76,16 +77,29 @@ class SurfacePlaces {
   double gap_{};
 };
 
+/// Returns the grasp by which the hand in use holds what it does, as it lies there now.
+Grasp grasp_in_hand(const Parts& parts) {
+  Grasp grasp = parts.held.grasp().value_or(Grasp{});
+  grasp.T_object_hand = parts.held.attachment().T_tool_object.inverse();
+  grasp.hand_joints = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
+  grasp.pregrasp_joints = opening(parts);
+  return grasp;
+}
+
 }  // namespace
 
-Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal,
-                                 bool both) {
+Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object,
+                                 const std::vector<Pose>& places, bool both) {
   parts.action.phase = both ? ActionPhase::choosing_two_grasps : ActionPhase::choosing_hands;
   RegraspRequest request;
   parts.clients.regrasp.open(request);
   request.object = object;
   request.start = parts.now.set_point();
-  request.T_world_goal = T_world_goal;
+  for (const Pose& place : places) request.goals.push_back({place});
+  if (parts.held.is_holding()) {
+    request.holder = parts.arm.group().name;
+    request.grasp = grasp_in_hand(parts);
+  }
   request.both = both;
   request.seed = parts.action.id;
   const bool answered = co_await parts.clients.regrasp.ask(request);

@@ -15,9 +15,10 @@ struct TwoHandPlan {
 };
 
 // References must outlive the routines.
-/// Asks for steps that bring an object to a pose. `both`: the hands hold the object together.
-Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal,
-                                 bool both);
+/// Asks for steps that bring an object, which stands or is in the hand in use, to one of the places
+/// (T_world_object, at most 64, the best first). `both`: the hands hold the object together.
+Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object,
+                                 const std::vector<Pose>& places, bool both);
 /// Waits until an object is at rest somewhere, for a moment: what was just put down may still seem
 /// to be held.
 Routine<Outcome> await_put_down(Parts& parts, const std::string& object);

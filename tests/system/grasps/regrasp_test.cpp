@@ -203,6 +203,31 @@ TEST(Regrasp, a_hand_changes_its_own_grasp_through_the_other_hand) {
   }
 }
 
+TEST(Regrasp, what_one_hand_holds_the_other_puts_down_at_any_of_the_places) {
+  const std::string object = "bottle";
+  RegraspPlanner planner = duo().planner(object);
+  RegraspTask first;
+  first.start.T_world_object = DuoStage::standing(object, 0.5, -0.35);
+  first.goal.arm = 1;
+  const RegraspPlan picked = planner.plan(first);
+  ASSERT_TRUE(picked.solved) << picked.reason;
+  RegraspTask task;
+  task.start = {0, picked.steps.front().grasp_to, Pose::Identity()};
+  task.goal.T_world_object = DuoStage::standing(object, 3, 0.5);
+  const RegraspPlan none = planner.plan(task);
+  EXPECT_FALSE(none.solved);
+  const Pose T_reached = DuoStage::standing(object, 0.5, 0.5, 1.0);
+  task.other_goals = {DuoStage::standing(object, 0.5, 3), T_reached};
+  const RegraspPlan plan = planner.plan(task);
+  ASSERT_TRUE(plan.solved) << plan.reason;
+  print(plan, object, "from the hand to the table");
+  ASSERT_EQ(plan.steps.size(), 2U);
+  EXPECT_EQ(plan.steps[0].kind, RegraspStepKind::pass);
+  EXPECT_EQ(plan.steps[1].kind, RegraspStepKind::place);
+  EXPECT_TRUE(plan.steps[1].T_world_object.isApprox(T_reached));
+  expect_sequence(plan, object, task.start);
+}
+
 TEST(Regrasp, with_one_arm_it_puts_down_and_takes_up_again) {
   const std::string object = "bottle";
   RegraspPlanner planner = duo().planner(object, 1);

@@ -436,5 +436,44 @@ TEST(ManipulationPlanner, a_hand_that_reaches_below_what_it_holds_releases_it_a_
   EXPECT_NEAR(highest, kAbovePlace + 0.008, 1e-3);
 }
 
+TEST(ManipulationPlanner, what_the_holding_arm_cannot_put_down_goes_to_the_other_hand) {
+  Rig rig("duo");
+  rig.scene.objects[0].holder = Holder::robot;
+  rig.T_tool_mug = make_pose({0.08, 0.02, 0.12});
+  // At the left, beyond the right arm.
+  rig.scene.boxes[0] = {"table", make_pose({0.5, 0.9, 0.5}), {0.5, 0.5, 1.0}, true};
+  rig.start(ActionKind::place);
+  rig.run(30);
+  ASSERT_EQ(rig.regrasps.size(), 1U) << rig.planner.status().reason;
+  const RegraspRequest& asked = rig.regrasps.front();
+  EXPECT_EQ(asked.holder, "arm");
+  EXPECT_TRUE(asked.grasp.T_object_hand.isApprox(rig.T_tool_mug.inverse(), 1e-6));
+  EXPECT_FALSE(asked.both);
+  ASSERT_FALSE(asked.goals.empty());
+  for (const StandingPlace& place : asked.goals) {
+    const Vector3 p = place.T_world_object.translation();
+    EXPECT_LT(std::abs(p.x() - 0.5), 0.25);
+    EXPECT_LT(std::abs(p.y() - 0.9), 0.25);
+    EXPECT_GT(p.z(), 1.0);
+    EXPECT_GT(place.T_world_object.linear()(2, 2), 0.999) << "upright";
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  const std::string& reason = rig.planner.status().reason;
+  EXPECT_NE(reason.find("no free place on table within the reach of the arm"), std::string::npos)
+      << reason;
+  EXPECT_NE(reason.find("by the other hand: no sequence of grasps"), std::string::npos) << reason;
+}
+
+TEST(ManipulationPlanner, one_arm_alone_asks_no_other_hand) {
+  Rig rig;
+  rig.scene.objects[0].holder = Holder::robot;
+  rig.T_tool_mug = make_pose({0.08, 0.02, 0.12});
+  rig.scene.boxes[0] = {"table", make_pose({2.5, 0.9, 0.5}), {0.5, 0.5, 1.0}, true};
+  rig.start(ActionKind::place);
+  rig.run(30);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_TRUE(rig.regrasps.empty());
+}
+
 }  // namespace
 }  // namespace handsel::manipulation_planner

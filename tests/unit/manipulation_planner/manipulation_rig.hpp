@@ -93,6 +93,7 @@ class Rig {
       planner.job_done();
     }
     for (auto& request : out.grasp_requests) answer(request);
+    for (auto& request : out.regrasp_requests) answer(request);
     for (auto& request : out.path_requests) answer(request);
     for (auto& request : out.trajectory_requests) answer(request);
     for (auto& command : out.trajectories) obey(command);
@@ -124,6 +125,13 @@ class Rig {
     else
       reply.reason = "no frame gives three contacts";
     if (grasp_planner_lives) planner.on(reply);
+  }
+  void answer(const RegraspRequest& request) {
+    regrasps.push_back(request);
+    RegraspReply reply;
+    reply.id = request.id;
+    reply.reason = "no sequence of grasps leads there";
+    planner.on(reply);
   }
   void answer(const PathRequest& request) {
     last_path = request;
@@ -252,6 +260,7 @@ class Rig {
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0}, led_over{0};
   PathRequest last_path;
+  std::vector<RegraspRequest> regrasps;  // all, each answered with no sequence
   std::vector<std::string> path_groups;  // of all paths asked for
   std::vector<Grasp> grasps;  // of the planner's answers; empty: one that is near the arm
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true},

@@ -209,6 +209,9 @@ TEST(TaskPlanner, an_object_changes_hands_where_one_arm_does_not_reach_both_plac
   world.held_by["mug"] = kRobotName;  // in the first hand
   EXPECT_EQ(ask(to_shelf, world, {}, two).steps(), "place mug on shelf, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "table"), world, {}, two).steps(),
+            "regrasp mug on table, go to rest");
+  const Forbidden refused{{"regrasp mug on table", "the hands do not meet"}};
+  EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "table"), world, refused, two).steps(),
             "regrasp mug, place mug on table, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::regrasp, "mug"), world, {}, two).steps(), "regrasp mug");
   world.held_by.clear();
