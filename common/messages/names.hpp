@@ -100,8 +100,8 @@ inline constexpr const char* kActionPhaseTexts[] = {
     "waiting for release", "planning", "approach", "approach with the other hand",
     "reaching the object", "opening the hand", "opening the other hand", "grasp", "lift",
     "carry", "carry to the other hand", "offer", "put down", "put back", "release",
-    "release with the first hand", "retreat", "backing off", "stepping back", "retreat from a person",
-    "clear the offer area", "to rest"};
+    "release with the first hand", "retreat", "backing off", "stepping back",
+    "retreat from a person", "clear the offer area", "to rest"};
 inline constexpr const char* kActionFailureNames[] = {
     "none", "other", "no_answer", "timed_out", "not_permitted", "nothing_grasped", "left_behind",
     "not_visible", "not_taken", "cancelled"};

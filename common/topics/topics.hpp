@@ -42,8 +42,10 @@ struct TopicRow {
 // type, topic, profile, rate [Hz], deadline [s], largest [bytes], writers, readers
 // clang-format off
 #define HANDSEL_TOPICS(X) \
-  X(RobotState, "robot_state", sensor, 500, 0.02, 5128, "sim driver ros2_lane", "trajectory_controller spark supervisor ros2_lane") \
-  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 2560, "trajectory_controller", "sim driver") \
+  X(RobotState, "robot_state", sensor, 500, 0.02, 5128, "sim driver ros2_lane", \
+    "trajectory_controller spark supervisor ros2_lane") \
+  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 2560, "trajectory_controller", \
+    "sim driver") \
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 1310720, "sim ros2_lane", "spark sim") \
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 655360, "sim ros2_lane", "spark") \
   X(Scene, "scene", state, 10, 0.3, 81928, "spark", \
@@ -62,23 +64,30 @@ struct TopicRow {
     "supervisor attention trajectory_controller sim ros2_lane") \
   X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller driver") \
   X(SafetyState, "safety_state", latch, 1, 3, 163840, "supervisor", "spark trajectory_controller") \
-  X(TrajectoryCommand, "trajectory", command, 0, 0, 5242880, "manipulation_planner ros2_lane", "trajectory_controller") \
-  X(HandCommand, "hand_command", command, 0, 0, 1216, "manipulation_planner", "trajectory_controller") \
-  X(ExecutionStatus, "execution_status", state, 50, 0.06, 896, "trajectory_controller", "manipulation_planner supervisor ros2_lane") \
+  X(TrajectoryCommand, "trajectory", command, 0, 0, 5242880, "manipulation_planner ros2_lane", \
+    "trajectory_controller") \
+  X(HandCommand, "hand_command", command, 0, 0, 1216, "manipulation_planner", \
+    "trajectory_controller") \
+  X(ExecutionStatus, "execution_status", state, 50, 0.06, 896, "trajectory_controller", \
+    "manipulation_planner supervisor ros2_lane") \
   X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 5242880, "trajectory_controller", \
     "collision_checker attention manipulation_planner ros2_lane") \
-  X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.1, 512, "collision_checker", "trajectory_controller attention") \
+  X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.1, 512, "collision_checker", \
+    "trajectory_controller attention") \
   X(AttentionState, "attention_state", state, 10, 0.3, 4608, "attention", "bridge") \
   X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 704, "attention", \
     "spark costmap collision_checker manipulation_planner trajectory_controller supervisor") \
   X(PathRequest, "path_request", request, 0, 0, 2686976, "manipulation_planner", "path_planner") \
   X(PathReply, "path_reply", reply, 0, 0, 2621440, "path_planner", "manipulation_planner") \
-  X(TrajectoryRequest, "trajectory_request", request, 0, 0, 2621440, "manipulation_planner ros2_lane", "trajectory_planner") \
-  X(TrajectoryReply, "trajectory_reply", reply, 0, 0, 5505024, "trajectory_planner", "manipulation_planner ros2_lane") \
+  X(TrajectoryRequest, "trajectory_request", request, 0, 0, 2621440, \
+    "manipulation_planner ros2_lane", "trajectory_planner") \
+  X(TrajectoryReply, "trajectory_reply", reply, 0, 0, 5505024, "trajectory_planner", \
+    "manipulation_planner ros2_lane") \
   X(GraspRequest, "grasp_request", request, 0, 0, 1024, "manipulation_planner", "grasp_planner") \
   X(GraspReply, "grasp_reply", reply, 0, 0, 1179648, "grasp_planner", "manipulation_planner") \
   X(GraspCandidates, "grasp_candidates", advice, 2, 0, 1179648, "grasp_planner", "bridge") \
-  X(RegraspRequest, "regrasp_request", request, 0, 0, 16384, "manipulation_planner", "grasp_planner") \
+  X(RegraspRequest, "regrasp_request", request, 0, 0, 16384, "manipulation_planner", \
+    "grasp_planner") \
   X(RegraspReply, "regrasp_reply", reply, 0, 0, 425984, "grasp_planner", "manipulation_planner") \
   X(StateQuery, "state_query", request, 0, 0, 4194304, "handsel ros2_lane", "collision_checker") \
   X(StateVerdict, "state_verdict", reply, 0, 0, 6144, "collision_checker", "handsel ros2_lane") \

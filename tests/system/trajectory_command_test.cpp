@@ -39,7 +39,8 @@ Answers ask(const std::string& arguments, const std::string& input) {
 /// Two axes at rest, one of them with something else in it.
 std::string problem(const std::string& replaced = "", const std::string& by = "") {
   json line = json::parse(
-      R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],"amax":[1,1],"jmax":[1,1]})");
+      R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],)"
+      R"("amax":[1,1],"jmax":[1,1]})");
   std::string text = line.dump();
   if (replaced.empty()) return text;
   const std::string now = "\"" + replaced + "\":" + line[replaced].dump();
@@ -120,10 +121,10 @@ TEST(TrajectoryCommand, every_fault_has_its_sentence) {
                  "tau must be a number that is not negative");
   expect_refusal("smooth", R"({"nodes":[[0,0],[1,1]],"vmax":[1,1],"amax":[1,0],"jmax":[1,1]})",
                  "axis 1: limits must be positive and finite");
-  expect_refusal(
-      "sample",
-      R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,"segments":[]}]})",
-      "the axes do not last equally long");
+  expect_refusal("sample",
+                 R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,)"
+                 R"("segments":[]}]})",
+                 "the axes do not last equally long");
   expect_refusal("sample", R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[-1,1]]}]})",
                  "a segment must be [duration, jerk], the duration not negative");
 }

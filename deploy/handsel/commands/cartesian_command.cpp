@@ -179,11 +179,14 @@ void add_cartesian_command(CLI::App& trajectory, int& exit_code) {
   CLI::App* command = trajectory.add_subcommand(
       "cartesian", "From poses of the tool to soft motion of an arm of seven axes");
   command->footer(
-      R"(A line: {"start"?: {joint: rad}, "nodes": [{"p": [x, y, z], "q": [x, y, z, w] of the tool in the root frame, "elbow"?: rad,
- "also"?: {joint: rad} of hand and head}], "obstacles"?: [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
- "level"?: {"axis": [x, y, z] of the tool, upright, "most": rad}}.
-An answer: "active" the smoothed trajectory of position, rotation vector, elbow and further axes; "axes" that of the joints.
-Where a node cannot be reached the motion ends at the one before, "reached" counts them, and the exit code is 1.)");
+      R"(A line: {"start"?: {joint: rad}, "nodes": [{"p": [x, y, z], "q": [x, y, z, w] of the tool
+in the root frame, "elbow"?: rad, "also"?: {joint: rad} of hand and head}], "obstacles"?:
+[{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}], "level"?: {"axis":
+[x, y, z] of the tool, upright, "most": rad}}.
+An answer: "active" the smoothed trajectory of position, rotation vector, elbow and further axes;
+"axes" that of the joints.
+Where a node cannot be reached the motion ends at the one before, "reached" counts them, and the
+exit code is 1.)");
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
       ->required();
   command->add_option("--group", options->group, "of the arm")->capture_default_str();

@@ -67,7 +67,8 @@ void add_cost_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "cost", "The human-aware costs of points around a person, or a picture of them");
   command->footer(
-      R"(Without --svg: a line on stdin {"p": [x, y, z]} in m; the person stands or sits at the origin and faces +x.)");
+      R"(Without --svg: a line on stdin {"p": [x, y, z]} in m; the person stands or sits at the
+origin and faces +x.)");
   command->add_option("--posture", options->posture, "of the person")
       ->check(CLI::IsMember({"standing", "sitting"}))
       ->capture_default_str();

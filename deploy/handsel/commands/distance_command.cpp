@@ -45,7 +45,8 @@ void add_distance_command(CLI::App& app, int& exit_code) {
   CLI::App* distance = app.add_subcommand(
       "distance", "Contact and distance [m] of pairs of shapes, one JSON line a pair on stdin");
   distance->footer(
-      R"(A line: {"a": {"type": "sphere|box|cylinder|capsule", "r", "l", "xyz"}, "Ta": {"xyz", "quat_xyzw"}, "b": ..., "Tb": ...})");
+      R"(A line: {"a": {"type": "sphere|box|cylinder|capsule", "r", "l", "xyz"}, "Ta": {"xyz",
+"quat_xyzw"}, "b": ..., "Tb": ...})");
   distance->add_flag("--json")->description("JSON Lines (always so)");
   distance->callback([&exit_code] { exit_code = for_each_line(std::cin, std::cout, judge); });
 }

@@ -217,7 +217,8 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   CLI::App* scoring = grasp->add_subcommand(
       "score", "Force closure and epsilon of sets of contacts, one JSON line a set on stdin");
   scoring->footer(
-      R"(A line: {"points": [[3]...], "inward_normals": [[3]...], "mu", "edges", "com", "torque_scale"} or {"wrenches": [[...]...]})");
+      R"(A line: {"points": [[3]...], "inward_normals": [[3]...], "mu", "edges", "com",
+"torque_scale"} or {"wrenches": [[...]...]})");
   scoring->add_flag("--json")->description("JSON Lines (always so)");
   scoring->callback([&exit_code] { exit_code = for_each_line(std::cin, std::cout, score); });
 

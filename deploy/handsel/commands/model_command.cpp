@@ -304,7 +304,8 @@ void add_model_commands(CLI::App& app, int& exit_code) {
   });
   CLI::App* fk = add("fk", "Poses of all links in the root frame for joint values on stdin");
   fk->footer(
-      R"(A line: {"q": {joint: value}}, 0 for joints not named; the answer: {"T": {link: three rows of four}})");
+      R"(A line: {"q": {joint: value}}, 0 for joints not named; the answer: {"T": {link: three rows
+of four}})");
   fk->callback([options, &exit_code] {
     exit_code = for_each_line(std::cin, std::cout,
                               ForwardKinematics(load_any(options->robot, Meshes::skip)));

@@ -299,11 +299,13 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   CLI::App* plan =
       app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
   plan->footer(
-      R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}] or
- [{"pose": {"p": [x, y, z], "q": [x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
- "human": {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility", "comfort"},
- "also": {joint: rad} where head or hand end (--space cartesian),
- "upright": {"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height, radius.)");
+      R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}] or [{"pose": {"p": [x, y, z], "q":
+[x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}],
+"obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}], "human":
+{"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility",
+"comfort"}, "also": {joint: rad} where head or hand end (--space cartesian), "upright":
+{"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height,
+radius.)");
   plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file");
   plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
   plan->add_option(

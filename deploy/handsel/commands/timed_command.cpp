@@ -114,9 +114,11 @@ void add_timed_command(CLI::App& trajectory, int& exit_code) {
   CLI::App* command = trajectory.add_subcommand(
       "timed", "A path of a robot's joints to soft motion, slower where it costs people");
   command->footer(
-      R"(A line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of the others, "obstacles"?, "human"?: {"joints": {name: [x, y, z]},
- "gaze"?: [x, y, z], "velocity"?: [x, y, z]} in the root frame, "weights"?, "speed_scale"?, "title"?: of the picture's panel}.
-An answer: "speeds" of each path segment, [[up to this fraction of it, this scale of the velocity limits], ...]; nothing without a human.)");
+      R"(A line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of the others, "obstacles"?,
+"human"?: {"joints": {name: [x, y, z]}, "gaze"?: [x, y, z], "velocity"?: [x, y, z]} in the
+root frame, "weights"?, "speed_scale"?, "title"?: of the picture's panel}.
+An answer: "speeds" of each path segment, [[up to this fraction of it, this scale of the velocity
+limits], ...]; nothing without a human.)");
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
       ->required();
   command->add_option("--group", options->group, "whose joints move")->capture_default_str();

@@ -40,10 +40,13 @@ RobotModel gantry() {
   const std::filesystem::path file = std::filesystem::temp_directory_path() /
                                      ("handsel_landscape_" + std::to_string(getpid()) + ".urdf");
   std::ofstream(file)
-      << R"(<robot name="gantry"><link name="floor"/><link name="carriage"/><link name="point"><collision><geometry>
+      << R"(<robot name="gantry"><link name="floor"/><link name="carriage"/><link name="point">
+<collision><geometry>
 <sphere radius="0.001"/></geometry></collision></link>
-<joint name="x" type="prismatic"><parent link="floor"/><child link="carriage"/><axis xyz="1 0 0"/><limit lower="-0.98" upper="0.98" effort="1" velocity="1"/></joint>
-<joint name="y" type="prismatic"><parent link="carriage"/><child link="point"/><axis xyz="0 1 0"/><limit lower="-0.98" upper="0.98" effort="1" velocity="1"/></joint>
+<joint name="x" type="prismatic"><parent link="floor"/><child link="carriage"/>
+<axis xyz="1 0 0"/><limit lower="-0.98" upper="0.98" effort="1" velocity="1"/></joint>
+<joint name="y" type="prismatic"><parent link="carriage"/><child link="point"/>
+<axis xyz="0 1 0"/><limit lower="-0.98" upper="0.98" effort="1" velocity="1"/></joint>
 </robot>)";
   RobotModel robot = RobotModel::load_urdf(file);
   std::filesystem::remove(file);

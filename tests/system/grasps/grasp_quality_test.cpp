@@ -43,10 +43,11 @@ RobotModel hand_on_a_slide(const std::vector<Axis>& hand_axes) {
   std::ifstream in(kDeploy / "hands/sah/sah.urdf");
   std::string urdf{std::istreambuf_iterator<char>(in), {}};
   const std::string head = "<robot name=\"sah\">";
-  urdf.insert(
-      urdf.find(head) + head.size(),
-      R"(<link name="base"><inertial><mass value="10"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
-<joint name="slide" type="prismatic"><parent link="base"/><child link="palm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="2" effort="1000"/></joint>)");
+  urdf.insert(urdf.find(head) + head.size(),
+              R"(<link name="base"><inertial><mass value="10"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="slide" type="prismatic"><parent link="base"/><child link="palm"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="2" effort="1000"/></joint>)");
   folder.write("rig.urdf", urdf);
   std::string names;
   for (const Axis& a : hand_axes) names += (names.empty() ? "\"" : ", \"") + a.name + "\"";

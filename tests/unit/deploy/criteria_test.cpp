@@ -89,9 +89,8 @@ TEST_F(CriteriaTest,
   EXPECT_LT(fields["discomfort"].get<double>(), 1.0);
 }
 
-TEST_F(
-    CriteriaTest,
-    an_object_out_of_reach_is_as_uncomfortable_as_can_be_and_what_the_person_brings_has_no_way_of_the_robot) {
+TEST_F(CriteriaTest,
+       out_of_reach_is_as_uncomfortable_as_can_be_and_what_a_person_brings_has_no_path) {
   ground_truth_.carrier = "human";
   ground_truth_.T_world_object.translation() = Vector3(-1.5, 0, 1.1);
   tell(2);

@@ -518,9 +518,8 @@ TEST(SimRecording, the_taker_of_the_kth_sample_faces_forward_and_reaches_with_th
   EXPECT_GT(reaching[joint("r_hand")].x(), 0.45);
 }
 
-TEST(
-    SimRecording,
-    the_hand_is_warped_by_at_most_ten_centimetres_in_the_last_half_second_and_the_feet_move_less_than_thirty) {
+TEST(SimRecording,
+     the_hand_is_warped_by_at_most_ten_centimetres_at_the_end_and_the_feet_by_thirty) {
   if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);

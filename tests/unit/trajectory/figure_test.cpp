@@ -35,13 +35,20 @@ SmoothResult run(std::optional<double> tau) {
 }
 
 /// Colours are classes, so that the drawing follows a dark page.
-constexpr const char* kStyle = R"(<style>
+constexpr const char* kStyle =
+    R"(<style>
 text { fill: #222; } .paper { fill: #fff; } polyline { fill: none; stroke-width: 1.6; }
-.axis { stroke: #777; stroke-width: 1; } .grid { stroke: #ddd; stroke-width: 0.7; } .bound { stroke: #c33; stroke-width: 1; stroke-dasharray: 5 3; }
-.x { stroke: #1f5fa8; } .y { stroke: #b35a00; } .t0 { stroke: #777; } .t1 { stroke: #b35a00; } .t2 { stroke: #a0307a; } .t3 { stroke: #23804a; } .t4 { stroke: #1f5fa8; }
+.axis { stroke: #777; stroke-width: 1; } .grid { stroke: #ddd; stroke-width: 0.7; } )"
+    R"(.bound { stroke: #c33; stroke-width: 1; stroke-dasharray: 5 3; }
+.x { stroke: #1f5fa8; } .y { stroke: #b35a00; } .t0 { stroke: #777; } )"
+    R"(.t1 { stroke: #b35a00; } .t2 { stroke: #a0307a; } .t3 { stroke: #23804a; } )"
+    R"(.t4 { stroke: #1f5fa8; }
 @media (prefers-color-scheme: dark) {
-text { fill: #ddd; } .paper { fill: #16181c; } .axis { stroke: #999; } .grid { stroke: #34383f; } .bound { stroke: #ff7b72; }
-.x { stroke: #6cb0ff; } .y { stroke: #ffa657; } .t0 { stroke: #aaa; } .t1 { stroke: #ffa657; } .t2 { stroke: #f08bd0; } .t3 { stroke: #5fd38d; } .t4 { stroke: #6cb0ff; }
+text { fill: #ddd; } .paper { fill: #16181c; } .axis { stroke: #999; } )"
+    R"(.grid { stroke: #34383f; } .bound { stroke: #ff7b72; }
+.x { stroke: #6cb0ff; } .y { stroke: #ffa657; } .t0 { stroke: #aaa; } )"
+    R"(.t1 { stroke: #ffa657; } .t2 { stroke: #f08bd0; } .t3 { stroke: #5fd38d; } )"
+    R"(.t4 { stroke: #6cb0ff; }
 }
 </style>
 <rect class="paper" width="100%" height="100%"/>

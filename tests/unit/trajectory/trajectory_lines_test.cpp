@@ -45,7 +45,8 @@ Answers run(const std::string& kind, const std::string& text) {
 
 std::string with(const std::string& field, const std::string& value) {
   json line = json::parse(
-      R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],"amax":[1,1],"jmax":[1,1]})");
+      R"({"p0":[0,0],"v0":[0,0],"a0":[0,0],"pf":[1,2],"vf":[0,0],"af":[0,0],"vmax":[1,1],)"
+      R"("amax":[1,1],"jmax":[1,1]})");
   line[field] = json::parse(value);
   return line.dump() + "\n";
 }
@@ -78,9 +79,9 @@ TEST(TrajectoryLines, every_fault_has_its_own_sentence) {
   has(error_of("smooth", R"({"nodes":[[0],[1]],"vmax":[1],"amax":[1],"jmax":[1],"tau":-1})"),
       "tau");
   has(error_of("smooth", R"({"nodes":[[0],[1,2]],"vmax":[1],"amax":[1],"jmax":[1]})"), "node 1");
-  has(error_of(
-          "sample",
-          R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,"segments":[]}]})"),
+  has(error_of("sample",
+               R"({"axes":[{"p0":0,"v0":0,"a0":0,"segments":[[1,1]]},{"p0":0,"v0":0,"a0":0,)"
+               R"("segments":[]}]})"),
       "equally long");
   has(error_of("sample", "{"), "not JSON");
 }
