@@ -33,8 +33,8 @@ struct Failure {
 /// the test ends actions itself.
 class TaskRig {
  public:
-  explicit TaskRig(bool by_hand = false)
-      : supervisor(rig_settings(), load_domain(resource("config/tasks.txtpb")), {}, 100),
+  explicit TaskRig(bool by_hand = false, const Ability& ability = {})
+      : supervisor(rig_settings(), load_domain(resource("config/tasks.txtpb")), ability, 100),
         by_hand_(by_hand) {
     world.on["mug"] = "table";
     world.people["anna"] = true;

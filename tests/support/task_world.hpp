@@ -120,6 +120,11 @@ struct TaskWorld {
             return true;
           }
         return false;
+      case ActionKind::regrasp:
+        if (!(hand.empty() || hand == object) || !surfaces.contains(surface)) return false;
+        held_by.erase(object);
+        on[object] = surface;
+        return true;
       case ActionKind::go_to:
         return true;
       default:

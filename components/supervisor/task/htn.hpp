@@ -19,6 +19,10 @@ struct PlannedAction {
   std::vector<std::string> args;       ///< of the domain's action
   double cost{};                       ///< with extra costs in the state of the plan
   std::string text() const;            ///< "give mug to anna"
+  /// Returns whether the object is to stand on a surface at the end, by one hand or another.
+  bool puts_down() const {
+    return kind == ActionKind::place || (kind == ActionKind::regrasp && !surface.empty());
+  }
   friend bool operator==(const PlannedAction& a, const PlannedAction& b) {
     return a.action == b.action && a.args == b.args;
   }

@@ -51,7 +51,7 @@ void PlanningProblem::note_home(const std::string& object) {
 void PlanningProblem::forbid(const PlannedAction& action, const std::string& reason) {
   const std::string text = action.text();
   forbidden_[text] = reason;
-  if (action.kind == ActionKind::place) forbidden_places_[action.object].push_back(text);
+  if (action.puts_down()) forbidden_places_[action.object].push_back(text);
 }
 
 bool PlanningProblem::permit_placing(const std::string& object) {

@@ -329,8 +329,7 @@ void TaskRun::answer_failure(ActionFailure failure, const std::string& reason, T
       finish(TaskState::failed, failures_.reason());
     return;
   }
-  const bool held_anew =
-      failed.kind == ActionKind::place && problem_.has_permitted_placing(failed.object);
+  const bool held_anew = failed.puts_down() && problem_.has_permitted_placing(failed.object);
   const bool otherwise =
       !held_anew && (rule == nullptr || rule->then != settings::FailureRule::Answer::give_up);
   if (!otherwise || !replan(now)) give_up(failures_.first(), now);

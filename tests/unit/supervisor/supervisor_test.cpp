@@ -309,6 +309,27 @@ TEST(Supervisor, what_cannot_be_put_down_as_it_was_taken_is_handed_back_and_take
   }
 }
 
+TEST(Supervisor, what_cannot_be_passed_on_as_it_is_taken_is_handed_back_and_passed_on_then) {
+  Ability two;  // the table stands at x = 5 m, where only the second arm is
+  two.hands = 2;
+  two.arms = {{"hand", {0, 0, 1}, 1.2}, {"left_hand", {5, 0, 1}, 1.2}};
+  TaskRig rig(false, two);
+  rig.world.on.clear();
+  rig.world.held_by["mug"] = "anna";
+  int takes = 0;
+  rig.fails = [&](const ActionGoal& goal) {
+    takes += goal.kind == ActionKind::receive;
+    return Failure(goal.kind == ActionKind::regrasp && takes == 1 ? "the hands do not meet" : "");
+  };
+  rig.run(2.5);
+  rig.ask(TaskKind::receive, "mug", "anna", "table");
+  ASSERT_TRUE(rig.finish());
+  EXPECT_EQ(rig.last().state, TaskState::succeeded) << rig.last().reason;
+  EXPECT_EQ(rig.done(),
+            "receive mug from anna, regrasp mug on table, give mug to anna, "
+            "receive mug from anna, regrasp mug on table, go to rest");
+}
+
 TEST(Supervisor, what_has_no_place_once_it_is_taken_is_handed_back_at_most_twice) {
   TaskRig rig;
   rig.world.on.clear();
