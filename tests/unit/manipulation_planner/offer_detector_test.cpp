@@ -159,6 +159,29 @@ TEST_F(OfferDetectorTest, what_is_extended_at_rest_low_or_high_counts_after_a_lo
   EXPECT_FALSE(is_found(0.29, 0.02)) << "before the eyes";
 }
 
+TEST_F(OfferDetectorTest, over_a_table_what_is_extended_at_long_rest_may_be_above_the_shoulder) {
+  const auto is_found = [&](double height) {
+    height_ = height;
+    detector_.await();
+    EXPECT_LT(bring(0.29, 0.12, 0.0), 0);
+    return bring(0.12, 0.29, 4.0) > 1 + 1.5;
+  };
+  EXPECT_FALSE(is_found(0.06));
+  const Vector3 p_object = scene_.objects[0].T_world_object.translation();
+  const auto table_at = [&](double below) {
+    const double top = p_object.z() - below;
+    scene_.boxes = {
+        {"table", make_pose({p_object.x(), p_object.y(), top / 2}), {0.8, 0.8, top}, true}};
+  };
+  table_at(0.2);
+  EXPECT_TRUE(is_found(0.06));
+  table_at(0.3);
+  EXPECT_FALSE(is_found(0.06)) << "there is room enough below";
+  table_at(0.2);
+  scene_.boxes[0].T_world_box.translation().x() += 1;
+  EXPECT_FALSE(is_found(0.06)) << "the table is elsewhere";
+}
+
 TEST_F(OfferDetectorTest, what_is_extended_at_rest_farther_may_be_higher) {
   hold_at(0.28, 0, -0.02);
   EXPECT_FALSE(is_offered());
