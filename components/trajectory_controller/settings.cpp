@@ -58,6 +58,7 @@ void check_together(const settings::TrajectoryControllerSettings& in, const Sett
     text.refuse("guard", "speed_floor must be at most speed_max");
   if (!(in.guard.speed_unknown <= in.guard.speed_max))
     text.refuse("guard", "speed_unknown must be at most speed_max");
+  if (!(in.view.floor < in.view.ceiling)) text.refuse("view", "floor must be below ceiling");
 }
 
 void read_timeouts(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
@@ -94,6 +95,7 @@ void read_view(const settings::TrajectoryControllerSettings& in, ControllerSetti
   s.view.ahead_margin = v.ahead_margin;
   s.view.boundary_factor = v.boundary_factor;
   s.view.floor = v.floor;
+  s.view.ceiling = v.ceiling;
 }
 
 void read_contact(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {

@@ -82,6 +82,23 @@ TEST(BlindController, stops_short_of_the_edge_along_its_path_and_goes_on_when_mo
   test::expect_smooth(b);
 }
 
+TEST(BlindController, what_nobody_reaches_need_not_be_observed) {
+  constexpr double kTop = 1.0;  // below parts of the arm [m]
+  for (const double ceiling : {kTop, kTop + 0.5}) {
+    ControllerSettings with;
+    with.view.ceiling = ceiling;
+    BlindBench b(with);
+    b.people.views = {test::live_view()};
+    b.people.views.front().high.z() = kTop;
+    b.start();
+    ASSERT_GT(b.farthest(2), kTop);
+    b.go_to(kFar, 1);
+    b.run(8);
+    EXPECT_EQ(b.core.status().motion == MotionState::finished, ceiling == kTop);
+    EXPECT_EQ(has(b, Cause::blind), ceiling > kTop);
+  }
+}
+
 TEST(BlindController, views_that_meet_are_as_good_as_one) {
   BlindBench b;
   SourceView beyond = test::live_view();

@@ -36,8 +36,8 @@ bool StopSpace::inside(const Vector& position, double margin, const Pose& T_worl
     const Vector3 grown = Vector3::Constant(capsule.radius + margin + travel_[c]);
     Box& box = boxes_[c];
     box = {a.cwiseMin(b) - grown, a.cwiseMax(b) + grown};
-    box.low.z() = std::max(box.low.z(), settings_.floor);
-    box.high.z() = std::max(box.high.z(), settings_.floor);
+    for (double* z : {&box.low.z(), &box.high.z()})
+      *z = std::clamp(*z, settings_.floor, settings_.ceiling);
     whole = {whole.low.cwiseMin(box.low), whole.high.cwiseMax(box.high)};
   }
   if (space_.one_contains(whole, since)) return true;

@@ -22,7 +22,9 @@ struct ViewSettings {
   double ahead_margin{0.05};
   /// Speed factor where a stop from full speed would lead out of the observed space, (0, 1].
   double boundary_factor{0.3};
-  double floor{0.0};  ///< nobody is below this height, it need not be observed [m]
+  /// Nobody is below the floor or reaches above the ceiling: what is beyond need not be
+  /// observed [m].
+  double floor{0.0}, ceiling{2.5};
 };
 
 class StopSpace {
