@@ -43,13 +43,15 @@ double extension(const Person& person, const Vector3& p_object) {
   return level(p_object - holding_shoulder(person, p_object)).norm() / stature_of(person);
 }
 
-/// Returns the height of the highest furniture that a point is over [m]; nullopt: of none.
-std::optional<double> furniture_below(const Scene& scene, const Vector3& p) {
+/// Returns the height of the highest furniture that a point is over, or at most `beside` [m] beside
+/// its top [m]; nullopt: of none.
+std::optional<double> furniture_below(const Scene& scene, const Vector3& p, double beside) {
   std::optional<double> highest;
   for (const SceneBox& box : scene.boxes) {
     const Vector3 p_box = box.T_world_box.inverse() * p, half = 0.5 * box.size;
     const double top = box.T_world_box.translation().z() + half.z();
-    const bool is_over = (p_box.cwiseAbs() - half).head<2>().maxCoeff() < 0 && p_box.z() > half.z();
+    const bool is_over =
+        (p_box.cwiseAbs() - half).head<2>().maxCoeff() < beside && p_box.z() > half.z();
     if (is_over && (!highest || top > *highest)) highest = top;
   }
   return highest;
@@ -116,7 +118,8 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
   const double gain = settings_.offer_height_gain * (held_out ? settings_.offer_long_rest_gain : 1);
   double max_height =
       settings_.offer_max_height + gain * std::max(0.0, extended - settings_.offer_extension);
-  if (const auto top = furniture_below(now_.scene(), p_object); held_out && top)
+  if (const auto top = furniture_below(now_.scene(), p_object, settings_.offer_beside_furniture);
+      held_out && top)
     max_height = std::max(
         max_height, (*top + settings_.offer_over_furniture - p_shoulder.z()) / stature_of(person));
   return height >= min_height && height <= max_height &&

@@ -178,7 +178,9 @@ TEST_F(OfferDetectorTest, over_a_table_what_is_extended_at_long_rest_may_be_abov
   table_at(0.3);
   EXPECT_FALSE(is_found(0.06)) << "there is room enough below";
   table_at(0.2);
-  scene_.boxes[0].T_world_box.translation().x() += 1;
+  scene_.boxes[0].T_world_box.translation().x() += 0.6;
+  EXPECT_TRUE(is_found(0.06)) << "the forearm is over the table";
+  scene_.boxes[0].T_world_box.translation().x() += 0.4;
   EXPECT_FALSE(is_found(0.06)) << "the table is elsewhere";
 }
 
