@@ -274,8 +274,15 @@ Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal) {
     Outcome ready = co_await await_put_down(parts, object);
     if (!ready.good) co_return ready;
   }
-  std::vector<Pose> places = places_for(parts, goal, *parts.now.object(object));
-  if (is_held && !goal.has_goal) places = co_await places_for_other_arm(parts, goal.surface);
+  const SceneObject* seen = parts.now.object(object);
+  if (seen == nullptr) co_return Outcome::out_of_sight(object);
+  if (parts.now.model_of(object) == nullptr)
+    co_return Outcome::failure("object " + object + " has no model");
+  std::vector<Pose> places;
+  if (is_held && !goal.has_goal)
+    places = co_await places_for_other_arm(parts, goal.surface);
+  else
+    places = places_for(parts, goal, *seen);
   if (places.empty())
     co_return Outcome::failure(goal.surface.empty()
                                    ? "it was not said where " + object + " is to stand"
@@ -283,8 +290,11 @@ Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal) {
   TwoHandPlan plan = co_await ask_regrasp(parts, object, places, false);
   if (!plan.outcome.good) co_return plan.outcome;
   // Where the steps begin.
-  Outcome alone = co_await rest_others(parts);
-  if (!is_held) alone = co_await rest_all(parts);
+  Outcome alone;
+  if (is_held)
+    alone = co_await rest_others(parts);
+  else
+    alone = co_await rest_all(parts);
   if (!alone.good) co_return alone;
   const std::size_t first_pass = is_held ? 0 : 1;
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {

@@ -464,6 +464,17 @@ TEST(ManipulationPlanner, what_the_holding_arm_cannot_put_down_goes_to_the_other
   EXPECT_NE(reason.find("by the other hand: no sequence of grasps"), std::string::npos) << reason;
 }
 
+TEST(ManipulationPlanner, what_has_no_model_is_not_passed_on_and_that_is_the_reason) {
+  Rig rig("duo");
+  rig.scene.objects[0].holder = Holder::robot;
+  rig.scene.objects[0].model = "unknown_thing";
+  rig.T_tool_mug = make_pose({0.08, 0.02, 0.12});
+  rig.start(ActionKind::regrasp);
+  rig.run(5);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_EQ(rig.planner.status().reason, "object mug has no model");
+}
+
 TEST(ManipulationPlanner, one_arm_alone_asks_no_other_hand) {
   Rig rig;
   rig.scene.objects[0].holder = Holder::robot;
