@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace handsel::trajectory_controller {
+namespace {
+
+/// Of the causes that only slow the motion: those that name a silent component.
+constexpr std::uint32_t kSilent = bit(Cause::attention_silent) | bit(Cause::supervisor_silent);
+
+}  // namespace
 
 ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   std::uint32_t fault = 0, stop = 0, hold = 0, waiting = 0, slow = 0;
@@ -61,13 +67,11 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
     latched_ = Mode::normal;
 
   ModeVerdict verdict;
-  // While it holds only what forbids motion is told; when nothing is left but a newer Go, that is
-  // no_go.
+  // At rest, of the causes that only slow the motion a silent component is still reported.
+  // no_go: nothing but a newer Go is left to wait for.
   verdict.causes = fault | stop | hold | waiting;
-  if (latched_ == Mode::normal)
-    verdict.causes |= slow;
-  else if (latched_ == Mode::hold && verdict.causes == 0)
-    verdict.causes = bit(Cause::no_go);
+  if (latched_ == Mode::hold && verdict.causes == 0) verdict.causes = bit(Cause::no_go);
+  verdict.causes |= latched_ == Mode::normal ? slow : slow & kSilent;
   // What only makes slow: everything of `slow` except a silent supervisor, which lets the running
   // trajectory finish at full speed.
   const bool slower = (slow & ~bit(Cause::supervisor_silent)) != 0;

@@ -37,6 +37,20 @@ TEST(ModeMachine, the_gravest_cause_decides_and_all_are_named) {
   EXPECT_EQ(worst_of(v.causes), Cause::tracking_error);
 }
 
+TEST(ModeMachine, a_silent_component_is_named_while_the_robot_holds) {
+  ModeMachine machine({});
+  machine.update(well());
+  ModeInputs in = well();
+  in.cycle_late = true;
+  machine.update(in);
+  in.cycle_late = false;
+  in.attention_slow = true;
+  in.attention_age = 10;
+  const ModeVerdict v = machine.update(in);
+  EXPECT_EQ(v.mode, Mode::hold);
+  EXPECT_EQ(v.causes, bit(Cause::no_go) | bit(Cause::attention_silent));
+}
+
 TEST(ModeMachine, every_drive_mode_but_enabled_stops) {
   ModeMachine machine({});
   machine.update(well());
