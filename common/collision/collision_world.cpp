@@ -40,6 +40,7 @@ void CollisionWorld::set_moving_axes(const std::vector<int>& axes) {
   w.moves_axis.assign(static_cast<std::size_t>(w.robot.dof()), 0);
   for (int axis : axes) w.moves_axis[axis] = 1;
   w.folded_at.resize(0);
+  w.self_free.resize(0);
   w.batch = axes.empty() ? nullptr : std::make_unique<BatchWorld>(w.robot);
   w.rebuild_wider();
 }

@@ -41,7 +41,9 @@ enum class PeopleParts { all, without_forearms_and_hands };
 /// measurements are not exact [m]. Own method: else a lift would begin in collision.
 inline constexpr double kSupportSlack = 0.005;
 
-/// Links that no axis moves are not tested against scene and people: planning cannot change that.
+/// Links that no axis moves are not tested against scene and people, and links whose relative pose
+/// no moving axis changes (set_moving_axes; two fingers, while the arm moves) not against each
+/// other: the motion cannot change that.
 class CollisionWorld {
  public:
   CollisionWorld(const RobotModel& robot, ObjectLibrary library);
@@ -61,9 +63,10 @@ class CollisionWorld {
   /// engaged). The object may be up to kSupportSlack inside the top of boxes that support objects.
   void set_attachment(const Attachment&, const std::vector<std::string>& allowed_contacts);
 
-  /// From now on is_free and check_motion use the SIMD check first. Only these axes should differ
-  /// between the states checked; when another one does, the robot is folded anew. Empty: exact
-  /// only, as at the beginning. The first check makes the spheres of the links.
+  /// From now on is_free and check_motion use the SIMD check first, and links that these axes do
+  /// not move relative to each other may touch. Only these axes should differ between the states
+  /// checked; when another one does, the robot is folded anew. Empty: exact only and all pairs of
+  /// links, as at the beginning. The first check makes the spheres of the links.
   void set_moving_axes(const std::vector<int>& axes);
 
   /// Links turned by other axes than the moving ones (the head, while the arm moves) are larger by

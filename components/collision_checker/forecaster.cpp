@@ -99,6 +99,7 @@ void Forecaster::remember_for(const ActiveTrajectory& active) {
   if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts ||
       trajectory_ != active.trajectory)
     world_.set_attachment(active.attachment, active.allowed_contacts);
+  world_.set_moving_axes({active.axes.begin(), active.axes.end()});
   trajectory_ = active.trajectory;
   attachment_ = active.attachment;
   allowed_ = active.allowed_contacts;

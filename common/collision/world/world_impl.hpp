@@ -197,7 +197,7 @@ struct CollisionWorld::Impl {
 
   bool touch_pair(const SelfPair& pair) const {
     const RobotBody &a = bodies[pair.a], &b = bodies[pair.b];
-    if ((!a.wider && !b.wider) || !changes(pair))
+    if (!a.wider && !b.wider)
       return touch(*a.shape, T_world_body[pair.a], *b.shape, T_world_body[pair.b]);
     const auto pose = [this](const RobotBody& body) {
       return T_world_base * (T_root_link[body.link] * body.T_link_wider);
@@ -225,7 +225,7 @@ struct CollisionWorld::Impl {
 
   bool self_touch(const std::vector<SelfPair>& pairs, CollisionVerdict* verdict) const {
     for (const SelfPair& pair : pairs) {
-      if (lean(pair)) continue;
+      if (lean(pair) || (!moving.empty() && !changes(pair))) continue;
       if (std::none_of(pair.axes.begin(), pair.axes.end(),
                        [this](int axis) { return changed[axis]; }))
         continue;
@@ -334,11 +334,6 @@ struct CollisionWorld::Impl {
       rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
                      (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) ||
                       scene_touch(i, in_peoples_hands, nullptr) || person_touch(i, nullptr));
-    for (const auto* pairs : {&link_pairs, &held_pairs})
-      for (const SelfPair& pair : *pairs) {
-        if (rest_touches || lean(pair) || changes(pair)) continue;
-        rest_touches = touch_pair(pair);
-      }
     solids_stale = false;
     return !rest_touches;
   }

@@ -68,6 +68,16 @@ TEST_F(Forecast, time_counts_at_present_speed_and_a_held_trajectory_is_still_loo
   EXPECT_TRUE(forecaster_.forecast(sweep(1.7, 0.0)).collides);
 }
 
+TEST_F(Forecast, links_that_touch_and_stay_as_they_are_to_each_other_do_not_hold_the_motion) {
+  ActiveTrajectory folded = sweep(0.0, 1.0);
+  folded.position[1] = folded.position[2] = 2.9;  // link 1 and link 3 touch
+  EXPECT_FALSE(forecaster_.forecast(folded).collides) << "only the first axis moves";
+  folded.trajectory = 8;
+  folded.axes = {1};
+  folded.rest.axes = {{{2.9, -0.01, 0}, {{4.0, 0.0}}}};
+  EXPECT_TRUE(forecaster_.forecast(folded).collides);
+}
+
 TEST_F(Forecast, running_backward_looks_back) {
   forecaster_.set_scene(wall(0.0));
   EXPECT_FALSE(forecaster_.forecast(sweep(1.5, -1.0)).collides);

@@ -42,6 +42,27 @@ TEST_F(World, finds_a_folded_arm_in_self_collision_also_when_asked_again) {
   EXPECT_FALSE(world_.check(q_).free);
 }
 
+TEST_F(World, links_that_no_moving_axis_moves_relative_to_each_other_may_touch) {
+  q_ << 0, 2.9, 2.9;  // folded: link 1 and link 3 touch
+  Vector turned = q_;
+  turned[0] = 0.5;
+  world_.set_moving_axes({0});
+  EXPECT_TRUE(world_.check(q_).free);
+  EXPECT_TRUE(world_.is_free(q_));
+  EXPECT_TRUE(world_.check_motion(q_, turned).free);
+  world_.set_scene(scene_with("table", {0.0, 0.3, 0}, {0.1, 0.1, 0.1}));
+  turned[0] = M_PI / 2;
+  EXPECT_FALSE(world_.check_motion(q_, turned).free) << "what moves still counts";
+  world_.set_scene({});
+  world_.set_moving_axes({1});
+  EXPECT_FALSE(world_.check(q_).free);
+  EXPECT_FALSE(world_.is_free(q_));
+  world_.set_moving_axes({0});
+  EXPECT_TRUE(world_.check(q_).free);
+  world_.set_moving_axes({});
+  EXPECT_FALSE(world_.check(q_).free);
+}
+
 TEST_F(World, sees_a_thin_wall_between_the_ends_of_a_motion) {
   world_.set_scene(scene_with("wall", {0.6, 0.6, 0}, {0.1, 0.1, 0.5}));
   Vector to = q_;
