@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/model/manipulator.hpp"
+
 namespace handsel::collision_checker {
 namespace {
 
@@ -43,7 +45,11 @@ Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSetti
       settings_(settings),
       world_(robot, std::move(library)),
       cost_(robot, cost),
-      capsules_(robot_capsules(robot)) {}
+      capsules_(robot_capsules(robot)) {
+  for (const Manipulator& hand : hands_of(robot))
+    if (hand.fingers != nullptr)
+      fingers_.insert(fingers_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
+}
 
 void Forecaster::set_scene(const Scene& scene) {
   const bool moved = !scene.T_world_base.isApprox(T_world_base_, 1e-6);
@@ -51,6 +57,7 @@ void Forecaster::set_scene(const Scene& scene) {
   if (scene.robot_known) {
     T_world_base_ = scene.T_world_base;
     cost_.set_base(T_world_base_);
+    measured_ = scene.robot_position;
   }
   if (moved || scene.revision != revision_) memory_.clear();
   revision_ = scene.revision;
@@ -88,8 +95,16 @@ bool Forecaster::fits(const ActiveTrajectory& active) const {
                      [this](std::uint32_t axis) { return static_cast<int>(axis) < robot_.dof(); });
 }
 
-void Forecaster::remember_for(const ActiveTrajectory& active) {
-  Vector others = active.position;
+/// Returns the set-point with the fingers as measured; all axes.
+Vector Forecaster::configuration(const ActiveTrajectory& active) const {
+  Vector q = active.position;
+  if (measured_.size() == q.size())
+    for (const int axis : fingers_) q[axis] = measured_[axis];
+  return q;
+}
+
+void Forecaster::remember_for(const ActiveTrajectory& active, const Vector& now) {
+  Vector others = now;
   for (std::uint32_t axis : active.axes) others[axis] = 0;
   const bool known = !memory_.empty() && trajectory_ == active.trajectory &&
                      same(attachment_, active.attachment) && allowed_ == active.allowed_contacts &&
@@ -160,23 +175,24 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     forecast.reason = "the running trajectory does not fit the robot " + robot_.name();
     return forecast;
   }
+  const Vector now = configuration(active);
   const double duration = active.rest.duration();
   const bool backward = active.speed_factor < 0;
   if (active.trajectory == 0 || active.rest.size() == 0 || (!backward && active.time >= duration)) {
-    const bool stood = rest_known_ && rest_position_.size() == active.position.size() &&
-                       (rest_position_ - active.position).cwiseAbs().maxCoeff() < kRestMotion;
+    const bool stood = rest_known_ && rest_position_.size() == now.size() &&
+                       (rest_position_ - now).cwiseAbs().maxCoeff() < kRestMotion;
     if (!stood) {
       if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts)
-        remember_for(active);
+        remember_for(active, now);
       rest_ = forecast;
-      sample_at(active.position, 0, rest_);
-      rest_position_ = active.position;
+      sample_at(now, 0, rest_);
+      rest_position_ = now;
       rest_known_ = true;
     }
     rest_.trajectory = active.trajectory;
     return rest_;
   }
-  remember_for(active);
+  remember_for(active, now);
   rest_known_ = false;
   const double speed = std::max(std::abs(active.speed_factor), settings_.min_speed);
   const double reach = speed * settings_.horizon, spacing = settings_.spacing;
@@ -190,8 +206,8 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
       backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
   const long end = backward ? index_at(active.time - reach)
                             : std::min(last_index, index_at(active.time + reach) + 1);
-  sample_at(active.position, 0, forecast);
-  Vector q = active.position;
+  sample_at(now, 0, forecast);
+  Vector q = now;
   for (long k = first;; k += backward ? -1 : 1) {
     const double t = std::min(duration, static_cast<double>(k) * spacing);
     active.rest.sample(t, sample_);

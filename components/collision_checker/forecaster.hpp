@@ -22,8 +22,9 @@ struct ForecastSettings {
 
 /// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower
 /// the clearance, the controller's guard answers for them. A hand counts where it is and where
-/// SPARK expects it when the robot gets there. What scene and robot themselves say about a state of
-/// a trajectory is remembered until one of them changes.
+/// SPARK expects it when the robot gets there. Fingers count where they are measured: the set-point
+/// of a finger that presses on an object lies inside the object. What scene and robot themselves
+/// say about a state of a trajectory is remembered until one of them changes.
 class Forecaster {
  public:
   Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost,
@@ -46,7 +47,8 @@ class Forecaster {
  private:
   enum class Memory : char { unknown, free, collides };
   bool fits(const ActiveTrajectory& active) const;
-  void remember_for(const ActiveTrajectory& active);
+  Vector configuration(const ActiveTrajectory& active) const;
+  void remember_for(const ActiveTrajectory& active, const Vector& now);
   void sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast);
   double distance_to_ball(const Vector3& centre, double radius) const;
   CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
@@ -55,6 +57,8 @@ class Forecaster {
   ForecastSettings settings_;
   CollisionWorld world_;
   HumanCost cost_;
+  std::vector<int> fingers_;  // axes of all hands
+  Vector measured_;           // all axes; empty until known
   std::uint64_t revision_{0};
   Pose T_world_base_{Pose::Identity()};
 

@@ -5,6 +5,7 @@
 
 #include "components/collision_checker/forecaster.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/small_robot.hpp"
 
 namespace handsel::collision_checker {
 namespace {
@@ -76,6 +77,29 @@ TEST_F(Forecast, links_that_touch_and_stay_as_they_are_to_each_other_do_not_hold
   folded.axes = {1};
   folded.rest.axes = {{{2.9, -0.01, 0}, {{4.0, 0.0}}}};
   EXPECT_TRUE(forecaster_.forecast(folded).collides);
+}
+
+TEST(ForecastOfFingers, count_where_they_are_measured_not_where_they_are_commanded) {
+  const std::shared_ptr<const RobotModel> robot = test::small_robot();
+  Forecaster forecaster(*robot, nullptr, {}, {});
+  ActiveTrajectory active;
+  active.trajectory = 7;
+  active.speed_factor = 1.0;
+  active.position = Vector::Zero(robot->dof());  // finger_a straight ahead, into the box
+  active.axes = {0};
+  active.rest.axes = {{{0, 0.001, 0}, {{4.0, 0.0}}}};
+  Scene scene;
+  scene.boxes.push_back({"box", make_pose({0.87, 0.04, 1.0}), {0.04, 0.04, 0.04}, false});
+  forecaster.set_scene(scene);
+  EXPECT_TRUE(forecaster.forecast(active).collides) << "nothing is measured";
+  scene.robot_known = true;
+  scene.robot_position = active.position;
+  scene.robot_position[robot->require_group("hand").axes.front()] = 1.4;
+  forecaster.set_scene(scene);
+  EXPECT_FALSE(forecaster.forecast(active).collides);
+  std::swap(active.position, scene.robot_position);
+  forecaster.set_scene(scene);
+  EXPECT_TRUE(forecaster.forecast(active).collides);
 }
 
 TEST_F(Forecast, running_backward_looks_back) {
