@@ -14,6 +14,7 @@
 namespace handsel::manipulation_planner {
 namespace {
 
+constexpr int kMaxMeetings = 3;    // of the hands, for one pass
 constexpr int kMaxCloseTries = 2;  // of a hand on what the other one holds
 constexpr double kAsideDistances[] = {0.15, 0.25,
                                       0.35};             // of what an arm draws to its own side [m]
@@ -112,45 +113,67 @@ std::optional<Vector> meeting_configuration(const Parts& parts, const RegraspSte
   return std::nullopt;
 }
 
-/// Closes the other hand on what the first one holds; `grasp` is how.
-Routine<Outcome> close_other_hand(Parts& parts, const std::string& object, const RegraspStep& step,
-                                  std::optional<Grasp>& grasp) {
-  Outcome done = co_await use_arm(parts, step.to);
-  if (!done.good) co_return done;
-  for (int tries = 0; tries < kMaxCloseTries; ++tries) {
+/// How a step of a plan ended.
+struct StepResult {
+  Outcome outcome;
+  bool holds_as_before{};  ///< after a failure: the hand that held the object still does, alone
+};
+
+/// Brings what the arm in use holds to where the other one reaches it; that one is in use then, and
+/// `grasp` is how it takes the object.
+Routine<Outcome> meet(Parts& parts, const std::string& object, const RegraspStep& step,
+                      std::optional<Grasp>& grasp) {
+  Outcome done =
+      Outcome::failure("the other arm does not reach " + object + " where the first holds it");
+  for (int tries = 0; tries < kMaxMeetings && !grasp; ++tries) {
+    Outcome own = co_await use_arm(parts, step.from);
+    if (!own.good) co_return own;
+    // On the way the object may have turned in the hand.
+    const SceneObject* held = parts.now.object(object);
+    if (held == nullptr) co_return Outcome::out_of_sight(object);
+    parts.held.hold(*held);
+    const std::optional<Vector> meeting = meeting_configuration(parts, step);
+    if (!meeting)
+      co_return Outcome::failure("the arms do not reach the place where " + object +
+                                 " is to change hands");
+    MotionSpec bring;
+    bring.phase = ActionPhase::carry_to_other_hand;
+    bring.goals = {*meeting};
+    bring.speed = parts.settings.carry_speed;
+    Outcome brought = co_await move(parts, bring);
+    if (!brought.good) co_return brought;
+    own = co_await use_arm(parts, step.to);
+    if (!own.good) co_return own;
     grasp = grasp_now(parts, object, step.grasp);
-    if (!grasp)
-      co_return Outcome::failure("the other arm does not reach " + object +
-                                 " where the first holds it");
+  }
+  if (grasp) done = Outcome{};
+  co_return done;
+}
+
+/// Brings what one hand holds to the other one and closes that hand on the object as well; `grasp`
+/// is how.
+Routine<Outcome> join_hands(Parts& parts, const std::string& object, const RegraspStep& step,
+                            std::optional<Grasp>& grasp) {
+  Outcome done = co_await meet(parts, object, step, grasp);
+  for (int tries = 0; grasp && tries < kMaxCloseTries; ++tries) {
     done = co_await take_over(parts, object, *grasp);
-    if (done.good) break;
+    if (done.good) co_return done;
     parts.refuse("grasp by the other hand", done.reason);
+    grasp = grasp_now(parts, object, step.grasp);
   }
   co_return done;
 }
 
-/// Passes what one hand holds to the other one.
-Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep& step) {
-  const std::optional<Vector> meeting = meeting_configuration(parts, step);
-  if (!meeting)
-    co_return Outcome::failure("the arms do not reach the place where " + object +
-                               " is to change hands");
-  MotionSpec bring;
-  bring.phase = ActionPhase::carry_to_other_hand;
-  bring.goals = {*meeting};
-  bring.speed = parts.settings.carry_speed;
-  Outcome done = co_await move(parts, bring);
-  if (!done.good) co_return done;
-  std::optional<Grasp> grasp;
-  done = co_await close_other_hand(parts, object, step, grasp);
-  if (!done.good) co_return done;
+/// Releases with the hand that held the object first; `grasp` is that of the other one.
+Routine<Outcome> leave_to_other_hand(Parts& parts, const std::string& object,
+                                     const RegraspStep& step, const std::optional<Grasp>& grasp) {
   const double settle_time = parts.settings.settle_time;
   co_await parts.waiting.pause(settle_time);
   const SceneObject* held = parts.now.object(object);
   if (held == nullptr) co_return Outcome::failure("object " + object + " left the scene");
   parts.held.hold(*held);
 
-  done = co_await use_arm(parts, step.from);
+  Outcome done = co_await use_arm(parts, step.from);
   if (!done.good) co_return done;
   parts.action.phase = ActionPhase::release_first_hand;
   done = co_await release_and_retreat(parts, object, step.q, step.after);
@@ -166,6 +189,25 @@ Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep
   }
   parts.held.hold(*parts.now.object(object));
   co_return Outcome{};
+}
+
+/// Passes what one hand holds to the other one; before the other hand has closed on the object, the
+/// arm that holds the object is in use again after a failure.
+Routine<StepResult> pass(Parts& parts, const std::string& object, const RegraspStep& step) {
+  const std::optional<Grasp> before = parts.held.grasp();
+  StepResult result;
+  std::optional<Grasp> grasp;
+  result.outcome = co_await join_hands(parts, object, step, grasp);
+  if (result.outcome.good) {
+    result.outcome = co_await leave_to_other_hand(parts, object, step, grasp);
+    co_return result;
+  }
+  Outcome back = co_await use_arm(parts, step.from);
+  if (back.good && parts.held.is_held_by_hand(object)) {
+    parts.held.set_grasp(before);
+    result.holds_as_before = true;
+  }
+  co_return result;
 }
 
 /// Puts what is held down where the step says.
@@ -218,10 +260,12 @@ Routine<Outcome> put_down_or_clear(Parts& parts, const std::string& object,
 }
 
 /// Executes one step of a plan. `is_first_pass`: nothing has to be drawn aside.
-Routine<Outcome> execute_step(Parts& parts, const std::string& object, const RegraspStep& step,
-                              bool is_first_pass) {
-  Outcome done = co_await use_arm(parts, step.kind == RegraspKind::pick ? step.to : step.from);
-  if (!done.good) co_return done;
+Routine<StepResult> execute_step(Parts& parts, const std::string& object, const RegraspStep& step,
+                                 bool is_first_pass) {
+  StepResult result;
+  Outcome& done = result.outcome;
+  done = co_await use_arm(parts, step.kind == RegraspKind::pick ? step.to : step.from);
+  if (!done.good) co_return result;
   switch (step.kind) {
     case RegraspKind::pick:
       done = co_await try_grasp(parts, object, "", step.grasp);
@@ -229,16 +273,17 @@ Routine<Outcome> execute_step(Parts& parts, const std::string& object, const Reg
     case RegraspKind::pass:
       if (!is_first_pass) done = co_await draw_aside(parts);
       if (!done.good) parts.refuse("clearing the offer area", done.reason);
-      done = co_await pass(parts, object, step);
+      result = co_await pass(parts, object, step);
       break;
     case RegraspKind::place:
       done = co_await put_down_or_clear(parts, object, step);
+      result.holds_as_before = parts.held.is_held_by_hand(object);
       break;
     case RegraspKind::join:
       done = Outcome::failure("two hands at once were not asked for");
       break;
   }
-  co_return done;
+  co_return result;
 }
 
 /// Returns places on a surface that the arm which is not in use reaches well; empty: none.
@@ -254,15 +299,42 @@ Routine<std::vector<Pose>> places_for_other_arm(Parts& parts, const std::string&
   co_return places;
 }
 
-/// Executes one step; where a pass fails, the arm that still holds the object is in use again.
-Routine<Outcome> execute_or_keep(Parts& parts, const std::string& object, const RegraspStep& step,
-                                 bool is_first_pass) {
-  const std::optional<Grasp> grasp = parts.held.grasp();
-  Outcome done = co_await execute_step(parts, object, step, is_first_pass);
-  if (done.good || step.kind != RegraspKind::pass) co_return done;
-  Outcome back = co_await use_arm(parts, step.from);
-  if (back.good && parts.held.is_held_by_hand(object)) parts.held.set_grasp(grasp);
-  co_return done;
+/// Returns where the object may be put: on the surface or at the place of the goal.
+Routine<std::vector<Pose>> places_of(Parts& parts, const ActionGoal& goal, bool is_held) {
+  std::vector<Pose> places;
+  if (is_held && !goal.has_goal) {
+    places = co_await places_for_other_arm(parts, goal.surface);
+    co_return places;
+  }
+  const SceneObject* seen = parts.now.object(goal.object);
+  if (seen != nullptr) places = places_for(parts, goal, *seen);
+  co_return places;
+}
+
+/// Plans once, from where the object is now, and executes that plan.
+Routine<StepResult> execute_plan(Parts& parts, const ActionGoal& goal) {
+  const std::string object = goal.object;
+  const bool is_held = parts.held.is_holding() && parts.held.id() == object;
+  StepResult result;
+  const std::vector<Pose> places = co_await places_of(parts, goal, is_held);
+  if (places.empty()) {
+    result.outcome = Outcome::failure(
+        goal.surface.empty() ? "it was not said where " + object + " is to stand"
+                             : "there is no free place on a surface called " + goal.surface);
+    co_return result;
+  }
+  TwoHandPlan plan = co_await ask_regrasp(parts, object, places, false);
+  result.outcome = plan.outcome;
+  if (!plan.outcome.good) co_return result;
+  // Where the steps begin.
+  if (is_held)
+    result.outcome = co_await rest_others(parts);
+  else
+    result.outcome = co_await rest_all(parts);
+  const std::size_t first_pass = is_held ? 0 : 1;
+  for (std::size_t i = 0; result.outcome.good && i < plan.steps.size(); ++i)
+    result = co_await execute_step(parts, object, plan.steps[i], i == first_pass);
+  co_return result;
 }
 
 }  // namespace
@@ -274,33 +346,19 @@ Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal) {
     Outcome ready = co_await await_put_down(parts, object);
     if (!ready.good) co_return ready;
   }
-  const SceneObject* seen = parts.now.object(object);
-  if (seen == nullptr) co_return Outcome::out_of_sight(object);
+  if (parts.now.object(object) == nullptr) co_return Outcome::out_of_sight(object);
   if (parts.now.model_of(object) == nullptr)
     co_return Outcome::failure("object " + object + " has no model");
-  std::vector<Pose> places;
-  if (is_held && !goal.has_goal)
-    places = co_await places_for_other_arm(parts, goal.surface);
-  else
-    places = places_for(parts, goal, *seen);
-  if (places.empty())
-    co_return Outcome::failure(goal.surface.empty()
-                                   ? "it was not said where " + object + " is to stand"
-                                   : "there is no free place on a surface called " + goal.surface);
-  TwoHandPlan plan = co_await ask_regrasp(parts, object, places, false);
-  if (!plan.outcome.good) co_return plan.outcome;
-  // Where the steps begin.
-  Outcome alone;
-  if (is_held)
-    alone = co_await rest_others(parts);
-  else
-    alone = co_await rest_all(parts);
-  if (!alone.good) co_return alone;
-  const std::size_t first_pass = is_held ? 0 : 1;
-  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
-    Outcome done = co_await execute_or_keep(parts, object, plan.steps[i], i == first_pass);
-    if (!done.good) co_return done;
+  StepResult result;
+  for (std::uint32_t attempts = 1;; ++attempts) {
+    result = co_await execute_plan(parts, goal);
+    // The object does not lie in the hand as planned: what is next is planned from how it does.
+    const bool again =
+        !result.outcome.good && result.holds_as_before && attempts < parts.settings.motion_attempts;
+    if (!again) break;
+    parts.refuse("regrasp", result.outcome.reason);
   }
+  if (!result.outcome.good) co_return result.outcome;
   Outcome rested = co_await rest_all(parts);
   if (!rested.good) parts.refuse("to rest", rested.reason);
   co_return Outcome{};

@@ -9,7 +9,18 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kAtRest =
-    0.02;  // an arm this near its rest configuration is there, max norm [rad]
+    0.02;  // an arm or hand this near its rest configuration is there, max norm [rad]
+
+/// Returns whether the hand in use, at rest, would be in the way of another hand with the fingers
+/// that its last grasp opened.
+bool is_opened_beside_another(const Parts& parts) {
+  const Group& fingers = parts.arm.fingers();
+  if (parts.held.is_holding() || fingers.axes.empty() || parts.arm.manipulators().size() < 2)
+    return false;
+  const Vector off =
+      RobotModel::part(parts.arm.configuration() - parts.arm.robot().rest_configuration(), fingers);
+  return off.cwiseAbs().maxCoeff() > kAtRest;
+}
 
 }  // namespace
 
@@ -25,7 +36,14 @@ Routine<Outcome> rest(Parts& parts) {
     motion.goals = parts.area.clear_configurations(*person);
   if (motion.goals.empty()) motion.goals = {at_rest};
   Outcome outcome = co_await move(parts, motion);
-  co_return outcome;
+  const Vector off = RobotModel::part(parts.now.set_point(), arm) - at_rest;
+  if (!outcome.good || off.cwiseAbs().maxCoeff() > kAtRest || !is_opened_beside_another(parts))
+    co_return outcome;
+  const Vector folded =
+      RobotModel::part(parts.arm.robot().rest_configuration(), parts.arm.fingers());
+  HandResult closed =
+      co_await parts.hand.run(HandAction::move, folded, parts.settings.hand_timeout);
+  co_return closed.outcome;
 }
 
 Routine<Outcome> rest_others(Parts& parts) {

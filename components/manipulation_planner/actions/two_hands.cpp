@@ -81,7 +81,7 @@ class SurfacePlaces {
 Grasp grasp_in_hand(const Parts& parts) {
   Grasp grasp = parts.held.grasp().value_or(Grasp{});
   grasp.T_object_hand = parts.held.attachment().T_tool_object.inverse();
-  grasp.hand_joints = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
+  grasp.hand_joints = RobotModel::part(parts.arm.configuration(), parts.arm.fingers());
   grasp.pregrasp_joints = opening(parts);
   return grasp;
 }
