@@ -39,17 +39,26 @@ bool same(const Trajectory& a, const Trajectory& b) {
 
 }  // namespace
 
+MeasuredFingers::MeasuredFingers(const RobotModel& robot) {
+  for (const Manipulator& hand : hands_of(robot))
+    if (hand.fingers != nullptr)
+      axes_.insert(axes_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
+}
+
+Vector MeasuredFingers::in(Vector q) const {
+  if (measured_.size() == q.size())
+    for (const int axis : axes_) q[axis] = measured_[axis];
+  return q;
+}
+
 Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost,
                        ForecastSettings settings)
     : robot_(robot),
       settings_(settings),
       world_(robot, std::move(library)),
       cost_(robot, cost),
-      capsules_(robot_capsules(robot)) {
-  for (const Manipulator& hand : hands_of(robot))
-    if (hand.fingers != nullptr)
-      fingers_.insert(fingers_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
-}
+      fingers_(robot),
+      capsules_(robot_capsules(robot)) {}
 
 void Forecaster::set_scene(const Scene& scene) {
   const bool moved = !scene.T_world_base.isApprox(T_world_base_, 1e-6);
@@ -57,11 +66,11 @@ void Forecaster::set_scene(const Scene& scene) {
   if (scene.robot_known) {
     T_world_base_ = scene.T_world_base;
     cost_.set_base(T_world_base_);
-    measured_ = scene.robot_position;
+    fingers_.set(scene.robot_position);
   }
   if (moved || scene.revision != revision_) memory_.clear();
   revision_ = scene.revision;
-  rest_known_ = false;
+  rest_.reset();
 }
 
 void Forecaster::set_people(const HumanState& people) {
@@ -80,12 +89,12 @@ void Forecaster::set_people(const HumanState& people) {
       known.motion.push_back({0, joint->position, 0});
       known.motion.insert(known.motion.end(), hand.ahead.begin(), hand.ahead.end());
     }
-  rest_known_ = false;
+  rest_.reset();
 }
 
 void Forecaster::set_layers(LayersNow layers) {
   cost_.set_layers(std::move(layers));
-  rest_known_ = false;
+  rest_.reset();
 }
 
 bool Forecaster::fits(const ActiveTrajectory& active) const {
@@ -93,14 +102,6 @@ bool Forecaster::fits(const ActiveTrajectory& active) const {
   if (static_cast<int>(active.axes.size()) != active.rest.size()) return false;
   return std::all_of(active.axes.begin(), active.axes.end(),
                      [this](std::uint32_t axis) { return static_cast<int>(axis) < robot_.dof(); });
-}
-
-/// Returns the set-point with the fingers as measured; all axes.
-Vector Forecaster::configuration(const ActiveTrajectory& active) const {
-  Vector q = active.position;
-  if (measured_.size() == q.size())
-    for (const int axis : fingers_) q[axis] = measured_[axis];
-  return q;
 }
 
 void Forecaster::remember_for(const ActiveTrajectory& active, const Vector& now) {
@@ -175,25 +176,24 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     forecast.reason = "the running trajectory does not fit the robot " + robot_.name();
     return forecast;
   }
-  const Vector now = configuration(active);
+  const Vector now = fingers_.in(active.position);
   const double duration = active.rest.duration();
   const bool backward = active.speed_factor < 0;
   if (active.trajectory == 0 || active.rest.size() == 0 || (!backward && active.time >= duration)) {
-    const bool stood = rest_known_ && rest_position_.size() == now.size() &&
+    const bool stood = rest_ && rest_position_.size() == now.size() &&
                        (rest_position_ - now).cwiseAbs().maxCoeff() < kRestMotion;
     if (!stood) {
       if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts)
         remember_for(active, now);
       rest_ = forecast;
-      sample_at(now, 0, rest_);
+      sample_at(now, 0, *rest_);
       rest_position_ = now;
-      rest_known_ = true;
     }
-    rest_.trajectory = active.trajectory;
-    return rest_;
+    rest_->trajectory = active.trajectory;
+    return *rest_;
   }
   remember_for(active, now);
-  rest_known_ = false;
+  rest_.reset();
   const double speed = std::max(std::abs(active.speed_factor), settings_.min_speed);
   const double reach = speed * settings_.horizon, spacing = settings_.spacing;
   const auto index_at = [&](double t) {

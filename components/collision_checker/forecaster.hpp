@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,21 @@ struct ForecastSettings {
   double horizon{1.5};     ///< time ahead that is checked, at present speed [s]
   double min_speed{0.25};  ///< speed factor assumed for a slower or held trajectory
   double spacing{0.05};    ///< of states, in time of the trajectory [s]
+};
+
+/// The fingers of all hands as last measured. Pure.
+class MeasuredFingers {
+ public:
+  explicit MeasuredFingers(const RobotModel& robot);
+  /// Takes the measured position of all axes [rad].
+  void set(const Vector& measured) { measured_ = measured; }
+  /// Returns a configuration with the fingers as measured, unchanged until they are known; all
+  /// axes.
+  Vector in(Vector q) const;
+
+ private:
+  std::vector<int> axes_;
+  Vector measured_;
 };
 
 /// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower
@@ -47,7 +63,6 @@ class Forecaster {
  private:
   enum class Memory : char { unknown, free, collides };
   bool fits(const ActiveTrajectory& active) const;
-  Vector configuration(const ActiveTrajectory& active) const;
   void remember_for(const ActiveTrajectory& active, const Vector& now);
   void sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast);
   double distance_to_ball(const Vector3& centre, double radius) const;
@@ -57,8 +72,7 @@ class Forecaster {
   ForecastSettings settings_;
   CollisionWorld world_;
   HumanCost cost_;
-  std::vector<int> fingers_;  // axes of all hands
-  Vector measured_;           // all axes; empty until known
+  MeasuredFingers fingers_;
   std::uint64_t revision_{0};
   Pose T_world_base_{Pose::Identity()};
 
@@ -78,9 +92,8 @@ class Forecaster {
   std::vector<LinkCapsule> capsules_;
   std::vector<Pose> links_;
 
-  Vector rest_position_;  // where `rest_` was computed
-  TrajectoryForecast rest_;
-  bool rest_known_{false};
+  Vector rest_position_;                    // where `rest_` was computed
+  std::optional<TrajectoryForecast> rest_;  // nullopt: to be computed
 };
 
 /// Checks the states of a query in order. `clearance` is over the free ones.

@@ -79,7 +79,7 @@ target_compile_definitions(test_eval PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:hand
 add_dependencies(test_eval handsel)
 set_tests_properties(eval PROPERTIES TIMEOUT 180)
 
-handsel_test(between_hands SOURCES ${CMAKE_CURRENT_LIST_DIR}/between_hands_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)
+handsel_test(between_hands SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasps/between_hands_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)
 target_compile_definitions(test_between_hands PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(test_between_hands handsel)
 set_tests_properties(between_hands PROPERTIES PROCESSORS 2 TIMEOUT 300)
