@@ -117,6 +117,23 @@ std::optional<std::size_t> HolderAssignment::loaded_hand(const ObjectTrack& trac
   return kept ? track.robot_hand : *strongest;
 }
 
+/// Returns whether the person who has held the object still has a hand at it; the object may touch
+/// a surface meanwhile.
+bool HolderAssignment::is_in_hand_of_holder(const SceneObject& object) const {
+  if (object.holder != Holder::human || !object.grips.empty()) return false;
+  const ObjectModel* model = in_.library ? in_.library(object.model) : nullptr;
+  const Eigen::AlignedBox3d box = object_extent(model, object.primitive);
+  if (box.isEmpty()) return false;
+  const auto distance = [&](const Person& person, const char* hand) {
+    return box.exteriorDistance(object.T_world_object.inverse() * joint_of(person, hand).position);
+  };
+  return std::any_of(in_.people.people.begin(), in_.people.people.end(), [&](const Person& person) {
+    return person.id == object.holder_id &&
+           std::min(distance(person, "l_hand"), distance(person, "r_hand")) <=
+               in_.settings.holding_distance;
+  });
+}
+
 void HolderAssignment::assign(ObjectTrack& track) const {
   SceneObject& object = track.object;
   if (keep_gripped(object)) return;
@@ -127,6 +144,7 @@ void HolderAssignment::assign(ObjectTrack& track) const {
     track.robot_hand = *by;
     track.T_palm_object = in_.robot.hands()[*by].T_world_palm.inverse() * object.T_world_object;
   }
+  if (!robot_may && is_in_hand_of_holder(object)) return;
   if (const SceneBox* box =
           support_under(object, robot_may ? kClearOfSupport : in_.settings.support_gap)) {
     object.holder = Holder::surface;
@@ -142,8 +160,7 @@ void HolderAssignment::assign(ObjectTrack& track) const {
   for (const auto& person : in_.people.people) {
     if (!object.grips.empty()) break;  // nobody grips it
     for (const char* hand : {"l_hand", "r_hand"}) {
-      const double distance =
-          (person.joints[static_cast<std::size_t>(body_joint_index(hand))].position - where).norm();
+      const double distance = (joint_of(person, hand).position - where).norm();
       if (distance > nearest) continue;
       nearest = distance;
       object.holder = Holder::human;

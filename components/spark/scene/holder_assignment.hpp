@@ -38,6 +38,7 @@ class HolderAssignment {
  private:
   std::optional<std::size_t> loaded_hand(const ObjectTrack& track) const;
   bool keep_gripped(SceneObject& object) const;
+  bool is_in_hand_of_holder(const SceneObject& object) const;
   const SceneBox* support_under(const SceneObject& object, double gap) const;
 
   Inputs in_;

@@ -152,6 +152,26 @@ TEST_F(SceneObjects, in_a_hand_out_of_sight_it_moves_with_the_hand_and_leaves_wi
   EXPECT_TRUE(find(wait(3, 3), "mug"));
 }
 
+TEST_F(SceneObjects, in_a_hand_that_holds_it_on_a_table_it_is_held_until_the_hand_leaves) {
+  people_.people = {person_at({1.6, 0, 0})};
+  const auto put_hand = [&](const Vector3& p) {
+    for (BodyJoint& joint : people_.people[0].joints)
+      if (joint.name == "r_hand") joint.position = p;
+  };
+  const auto holder = [&](double t, double z) {
+    see(t, {mug("mug", {0.7, 0, z})});
+    return find(wait(t, t), "mug")->holder;
+  };
+  put_hand({0.78, 0, 0.74});
+  EXPECT_EQ(holder(0, 0.74), Holder::surface) << "a hand beside what stands holds nothing";
+  put_hand({0.78, 0, 0.94});
+  EXPECT_EQ(holder(0.1, 0.94), Holder::human);
+  put_hand({0.78, 0, 0.74});
+  EXPECT_EQ(holder(0.2, 0.74), Holder::human) << "put on the table, the hand still at it";
+  put_hand({0.84, 0, 0.74});
+  EXPECT_EQ(holder(0.3, 0.74), Holder::surface);
+}
+
 TEST_F(SceneObjects, in_a_hand_it_is_where_it_was_seen_and_on_a_table_the_average_counts) {
   people_.people = {person_at({1.5, 0, 0})};
   Vector3 p_hand;
