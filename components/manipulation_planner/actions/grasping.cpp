@@ -21,28 +21,6 @@ std::vector<Vector3> directions_beside(const Vector3& back, double angle) {
   return directions;
 }
 
-/// Lifts what was grasped straight up.
-Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string& for_human) {
-  MotionSpec up;
-  up.phase = ActionPhase::lift;
-  up.is_straight = true;
-  up.allowed = {object};
-  up.yields_to = for_human;
-  const double height = parts.settings.lift_height;
-  const Pose T_now = parts.arm.T_world_tool();
-  for (const double ratio : kLiftRatios) {
-    Pose T = T_now;
-    T.translation().z() += ratio * height;
-    if (auto joints = parts.arm.reach(T)) {
-      up.goals = {*joints};
-      Outcome outcome = co_await move(parts, up);
-      if (outcome.good || outcome.end == MotionEnd::taken) co_return outcome;
-    }
-  }
-  co_return Outcome::failure("the arm cannot lift " + object + " straight up by " +
-                             std::to_string(height) + " m");
-}
-
 /// Plans the approach, opens the hand meanwhile and moves to the grasp.
 Routine<Outcome> reach_grasp(Parts& parts, const std::string& object, const Grasp& grasp) {
   MotionSpec approach;
@@ -137,6 +115,29 @@ Vector opening(const Parts& parts) {
 bool is_held_by_robot(const Parts& parts, const std::string& object) {
   const SceneObject* seen = parts.now.object(object);
   return seen != nullptr && seen->holder == Holder::robot;
+}
+
+Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string& for_human,
+                      const std::string& beside) {
+  MotionSpec up;
+  up.phase = ActionPhase::lift;
+  up.is_straight = true;
+  up.allowed = {object};
+  if (!beside.empty()) up.allowed.push_back(beside);
+  up.yields_to = for_human;
+  const double height = parts.settings.lift_height;
+  const Pose T_now = parts.arm.T_world_tool();
+  for (const double ratio : kLiftRatios) {
+    Pose T = T_now;
+    T.translation().z() += ratio * height;
+    if (auto joints = parts.arm.reach(T)) {
+      up.goals = {*joints};
+      Outcome outcome = co_await move(parts, up);
+      if (outcome.good || outcome.end == MotionEnd::taken) co_return outcome;
+    }
+  }
+  co_return Outcome::failure("the arm cannot lift " + object + " straight up by " +
+                             std::to_string(height) + " m");
 }
 
 Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human,

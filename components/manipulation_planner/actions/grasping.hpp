@@ -23,6 +23,10 @@ Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std
 std::optional<Grasp> grasp_now(const Parts& parts, const std::string& object, const Grasp& grasp);
 /// Returns the part of a reaching motion that is straight: from the stand-off to the grasp.
 MotionSpec reach_along(const Parts& parts, const std::string& object, const Grasp& grasp);
+/// Lifts what was grasped straight up. `for_human`: as of pick(); `beside`: a person whose hand may
+/// be at the object, empty: nobody.
+Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string& for_human,
+                      const std::string& beside = {});
 /// Approaches an object, closes the hand and lifts the object. `for_human`: as of pick().
 Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human,
                            const Grasp& grasp);

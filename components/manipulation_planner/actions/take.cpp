@@ -228,17 +228,31 @@ Routine<Closing> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
   co_return result;
 }
 
+/// Returns whether a surface bears the object between the fingers, as the giver has left it there.
+bool is_left_in_hand(const Parts& parts, const std::string& object, const Grasp& grasp) {
+  const SceneObject* seen = parts.now.object(object);
+  if (seen == nullptr || seen->holder != Holder::surface) return false;
+  const Pose T_world_object = parts.arm.T_world_tool() * grasp.T_object_hand.inverse();
+  return (seen->T_world_object.translation() - T_world_object.translation()).norm() <
+         kMaxInHandError;
+}
+
 /// Waits until the giver has released the object. Fingers that press on the object feel some of its
 /// weight, too: the object is the robot's when that stays and the giver's hand has gone. A hand
-/// that is sure of its grip has the object as well when nobody else holds it: it must not open.
-Routine<Outcome> await_release(Parts& parts, const Offer& offer, double timeout, bool is_sure) {
+/// that is sure of its grip has the object as well when nobody else holds it: it must not open. So
+/// has every hand what is left standing between its fingers.
+Routine<Outcome> await_release(Parts& parts, const TakeAttempt& take, const Grasp& grasp,
+                               bool is_sure) {
+  const Offer& offer = take.offer;
   parts.action.phase = ActionPhase::waiting_for_release;
   const auto is_given = [&] {
     const SceneObject* seen = parts.now.object(offer.object);
     const bool has_it = is_held_by_robot(parts, offer.object) ||
-                        (is_sure && seen != nullptr && seen->holder == Holder::nobody);
+                        (is_sure && seen != nullptr && seen->holder == Holder::nobody) ||
+                        is_left_in_hand(parts, offer.object, grasp);
     return has_it && !parts.held.is_at_hand_of(offer.giver, offer.object);
   };
+  const double timeout = is_sure ? parts.settings.let_go_timeout : parts.settings.unsure_grip_time;
   const TimePoint deadline = parts.now.time() + from_seconds(timeout);
   TimePoint since = parts.now.time();
   while (parts.now.time() < deadline && to_seconds(parts.now.time() - since) < kReleaseTime) {
@@ -247,6 +261,37 @@ Routine<Outcome> await_release(Parts& parts, const Offer& offer, double timeout,
   }
   co_return is_given() ? Outcome{}
                        : Outcome::failure(offer.giver + " does not release " + offer.object);
+}
+
+/// Lifts what the giver has left standing in the hand; what stays behind is released.
+Routine<Outcome> lift_what_is_left(Parts& parts, const Offer& offer, const Grasp& grasp) {
+  Outcome lifted = co_await lift(parts, offer.object, "", offer.giver);
+  const auto is_carried = [&] { return is_held_by_robot(parts, offer.object); };
+  if (lifted.good) {
+    const bool is_up = co_await parts.waiting.until(is_carried, parts.settings.settle_time);
+    if (is_up) co_return lifted;
+    lifted = Outcome::failure(offer.object + " stayed behind when the hand went up",
+                              ActionFailure::left_behind);
+  }
+  parts.held.release();
+  Outcome off = co_await back_off(parts, offer, grasp, lifted);
+  co_return off;
+}
+
+/// Draws what was taken back along the approach; `is_lifted`: from above where it was taken.
+Routine<Outcome> draw_back(Parts& parts, const Offer& offer, const Grasp& grasp, bool is_lifted) {
+  if (is_lifted) {
+    Outcome drawn = co_await retreat(parts, offer.giver, offer.object);
+    co_return drawn;
+  }
+  MotionSpec back;
+  back.phase = ActionPhase::retreat;
+  back.is_straight = true;
+  back.goals = {grasp.approach_joints};
+  back.allowed = {offer.object, offer.giver};
+  back.speed = parts.settings.carry_speed;
+  Outcome drawn = co_await move(parts, back);
+  co_return drawn;
 }
 
 /// Plans the approach and begins to open the hand.
@@ -291,13 +336,11 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   }
   const Closing closed = co_await close_on_offer(parts, take, *grasp);
   Outcome taken = closed.outcome;
-  if (taken.good)
-    taken = co_await await_release(parts, take.offer, parts.settings.let_go_timeout, true);
+  if (taken.good) taken = co_await await_release(parts, take, *grasp, true);
   if (closed.unsure) {
     // A giver who feels the robot hold the object releases it at once: a hand that opened then
     // would drop it. One who still holds it keeps their hand there.
-    const Outcome released =
-        co_await await_release(parts, take.offer, parts.settings.unsure_grip_time, false);
+    const Outcome released = co_await await_release(parts, take, *grasp, false);
     if (released.good) taken = released;
   }
   if (!taken.good) {
@@ -306,13 +349,12 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   }
   parts.held.set_grasp(*grasp);
   parts.held.hold(*parts.now.object(object));
-  MotionSpec back;
-  back.phase = ActionPhase::retreat;
-  back.is_straight = true;
-  back.goals = {grasp->approach_joints};
-  back.allowed = {object, giver};
-  back.speed = parts.settings.carry_speed;
-  Outcome moved = co_await move(parts, back);
+  const bool is_standing = is_left_in_hand(parts, object, *grasp);
+  if (is_standing) {
+    taken = co_await lift_what_is_left(parts, take.offer, *grasp);
+    if (!taken.good) co_return taken;
+  }
+  Outcome moved = co_await draw_back(parts, take.offer, *grasp, is_standing);
   parts.offers.set_hand_at_offer(false);
   if (!moved.good) parts.refuse("retreat", moved.reason);
   co_return Outcome{};

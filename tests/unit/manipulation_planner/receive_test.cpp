@@ -330,6 +330,27 @@ TEST(ManipulationPlanner, a_sure_grip_does_not_open_on_what_nobody_else_holds) {
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 0);
 }
 
+TEST(ManipulationPlanner, what_the_giver_leaves_in_the_hand_on_a_surface_is_lifted) {
+  for (const bool unsure : {true, false})
+    for (const bool comes : {true, false}) {
+      Rig rig;
+      rig.moves = true;
+      rig.unsure = unsure;
+      rig.object_comes = false;
+      ASSERT_TRUE(receive_until(rig, "waiting for release"));
+      rig.scene.objects[0].holder = Holder::surface;
+      rig.scene.objects[0].holder_id = "table";
+      rig.run_until("lift");
+      ASSERT_EQ(phase_text(rig.planner.status()), "lift");
+      if (comes) rig.scene.objects[0].holder = Holder::robot;
+      rig.run(200);
+      EXPECT_EQ(rig.planner.status().holding, comes) << rig.planner.status().reason;
+      EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), comes ? 0 : 1);
+      if (comes) continue;
+      EXPECT_EQ(rig.planner.status().reason, "mug stayed behind when the hand went up");
+    }
+}
+
 TEST(ManipulationPlanner, a_grip_that_bears_the_load_is_worth_a_longer_motion) {
   for (const double margin : {1.0, -3.0}) {
     Rig rig;
