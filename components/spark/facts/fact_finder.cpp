@@ -20,7 +20,8 @@ constexpr std::array kZoneLimits = {0.1, 0.45, 1.2,
                                     3.6};  // contact, danger, interaction, social [m]
 constexpr std::array kZoneFacts = {FactKind::in_contact_zone, FactKind::in_danger_zone,
                                    FactKind::in_interaction_zone, FactKind::in_social_zone};
-constexpr double kLoosely = 1.2;  // what began within a limit stays up to this times it
+constexpr double kLoosely = 1.2;          // what began within a limit stays up to this times it
+constexpr double kLooselyReached = 1.02;  // the same of the reach, which is an upper bound
 constexpr double kFieldOfView =
     1.05;  // [rad] to either side of where the eyes or, unknown, the body points
 constexpr double kUnknownExtent = 0.1;  // [m] of a thing without a model
@@ -190,8 +191,8 @@ Candidate FactFinder::reach_fact(const Scene& scene, const SceneObject& object) 
           object.id,
           "",
           away,
-          away < 0.95 * length,
           away < length,
+          away < kLooselyReached * length,
           evidence("%.2f m from the shoulder of an arm of %.2f m", away, length)};
 }
 

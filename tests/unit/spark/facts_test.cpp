@@ -8,7 +8,9 @@
 
 #include "common/config/resources.hpp"
 #include "common/messages/names.hpp"
+#include "common/model/arm_reach.hpp"
 #include "common/model/human/human_body.hpp"
+#include "common/model/manipulator.hpp"
 #include "components/spark/facts/fact_finder.hpp"
 #include "components/spark/people/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
@@ -243,6 +245,32 @@ TEST_F(FactsTest, either_arm_of_two_reaches) {
   EXPECT_TRUE(reaches(-0.65, 2)) << "the right arm";
   EXPECT_FALSE(reaches(1.1, 3));
   EXPECT_FALSE(reaches(-1.1, 4));
+}
+
+TEST_F(FactsTest, up_to_the_bound_of_the_reach_nothing_is_out_of_reach) {
+  const auto duo =
+      std::make_shared<const RobotModel>(RobotModel::load(resource("robots/duo/duo.txtpb")));
+  FactFinder finder(shipped(), duo, [this](const std::string& name) { return model(name); });
+  scene_.robot_position = duo->rest_configuration();
+  const std::vector<Manipulator> hands = hands_of(*duo);
+  const ArmReach reach = arm_reach(*duo, hands[0].arm, hands[0].palm);
+  const Vector3 p_shoulder =
+      scene_.T_world_base * duo->link_pose(duo->rest_configuration(), reach.shoulder).translation();
+  // Away from the other arm.
+  const Vector3 outward = Vector3(0, p_shoulder.y() < 0 ? -1 : 1, 0);
+  double t = 0;
+  const auto reaches = [&](double ratio) {
+    mug_.T_world_object.translation() = p_shoulder + ratio * reach.length * outward;
+    scene_.objects = {mug_};
+    people_.people = {anna_};
+    return find(finder.find(scene_, people_, at(t += 2)), FactKind::reachable_by_robot, "mug") !=
+           nullptr;
+  };
+  EXPECT_FALSE(reaches(1.1));
+  EXPECT_FALSE(reaches(1.01));
+  EXPECT_TRUE(reaches(0.98));
+  EXPECT_TRUE(reaches(1.01)) << "what was in reach stays so a little beyond";
+  EXPECT_FALSE(reaches(1.1));
 }
 
 // ---- a real handover between two people (120 Hz, both upper bodies, an object with force sensors)
