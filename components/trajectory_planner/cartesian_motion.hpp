@@ -113,7 +113,7 @@ struct CartesianMotion {
   /// Of each node of `path` the number in the request; the start is 0.
   std::vector<std::size_t> given;
   /// Of each segment of `path`, because of people; empty: no people.
-  std::vector<SpeedZones> speeds;
+  std::vector<LimitZones> speeds;
   double cost{};  ///< largest human-aware cost on the path, [0, 1]
   /// Robot axes of what follows: those of the arm, the further ones, then those of the joined arm.
   std::vector<int> axes;

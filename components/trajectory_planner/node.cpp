@@ -28,8 +28,12 @@ Node::Node(Bus& bus, const NodeContext& context)
   const auto file =
       settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
   settings_.blend_step = file.corner_step;
-  settings_.speed = {file.cost_step,      file.min_speed_factor, file.concern_radius,
-                     file.approach_speed, file.approach_factor,  file.unseen_angle,
+  settings_.speed = {file.cost_step,
+                     {file.min_speed_factor, file.min_acceleration_factor, file.min_jerk_factor},
+                     file.concern_radius,
+                     file.approach_speed,
+                     file.approach_factor,
+                     file.unseen_angle,
                      file.unseen_factor};
   settings_.tool.allowed_excess = file.allowed_excess;
   const auto sped = [](RateBounds& bounds, double velocity) {

@@ -8,6 +8,11 @@ namespace {
 
 constexpr double kFades = 0.35;  // from looked at to not looked at [rad]
 
+double in_steps(double factor) {
+  constexpr double kStep = SpeedAlong::kStep;
+  return std::max(kStep, kStep * std::floor(factor / kStep + 1e-9));
+}
+
 }  // namespace
 
 SpeedAlong::SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around,
@@ -54,8 +59,11 @@ double SpeedAlong::what_people_do(const Vector& q) const {
   return least;
 }
 
-double SpeedAlong::factor(double cost, const Vector& q) const {
-  return (1 - (1 - settings_.min_speed_factor) * std::clamp(cost, 0.0, 1.0)) * what_people_do(q);
+LimitScale SpeedAlong::factor(double cost, const Vector& q) const {
+  const double c = std::clamp(cost, 0.0, 1.0), people = what_people_do(q);
+  const auto by_cost = [&](double min_factor) { return (1 - (1 - min_factor) * c) * people; };
+  const LimitScale& min = settings_.min_factors;
+  return {by_cost(min.velocity), by_cost(min.acceleration), by_cost(min.jerk)};
 }
 
 SpeedAlong::SpeedSample SpeedAlong::at(const Vector& q) const {
@@ -74,16 +82,17 @@ std::vector<SpeedAlong::SpeedSample> SpeedAlong::along(const Vector& from, const
   cost_.on_line(from, to, at.data(), parts + 1, cost.data());
   std::vector<SpeedSample> samples;
   for (std::size_t k = 0; k < at.size(); ++k)
-    samples.push_back(
-        {at[k], cost[k], unconcerned() ? 1.0 : factor(cost[k], from + at[k] * (to - from))});
+    samples.push_back({at[k], cost[k],
+                       unconcerned() ? LimitScale{} : factor(cost[k], from + at[k] * (to - from))});
   return samples;
 }
 
-SpeedZones SpeedAlong::zones(const std::vector<SpeedSample>& samples) {
-  SpeedZones zones;
+LimitZones SpeedAlong::zones(const std::vector<SpeedSample>& samples) {
+  LimitZones zones;
   for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
-    const double lower = std::min(samples[k].factor, samples[k + 1].factor);
-    const double factor = std::max(kStep, kStep * std::floor(lower / kStep + 1e-9));
+    const LimitScale lower = samples[k].factor.lower(samples[k + 1].factor);
+    const LimitScale factor{in_steps(lower.velocity), in_steps(lower.acceleration),
+                            in_steps(lower.jerk)};
     if (!zones.empty() && zones.back().scale == factor)
       zones.back().end = samples[k + 1].at;
     else

@@ -1,5 +1,6 @@
-// How fast the robot may be at each place of its path because of people. Own method: what the place
-// costs them (chapter section 4.1.2), and what they do: come nearer, or look elsewhere. Pure.
+// Velocity, acceleration and jerk that the robot may have at each place of its path because of
+// people (chapter section 2.1). Own method: what the place costs them (chapter section 4.1.2), and
+// what they do: come nearer, or look elsewhere. Pure.
 #pragma once
 
 #include <vector>
@@ -17,10 +18,11 @@ struct Surroundings {
   Pose T_world_base{Pose::Identity()};
 };
 
-/// Factors of the velocity limits, because of people.
+/// Factors of the limits, because of people.
 struct SpeedSettings {
-  double cost_step{0.1};         ///< the path is sampled this often [rad, max norm]
-  double min_speed_factor{0.5};  ///< where the cost is 1; 1 where it is 0, linear between
+  double cost_step{0.1};  ///< the path is sampled this often [rad, max norm]
+  /// Factors where the cost is 1; 1 where it is 0, linear between.
+  LimitScale min_factors{0.5, 0.7, 0.7};
   /// What people do counts in full up to half this distance from the tool, and fades to nothing
   /// here [m].
   double concern_radius{1.5};
@@ -39,21 +41,21 @@ class SpeedAlong {
              const SpeedSettings& settings);
 
   struct SpeedSample {
-    double at{};       ///< position on the motion, 0 at its start, 1 at its end
-    double cost{};     ///< human-aware, [0, 1]
-    double factor{1};  ///< factor of the velocity limits
+    double at{};        ///< position on the motion, 0 at its start, 1 at its end
+    double cost{};      ///< human-aware, [0, 1]
+    LimitScale factor;  ///< of the limits
   };
   /// Returns whether no person is present and no layer adds a cost: the factor is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
   SpeedSample at(const Vector& q) const;  ///< all axes [rad]
   /// Returns samples of the straight motion between two configurations, ends included.
   std::vector<SpeedSample> along(const Vector& from, const Vector& to) const;
-  /// Factor of the velocity limits because of what people do, (0, 1]; 1 without people.
+  /// Factor of all limits because of what people do, (0, 1]; 1 without people.
   double what_people_do(const Vector& q) const;
 
-  /// Between two samples the lower factor of both counts, in steps of kStep downward, never below
+  /// Between two samples the lower factors of both count, in steps of kStep downward, never below
   /// kStep; equal neighbours are one zone.
-  static SpeedZones zones(const std::vector<SpeedSample>& samples);
+  static LimitZones zones(const std::vector<SpeedSample>& samples);
   /// Step, and least value, of the factors that zones() gives.
   static constexpr double kStep = 0.05;
 
@@ -63,7 +65,7 @@ class SpeedAlong {
     Vector3 trunk{Vector3::Zero()}, velocity{Vector3::Zero()};
     std::optional<Sight> sight;
   };
-  double factor(double cost, const Vector& q) const;
+  LimitScale factor(double cost, const Vector& q) const;
 
   const RobotModel& robot_;
   const HumanCost& cost_;

@@ -111,9 +111,9 @@ void tell_speeds(const TrajectoryRequest& request, Result& result) {
   Vector& speeds = result.reply.speeds;
   speeds = Vector::Ones(static_cast<Eigen::Index>(result.speeds.size()));
   for (std::size_t k = 0; k < result.speeds.size(); ++k)
-    for (const SpeedZone& zone : result.speeds[k])
+    for (const LimitZone& zone : result.speeds[k])
       speeds[static_cast<Eigen::Index>(k)] =
-          std::min(speeds[static_cast<Eigen::Index>(k)], zone.scale);
+          std::min(speeds[static_cast<Eigen::Index>(k)], zone.scale.velocity);
   result.speed_factor *= speeds.minCoeff();
 }
 

@@ -25,7 +25,7 @@ struct Result {
   double cost{};           ///< largest human-aware cost along the line, [0, 1]
   /// Least factor of the comfort velocity limits: asked for x because of people.
   double speed_factor{1.0};
-  std::vector<SpeedZones> speeds;  ///< of each segment, because of people
+  std::vector<LimitZones> speeds;  ///< of each segment, because of people
 };
 
 /// `world` and `cost` hold scene, people and attachment; `around` the same people. Never throws for

@@ -129,6 +129,34 @@ TEST_F(Planning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhe
   EXPECT_LT(slowest[2], -0.5);
 }
 
+TEST_F(Planning, velocity_acceleration_and_jerk_fall_with_the_cost_to_people) {
+  const TrajectoryRequest sweep = request_over({{-0.8, 0, 0}, {0.8, 0, 0}});
+  struct Measured {
+    double cost, velocity, acceleration, jerk, duration;
+  };
+  std::vector<Measured> measured;
+  for (const double away : {5.0, 1.9, 1.7, 1.5}) {
+    beside(test::person_at({away, 0, 0}));
+    const Result result = run(sweep);
+    ASSERT_TRUE(result.reply.solved) << result.reply.reason;
+    const AxisTrajectory& axis = result.reply.trajectory.axes[0];
+    const AxisExtremes most = extremes(axis);
+    measured.push_back({result.cost, most.velocity, most.acceleration, most.jerk,
+                        result.reply.trajectory.duration()});
+    std::printf(
+        "person at %.1f m: cost %.2f, at most %.3f rad/s, %.3f rad/s2, %.3f rad/s3; %.2f s\n", away,
+        result.cost, most.velocity, most.acceleration, most.jerk,
+        result.reply.trajectory.duration());
+  }
+  for (std::size_t k = 1; k < measured.size(); ++k) {
+    EXPECT_GT(measured[k].cost, measured[k - 1].cost);
+    EXPECT_LT(measured[k].velocity, 0.97 * measured[k - 1].velocity);
+    EXPECT_LT(measured[k].acceleration, 0.97 * measured[k - 1].acceleration);
+    EXPECT_LT(measured[k].jerk, 0.97 * measured[k - 1].jerk);
+    EXPECT_GT(measured[k].duration, measured[k - 1].duration);
+  }
+}
+
 TEST_F(Planning, who_comes_nearer_or_does_not_look_makes_it_slower) {
   HumanState people = test::person_at({1.9, 0.2, 0});
   Person& anna = people.people.front();

@@ -31,10 +31,15 @@ double reached_within(double from, double most, double distance,
   return low;
 }
 
+AxisLimits scaled(const AxisLimits& limits, const LimitScale& scale) noexcept {
+  return {limits.velocity * scale.velocity, limits.acceleration * scale.acceleration,
+          limits.jerk * scale.jerk};
+}
+
 }  // namespace
 
 PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-                         const KinematicLimits& limits, const SpeedZones& speeds)
+                         const KinematicLimits& limits, const LimitZones& speeds)
     : from(a), step(b - a) {
   AxisLimits l{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
                std::numeric_limits<double>::max()};
@@ -45,15 +50,14 @@ PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
     l.acceleration = std::min(l.acceleration, limits.acceleration[i] / d);
     l.jerk = std::min(l.jerk, limits.jerk[i] / d);
   }
-  double least = 1;
-  for (const SpeedZone& zone : speeds) least = std::min(least, zone.scale);
-  AxisLimits lowest = l;
-  lowest.velocity *= least;
+  LimitScale least;
+  for (const LimitZone& zone : speeds) least = least.lower(zone.scale);
+  const AxisLimits lowest = scaled(l, least);
   if (!zoned(speeds, l) || duration > rest_to_rest_time(1, lowest)) {
     knots.clear();
     zones.clear();
     duration = 0;
-    if (least < 1) zones.push_back({0, least});
+    if (least != LimitScale{}) zones.push_back({0, least});
     AxisProfile profile;
     solve_axis({0, 0, 0}, {1, 0, 0}, lowest, profile);
     knots.reserve(static_cast<std::size_t>(profile.count));
@@ -72,10 +76,10 @@ PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
 
 /// In each zone the fastest motion between the velocities at its ends; there the acceleration is 0,
 /// and the velocity is as high as both sides allow and can be left again.
-bool PathSegment::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
-  std::vector<SpeedZone> left;
+bool PathSegment::zoned(const LimitZones& speeds, const AxisLimits& limits) {
+  std::vector<LimitZone> left;
   double begin = 0;
-  for (const SpeedZone& zone : speeds) {
+  for (const LimitZone& zone : speeds) {
     if (!(zone.end > begin)) continue;
     if (!left.empty() && left.back().scale == zone.scale)
       left.back().end = zone.end;
@@ -87,19 +91,19 @@ bool PathSegment::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
   left.back().end = 1;
   const std::size_t n = left.size();
   std::vector<double> length(n), velocity(n + 1, 0.0);
+  std::vector<AxisLimits> here;
   for (std::size_t k = 0; k < n; ++k) {
     length[k] = left[k].end - (k > 0 ? left[k - 1].end : 0.0);
-    if (k > 0) velocity[k] = limits.velocity * std::min(left[k - 1].scale, left[k].scale);
+    here.push_back(scaled(limits, left[k].scale));
+    if (k > 0) velocity[k] = std::min(here[k - 1].velocity, here[k].velocity);
   }
   for (std::size_t k = 1; k < n; ++k)
-    velocity[k] = reached_within(velocity[k - 1], velocity[k], kKept * length[k - 1], limits);
+    velocity[k] = reached_within(velocity[k - 1], velocity[k], kKept * length[k - 1], here[k - 1]);
   for (std::size_t k = n - 1; k > 0; --k)
-    velocity[k] = reached_within(velocity[k + 1], velocity[k], kKept * length[k], limits);
+    velocity[k] = reached_within(velocity[k + 1], velocity[k], kKept * length[k], here[k]);
   AxisProfile profile;
   for (std::size_t k = 0; k < n; ++k) {
-    AxisLimits here = limits;
-    here.velocity *= left[k].scale;
-    if (solve_axis({0, velocity[k], 0}, {length[k], velocity[k + 1], 0}, here, profile) !=
+    if (solve_axis({0, velocity[k], 0}, {length[k], velocity[k + 1], 0}, here[k], profile) !=
         AxisOutcome::ok)
       return false;
     zones.push_back({duration, left[k].scale});
@@ -135,11 +139,11 @@ void PathSegment::part(double begin, double end, AxisProfile& out) const noexcep
   }
 }
 
-double PathSegment::scale(double begin, double end) const noexcept {
-  double least = 1;
+LimitScale PathSegment::scale(double begin, double end) const noexcept {
+  LimitScale least;
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const double ends = k + 1 < zones.size() ? zones[k + 1].begin : duration;
-    if (zones[k].begin <= end && begin <= ends) least = std::min(least, zones[k].scale);
+    if (zones[k].begin <= end && begin <= ends) least = least.lower(zones[k].scale);
   }
   return least;
 }

@@ -14,7 +14,7 @@ struct PathSegment {
   };
   struct Zone {
     double begin{};  ///< reached then [s]
-    double scale{1};
+    LimitScale scale;
   };
   Eigen::VectorXd from, step;  ///< q(t) = from + step * s(t), s in [0, 1]
   std::vector<Knot> knots;     ///< of s, one a segment
@@ -24,7 +24,7 @@ struct PathSegment {
   double starting{};           ///< of the one after the start [s]
 
   PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits,
-              const SpeedZones& speeds = {});
+              const LimitZones& speeds = {});
   AxisState path_state(double t) const noexcept;
   AxisState state(const AxisState& s, Eigen::Index axis) const noexcept {
     return {from[axis] + step[axis] * s.position, step[axis] * s.velocity,
@@ -33,12 +33,12 @@ struct PathSegment {
   /// Adds the segments between two times, jerks of s. What there is no room for is left out; then
   /// `out` is full.
   void part(double begin, double end, AxisProfile& out) const noexcept;
-  /// The lowest scale of the velocity limits between two times.
-  double scale(double begin, double end) const noexcept;
+  /// The lowest scales of the limits between two times.
+  LimitScale scale(double begin, double end) const noexcept;
 
  private:
   void add(const AxisProfile& profile);
-  bool zoned(const SpeedZones& speeds, const AxisLimits& limits);
+  bool zoned(const LimitZones& speeds, const AxisLimits& limits);
 };
 
 }  // namespace handsel::detail

@@ -125,15 +125,28 @@ void add_path_segment(const PathSegment& path_segment, double begin, double end,
   }
 }
 
-std::string why_bad_speeds(const std::vector<SpeedZones>& speeds, std::size_t nodes) {
+bool is_factor(double x) { return x > 0 && x <= 1; }
+
+std::string why_bad_speeds(const std::vector<LimitZones>& speeds, std::size_t nodes) {
   if (!speeds.empty() && speeds.size() + 1 != nodes)
     return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " +
            std::to_string(nodes - 1);
-  for (const SpeedZones& path_segment : speeds)
-    for (const SpeedZone& zone : path_segment)
-      if (!(zone.scale > 0 && zone.scale <= 1 && std::isfinite(zone.end)))
-        return "a scale of the velocity limits must be in (0, 1]";
+  for (const LimitZones& path_segment : speeds)
+    for (const LimitZone& zone : path_segment)
+      if (!is_factor(zone.scale.velocity) || !is_factor(zone.scale.acceleration) ||
+          !is_factor(zone.scale.jerk) || !std::isfinite(zone.end))
+        return "a scale of the limits must be in (0, 1]";
   return {};
+}
+
+/// Gives the zones on both sides of a node the lower acceleration and jerk of both: a transition
+/// keeps the lower ones, and one segment stops as the next one starts.
+void match_at_node(LimitZones& before, LimitZones& after) {
+  const LimitScale both = before.back().scale.lower(after.front().scale);
+  for (LimitScale* scale : {&before.back().scale, &after.front().scale}) {
+    scale->acceleration = both.acceleration;
+    scale->jerk = both.jerk;
+  }
 }
 
 std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes,
@@ -156,6 +169,11 @@ std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes,
 
 }  // namespace
 
+LimitScale LimitScale::lower(const LimitScale& other) const {
+  return {std::min(velocity, other.velocity), std::min(acceleration, other.acceleration),
+          std::min(jerk, other.jerk)};
+}
+
 const char* name(BlendMethod method) {
   switch (method) {
     case BlendMethod::three_segment:
@@ -171,7 +189,7 @@ const char* name(BlendMethod method) {
 }
 
 Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
-                           const KinematicLimits& limits, const SpeedZones& speeds) {
+                           const KinematicLimits& limits, const LimitZones& speeds) {
   Trajectory out;
   for (const double x : from) out.axes.push_back({{x, 0, 0}, {}});
   if (from != to) {
@@ -183,26 +201,33 @@ Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& t
 
 SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits,
                     const SmoothSettings& settings, const BlendIsFree& is_free,
-                    const std::vector<SpeedZones>& speeds) {
+                    const std::vector<LimitZones>& speeds) {
   SmoothResult out;
   if (!(out.reason = why_bad_nodes(nodes, settings)).empty()) return out;
   if (!(out.reason = why_bad_speeds(speeds, nodes.size())).empty()) return out;
   if (!(out.reason = why_bad_limits(limits, static_cast<int>(nodes[0].size()))).empty()) return out;
+  std::vector<int> node_of;  // that each path segment leads to
+  std::vector<LimitZones> zones;
+  for (std::size_t k = 1, last = 0; k < nodes.size(); ++k) {
+    if ((nodes[k] - nodes[last]).lpNorm<Eigen::Infinity>() < 1e-12) continue;
+    node_of.push_back(static_cast<int>(k));
+    zones.push_back(speeds.empty() ? LimitZones{} : speeds[k - 1]);
+    if (zones.back().empty()) zones.back().push_back({});
+    if (zones.size() > 1) match_at_node(zones[zones.size() - 2], zones.back());
+    last = k;
+  }
   std::vector<PathSegment> path_segments;
-  std::vector<int> node_of;
   path_segments.reserve(nodes.size());
   out.segment_durations.assign(nodes.size() - 1, 0.0);
-  const Eigen::VectorXd* last = &nodes[0];
-  for (std::size_t k = 1; k < nodes.size(); ++k) {
-    if ((nodes[k] - *last).lpNorm<Eigen::Infinity>() < 1e-12) continue;
-    path_segments.emplace_back(*last, nodes[k], limits,
-                               speeds.empty() ? SpeedZones{} : speeds[k - 1]);
-    node_of.push_back(static_cast<int>(k));
-    last = &nodes[k];
-    out.duration_ptp += out.segment_durations[k - 1] = path_segments.back().duration;
-    if (!(path_segments.back().duration > 0) || !std::isfinite(path_segments.back().duration)) {
+  for (std::size_t i = 0; i < node_of.size(); ++i) {
+    const auto to = static_cast<std::size_t>(node_of[i]),
+               from = i == 0 ? 0 : static_cast<std::size_t>(node_of[i - 1]);
+    path_segments.emplace_back(nodes[from], nodes[to], limits, zones[i]);
+    const double duration = path_segments.back().duration;
+    out.duration_ptp += out.segment_durations[to - 1] = duration;
+    if (!(duration > 0) || !std::isfinite(duration)) {
       out.reason =
-          "the motion to node " + std::to_string(k) + " cannot be computed with such limits";
+          "the motion to node " + std::to_string(to) + " cannot be computed with such limits";
       return out;
     }
   }

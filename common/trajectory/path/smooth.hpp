@@ -11,20 +11,30 @@
 
 namespace handsel {
 
-/// Along a straight path segment, up to a place on it, the velocity limits hold times `share`.
-struct SpeedZone {
+/// Factors of the limits of a motion, (0, 1].
+struct LimitScale {
+  double velocity{1};      ///< of the velocity limits
+  double acceleration{1};  ///< of the acceleration limits
+  double jerk{1};          ///< of the jerk limits
+  bool operator==(const LimitScale&) const = default;
+  /// Returns the lower factor of both for each limit.
+  LimitScale lower(const LimitScale& other) const;
+};
+
+/// Along a straight path segment, up to a place on it, the limits hold times `scale`.
+struct LimitZone {
   /// Part of the distance from node to node; grows from zone to zone, the last is 1.
   double end{1};
-  double scale{1};  ///< scale of the velocity limits, (0, 1]
+  LimitScale scale;  ///< within the zone
 };
-using SpeedZones = std::vector<SpeedZone>;  ///< of a path segment; none: the limits as they are
+using LimitZones = std::vector<LimitZone>;  ///< of a path segment; none: the limits as they are
 
 /// Rest-to-rest motion on the straight line from one configuration to another, all axes in phase:
 /// time-optimal with one zone; with several the acceleration is 0 where one meets the next, and it
-/// is never slower than at the lowest scale all along. Own method: the zones make it slow only
+/// is never slower than at the lowest scales all along. Own method: the zones make it slow only
 /// where it has to be.
 Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
-                           const KinematicLimits& limits, const SpeedZones& speeds = {});
+                           const KinematicLimits& limits, const LimitZones& speeds = {});
 
 enum class BlendMethod {
   /// Minimum-time transition, three segments an axis, at most the allowed excess (the chapter's
@@ -73,10 +83,10 @@ using BlendIsFree = std::function<bool(const Trajectory& corner)>;
 
 /// Of the transitions possible at a node the one that saves most time and is free. Equal neighbours
 /// in `nodes` are taken as one. `speeds`: zones of the path segment to each node but the first, or
-/// empty; a transition keeps the lowest scale of all the zones it reaches into (own method: no zone
-/// is exceeded).
+/// empty; a transition keeps the lowest scales of all the zones it reaches into (own method: no
+/// zone is exceeded).
 SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits,
                     const SmoothSettings& settings = {}, const BlendIsFree& is_free = {},
-                    const std::vector<SpeedZones>& speeds = {});
+                    const std::vector<LimitZones>& speeds = {});
 
 }  // namespace handsel

@@ -52,11 +52,13 @@ WaypointBlend::WaypointBlend(const std::vector<PathSegment>& path_segments, std:
 
 void WaypointBlend::keep_scale(double before, double after) noexcept {
   if (a_.zones.empty() && b_.zones.empty()) return;
-  const double scale = std::min(a_.scale(a_.duration - before, a_.duration), b_.scale(0, after));
+  const LimitScale scale = a_.scale(a_.duration - before, a_.duration).lower(b_.scale(0, after));
   if (scale == scale_) return;
   scale_ = scale;
   double* to = scaled_.data()->value;
-  for (int i = 0; i < stride_; ++i) to[i] = inverse_[i] / scale;
+  const double* from = inverse_;
+  for (const double factor : {scale.velocity, scale.acceleration, scale.jerk})
+    for (int i = 0; i < stride_; ++i) *to++ = *from++ / factor;
 }
 
 void WaypointBlend::place(double before, double after) noexcept {
@@ -66,7 +68,7 @@ void WaypointBlend::place(double before, double after) noexcept {
 }
 
 double WaypointBlend::min_duration() noexcept {
-  BatchArray zero{}, v, a, xf, vf, af, V{};
+  BatchArray zero{}, v, a, xf, vf, af, V{}, A{}, J{};
   AxisBatch block;
   double least = 0;
   for (int first = 0; first < axes_; first += kBatchAxes) {
@@ -79,8 +81,11 @@ double WaypointBlend::min_duration() noexcept {
       vf[i] = wb * joined_.velocity;
       af[i] = wb * joined_.acceleration;
     }
-    const double *A = limits_.acceleration.data() + first, *J = limits_.jerk.data() + first;
-    for (int i = 0; i < here; ++i) V[i] = scale_ * limits_.velocity[first + i];
+    for (int i = 0; i < here; ++i) {
+      V[i] = scale_.velocity * limits_.velocity[first + i];
+      A[i] = scale_.acceleration * limits_.acceleration[first + i];
+      J[i] = scale_.jerk * limits_.jerk[first + i];
+    }
     const std::uint32_t odd =
         batch_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
     least = std::max(least, *std::max_element(block.minimum, block.minimum + here));

@@ -48,7 +48,7 @@ class WaypointBlend {
 
  private:
   double excess(double enough) const noexcept;
-  /// The lowest scale of the velocity limits between these places.
+  /// Keeps the lowest scales of the limits between these places.
   void keep_scale(double before, double after) noexcept;
 
   const PathSegment &a_, &b_;
@@ -57,7 +57,7 @@ class WaypointBlend {
   int axes_, stride_;
   AxisState left_, joined_, from_;
   Blend blend_;
-  double scale_{1};               // of the velocity limits
+  LimitScale scale_;
   std::vector<BatchRow> scaled_;  // inverse_ for that scale; empty: 1
 };
 

@@ -81,9 +81,11 @@ int run_timed(const TimedOptions& options) {
     json corners = json::array(), speeds = json::array();
     for (const Refusal& corner : result.reply.corners)
       corners.push_back({{"what", corner.what}, {"reason", corner.reason}});
-    for (const SpeedZones& leg : result.speeds) {
+    for (const LimitZones& leg : result.speeds) {
       speeds.push_back(json::array());
-      for (const SpeedZone& zone : leg) speeds.back().push_back({zone.end, zone.scale});
+      for (const LimitZone& zone : leg)
+        speeds.back().push_back(
+            {zone.end, zone.scale.velocity, zone.scale.acceleration, zone.scale.jerk});
     }
     std::vector<std::string> names;
     for (const int axis : group.axes)
@@ -117,8 +119,8 @@ void add_timed_command(CLI::App& trajectory, int& exit_code) {
       R"(A line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of the others, "obstacles"?,
 "human"?: {"joints": {name: [x, y, z]}, "gaze"?: [x, y, z], "velocity"?: [x, y, z]} in the
 root frame, "weights"?, "speed_scale"?, "title"?: of the picture's panel}.
-An answer: "speeds" of each path segment, [[up to this fraction of it, this scale of the velocity
-limits], ...]; nothing without a human.)");
+An answer: "speeds" of each path segment, [[up to this fraction of it, scale of the velocity limits,
+of the acceleration limits, of the jerk limits], ...]; nothing without a human.)");
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
       ->required();
   command->add_option("--group", options->group, "whose joints move")->capture_default_str();

@@ -41,7 +41,7 @@ SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axe
     const auto look = people.at(q);
     curve.progress.push_back(gone);
     curve.cost.push_back(look.cost);
-    curve.allowed.push_back(look.factor);
+    curve.allowed.push_back(look.factor.velocity);
     curve.speed.push_back((state.velocity.cwiseAbs().array() / limits.array()).maxCoeff());
   }
   for (double& way : curve.progress) way /= gone > 0 ? gone : 1;

@@ -168,7 +168,7 @@ class Rig {
       KinematicLimits limits = robot->comfort_limits();
       const std::vector<int>& axes = robot->require_group("arm").axes;
       limits = {limits.velocity(axes), limits.acceleration(axes), limits.jerk(axes)};
-      const std::vector<SpeedZones> zones(request.nodes.size() - 1, SpeedZones{{1, share}});
+      const std::vector<LimitZones> zones(request.nodes.size() - 1, LimitZones{{1, share}});
       reply.trajectory = smooth(request.nodes, limits, {}, {}, zones).trajectory;
       reply.speeds = Vector::Constant(static_cast<Eigen::Index>(zones.size()), share);
       return planner.on(reply);

@@ -39,7 +39,7 @@ class OnlineReplannerTest : public testing::Test {
     const std::vector<int>& axes = arm().axes;
     limits = {limits.velocity(axes), limits.acceleration(axes), limits.jerk(axes)};
     return smooth(waypoints, limits, {}, {},
-                  std::vector<SpeedZones>(waypoints.size() - 1, SpeedZones{{1, 1}}))
+                  std::vector<LimitZones>(waypoints.size() - 1, LimitZones{{1, 1}}))
         .trajectory;
   }
   void report(std::uint64_t command, MotionState state) {

@@ -150,14 +150,32 @@ TEST(Smooth, tau_zero_stops_at_the_node) {
   EXPECT_LT(smooth(nodes, kFigure18, settings).trajectory.duration(), stop.duration_ptp - 0.1);
 }
 
-/// The lowest share that holds anywhere between two places of a leg.
-double share_between(const SpeedZones& zones, double from, double to) {
-  double least = 1, begin = 0;
-  for (const SpeedZone& zone : zones) {
-    if (begin <= to && from <= zone.end) least = std::min(least, zone.scale);
+/// The lowest scales that hold anywhere between two places of a leg.
+LimitScale scale_between(const LimitZones& zones, double from, double to) {
+  LimitScale least;
+  double begin = 0;
+  for (const LimitZone& zone : zones) {
+    if (begin <= to && from <= zone.end) {
+      least.velocity = std::min(least.velocity, zone.scale.velocity);
+      least.acceleration = std::min(least.acceleration, zone.scale.acceleration);
+      least.jerk = std::min(least.jerk, zone.scale.jerk);
+    }
     begin = zone.end;
   }
   return least;
+}
+
+/// The scales of the zone at a place of a leg; where two zones meet, the higher ones.
+LimitScale scale_at(const LimitZones& zones, double s) {
+  const LimitScale a = scale_between(zones, s - 1e-7, s - 1e-7),
+                   b = scale_between(zones, s + 1e-7, s + 1e-7);
+  return {std::max(a.velocity, b.velocity), std::max(a.acceleration, b.acceleration),
+          std::max(a.jerk, b.jerk)};
+}
+
+KinematicLimits scaled(const KinematicLimits& limits, const LimitScale& scale) {
+  return {scale.velocity * limits.velocity, scale.acceleration * limits.acceleration,
+          scale.jerk * limits.jerk};
 }
 
 /// Where on the straight way from a to b, and how far off it.
@@ -166,7 +184,15 @@ std::pair<double, double> place_on(const VectorXd& a, const VectorXd& b, const V
   return {s, (q - a - s * (b - a)).norm()};
 }
 
-TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
+/// Corners of lines with zones, and the durations of all lines [s].
+struct ZonedLines {
+  int smoothed{}, stops{};
+  double zoned{}, at_lowest{};
+};
+
+/// Smooths random lines with random zones and checks each state; `all`: the zones scale
+/// acceleration and jerk as well.
+ZonedLines smooth_with_zones(bool all) {
   const std::uint64_t seed = 43;
   std::mt19937_64 random(seed);
   const auto draw = [&](double lo, double hi) {
@@ -175,19 +201,23 @@ TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
   constexpr int kLines = 300, kAxes = 7;
   const KinematicLimits limits{VectorXd::Constant(kAxes, 0.5), VectorXd::Constant(kAxes, 1),
                                VectorXd::Constant(kAxes, 3)};
-  double zoned = 0, at_lowest = 0, unhindered = 0;
-  int smoothed = 0, stops = 0;
+  double unhindered = 0;
+  ZonedLines out;
   for (int line = 0; line < kLines; ++line) {
     std::vector<VectorXd> nodes(static_cast<std::size_t>(2 + random() % 4), VectorXd(kAxes));
     for (VectorXd& q : nodes)
       for (double& x : q) x = draw(-1.2, 1.2);
-    std::vector<SpeedZones> speeds(nodes.size() - 1);
-    double lowest = 1;
-    for (SpeedZones& leg : speeds) {
+    std::vector<LimitZones> speeds(nodes.size() - 1);
+    LimitScale lowest;
+    const auto draw_scale = [&] {
+      const double velocity = draw(0.2, 1);
+      return all ? LimitScale{velocity, draw(0.2, 1), draw(0.2, 1)} : LimitScale{velocity};
+    };
+    for (LimitZones& leg : speeds) {
       for (double end = draw(0.02, 0.4); end < 1; end += draw(0.02, 0.4))
-        leg.push_back({end, draw(0.2, 1)});
-      leg.push_back({1, draw(0.2, 1)});
-      lowest = std::min(lowest, share_between(leg, 0, 1));
+        leg.push_back({end, draw_scale()});
+      leg.push_back({1, draw_scale()});
+      lowest = lowest.lower(scale_between(leg, 0, 1));
     }
     const auto where = [&] {
       return "seed " + std::to_string(seed) + " line " + std::to_string(line);
@@ -207,19 +237,19 @@ TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
               least = d;
             }
           if (node == 0) return ADD_FAILURE() << where() << ": a corner of no node", true;
-          const double share =
-              std::min(share_between(speeds[node - 1],
-                                     place_on(nodes[node - 1], nodes[node], left).first + 1e-9, 1),
-                       share_between(speeds[node], 0,
-                                     place_on(nodes[node], nodes[node + 1], joined).first - 1e-9));
-          for (const AxisTrajectory& axis : corner.axes)
-            EXPECT_LE(extremes(axis).velocity, 0.5 * share * (1.1 + 1e-9)) << where();
+          const LimitScale scale =
+              scale_between(speeds[node - 1],
+                            place_on(nodes[node - 1], nodes[node], left).first + 1e-9, 1)
+                  .lower(
+                      scale_between(speeds[node], 0,
+                                    place_on(nodes[node], nodes[node + 1], joined).first - 1e-9));
+          EXPECT_EQ(why_not_within(corner, scaled(limits, scale), 0.1 + 1e-6), "") << where();
           return true;
         },
         speeds);
-    ASSERT_TRUE(r.ok()) << r.reason;
+    EXPECT_TRUE(r.ok()) << r.reason;
     for (const BlendReport& corner : r.corners)
-      ++(corner.method == BlendMethod::stop ? stops : smoothed);
+      ++(corner.method == BlendMethod::stop ? out.stops : out.smoothed);
     EXPECT_EQ(why_not_within(r.trajectory, limits, 0.1 + 1e-9), "") << where();
     EXPECT_LE(r.trajectory.duration(), r.duration_ptp + 1e-9) << where();
     EXPECT_LT((final_state(r.trajectory).position - nodes.back()).lpNorm<Eigen::Infinity>(), 1e-9)
@@ -230,44 +260,69 @@ TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
       const Trajectory leg = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
       EXPECT_EQ(why_not_within(leg, limits, 1e-9), "") << where();
       EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits,
-                                                {{1, share_between(speeds[k], 0, 1)}})
+                                                {{1, scale_between(speeds[k], 0, 1)}})
                                         .duration() +
                                     1e-9);
       EXPECT_GE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits).duration() - 1e-9);
       for (int i = 0; i <= 500; ++i) {
         const MotionState3 state = leg.at(leg.duration() * i / 500);
         const auto [s, off] = place_on(nodes[k], nodes[k + 1], state.position);
-        ASSERT_LT(off, 1e-9) << where();
-        const double share = std::max(share_between(speeds[k], s - 1e-7, s - 1e-7),
-                                      share_between(speeds[k], s + 1e-7, s + 1e-7));
-        ASSERT_LE(state.velocity.cwiseAbs().maxCoeff(), 0.5 * share + 1e-7)
+        EXPECT_LT(off, 1e-9) << where();
+        const LimitScale scale = scale_at(speeds[k], s);
+        EXPECT_LE(state.velocity.cwiseAbs().maxCoeff(), 0.5 * scale.velocity + 1e-7)
             << where() << " leg " << k << " at " << s;
+        EXPECT_LE(state.acceleration.cwiseAbs().maxCoeff(), scale.acceleration + 1e-5)
+            << where() << " leg " << k << " at " << s;
+      }
+      for (const AxisTrajectory& axis : leg.axes) {
+        double begin = 0;
+        for (const Segment& segment : axis.segments) {
+          const double middle = begin + segment.duration / 2;
+          begin += segment.duration;
+          if (segment.duration < 1e-6) continue;
+          const double s = place_on(nodes[k], nodes[k + 1], leg.at(middle).position).first;
+          EXPECT_LE(std::abs(segment.jerk), 3 * scale_at(speeds[k], s).jerk + 1e-6)
+              << where() << " leg " << k << " at " << s;
+        }
       }
     }
     EXPECT_NEAR(sum, r.duration_ptp, 1e-9);
-    zoned += r.trajectory.duration();
-    at_lowest += smooth(nodes, {lowest * limits.velocity, limits.acceleration, limits.jerk})
-                     .trajectory.duration();
+    out.zoned += r.trajectory.duration();
+    out.at_lowest += smooth(nodes, scaled(limits, lowest)).trajectory.duration();
     unhindered += smooth(nodes, limits).trajectory.duration();
   }
   std::printf(
-      "seed %llu: %d lines, %d corners, %d keep their stop: %.0f s; %.0f s at the lowest share all "
+      "seed %llu: %d lines, %d corners, %d keep their stop: %.0f s; %.0f s at the lowest scales "
+      "all "
       "along, %.0f s unhindered\n",
-      static_cast<unsigned long long>(seed), kLines, smoothed + stops, stops, zoned, at_lowest,
-      unhindered);
-  EXPECT_LT(zoned, 0.9 * at_lowest);
-  EXPECT_LT(stops, smoothed / 20);
+      static_cast<unsigned long long>(seed), kLines, out.smoothed + out.stops, out.stops, out.zoned,
+      out.at_lowest, unhindered);
+  return out;
+}
+
+TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
+  const ZonedLines lines = smooth_with_zones(false);
+  EXPECT_LT(lines.zoned, 0.9 * lines.at_lowest);
+  EXPECT_LT(lines.stops, lines.smoothed / 20);
+}
+
+TEST(Smooth, acceleration_and_jerk_follow_the_zones_of_the_legs_as_well) {
+  const ZonedLines lines = smooth_with_zones(true);
+  EXPECT_LT(lines.zoned, 0.9 * lines.at_lowest);
+  // Where a transition reaches into a second zone of lower limits there is none.
+  EXPECT_LT(lines.stops, lines.smoothed / 7);
 }
 
 TEST(Smooth, one_share_everywhere_is_that_limit) {
   const std::vector<VectorXd> nodes = {point({0, 0}), point({1, 0}), point({1, 1})};
-  KinematicLimits half = kFigure18;
-  half.velocity *= 0.5;
-  const SpeedZones zones = {{0.3, 0.5}, {0.6, 0.5}, {1, 0.5}};
+  const LimitScale scale{0.5, 0.6, 0.7};
+  const KinematicLimits half = scaled(kFigure18, scale);
+  const LimitZones zones = {{0.3, scale}, {0.6, scale}, {1, scale}};
   EXPECT_NEAR(smooth(nodes, kFigure18, {}, {}, {zones, zones}).trajectory.duration(),
               smooth(nodes, half).trajectory.duration(), 1e-9);
   EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones}).reason, "");
-  EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones, {{1, 0}}}).reason, "");
+  for (const LimitScale& bad : {LimitScale{0, 1, 1}, LimitScale{1, 1.1, 1}, LimitScale{1, 1, -1}})
+    EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones, {{1, bad}}}).reason, "");
 }
 
 TEST(Smooth, a_forbidden_corner_keeps_its_stop_and_says_why) {
