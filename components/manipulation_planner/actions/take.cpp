@@ -111,6 +111,17 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
   co_return none;
 }
 
+/// Returns the straight motion back to the stand-off of a grasp.
+MotionSpec back_along(const Offer& offer, const Grasp& grasp, ActionPhase phase, double speed) {
+  MotionSpec back;
+  back.phase = phase;
+  back.is_straight = true;
+  back.goals = {grasp.approach_joints};
+  back.allowed = {offer.object, offer.giver};
+  back.speed = speed;
+  return back;
+}
+
 /// Opens the hand and moves it back to the stand-off; returns `why`.
 Routine<Outcome> back_off(Parts& parts, const Offer& offer, const Grasp& grasp,
                           const Outcome& why) {
@@ -118,12 +129,8 @@ Routine<Outcome> back_off(Parts& parts, const Offer& offer, const Grasp& grasp,
   const double timeout = parts.settings.hand_timeout;
   HandResult opened = co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
   if (!opened.outcome.good) parts.refuse("backing off", opened.outcome.reason);
-  MotionSpec back;
-  back.phase = ActionPhase::backing_off;
-  back.is_straight = true;
-  back.goals = {grasp.approach_joints};
-  back.allowed = {offer.object, offer.giver};
-  back.speed = parts.settings.approach_speed;
+  const MotionSpec back =
+      back_along(offer, grasp, ActionPhase::backing_off, parts.settings.approach_speed);
   Outcome backed = co_await move(parts, back);
   if (!backed.good) parts.refuse("backing off", backed.reason);
   parts.offers.set_hand_at_offer(false);
@@ -284,12 +291,8 @@ Routine<Outcome> draw_back(Parts& parts, const Offer& offer, const Grasp& grasp,
     Outcome drawn = co_await retreat(parts, offer.giver, offer.object);
     co_return drawn;
   }
-  MotionSpec back;
-  back.phase = ActionPhase::retreat;
-  back.is_straight = true;
-  back.goals = {grasp.approach_joints};
-  back.allowed = {offer.object, offer.giver};
-  back.speed = parts.settings.carry_speed;
+  const MotionSpec back =
+      back_along(offer, grasp, ActionPhase::retreat, parts.settings.carry_speed);
   Outcome drawn = co_await move(parts, back);
   co_return drawn;
 }
