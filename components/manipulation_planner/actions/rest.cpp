@@ -43,7 +43,8 @@ Routine<Outcome> rest(Parts& parts) {
       RobotModel::part(parts.arm.robot().rest_configuration(), parts.arm.fingers());
   HandResult closed =
       co_await parts.hand.run(HandAction::move, folded, parts.settings.hand_timeout);
-  co_return closed.outcome;
+  if (!closed.outcome.good) parts.refuse("folding the fingers", closed.outcome.reason);
+  co_return outcome;
 }
 
 Routine<Outcome> rest_others(Parts& parts) {

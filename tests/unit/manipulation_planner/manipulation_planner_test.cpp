@@ -475,6 +475,22 @@ TEST(ManipulationPlanner, what_has_no_model_is_not_passed_on_and_that_is_the_rea
   EXPECT_EQ(rig.planner.status().reason, "object mug has no model");
 }
 
+TEST(ManipulationPlanner, at_rest_a_hand_beside_another_folds_its_fingers) {
+  for (const std::string robot : {"duo", "jido"})
+    for (const double opened : {0.0, 0.3}) {
+      Rig rig(robot);
+      rig.people.people.clear();
+      rig.q = rig.robot->rest_configuration();
+      rig.q[rig.robot->require_group("hand").axes.front()] += opened;
+      rig.start(ActionKind::go_to);
+      rig.run(30);
+      EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+      const bool folds = robot == "duo" && opened > 0;
+      EXPECT_EQ(rig.hand_actions, folds ? std::vector{HandAction::move} : std::vector<HandAction>{})
+          << robot << " opened by " << opened;
+    }
+}
+
 TEST(ManipulationPlanner, one_arm_alone_asks_no_other_hand) {
   Rig rig;
   rig.scene.objects[0].holder = Holder::robot;
