@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "common/bus/local_bus.hpp"
 #include "common/model/platform.hpp"
@@ -12,6 +15,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "components/trajectory_planner/node.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/standing_person.hpp"
 
 namespace handsel::trajectory_planner {
@@ -245,9 +249,10 @@ TEST(TrajectoryPlannerNode, answers_once_planned_requests_again_and_waits_for_a_
 /// Jido's trajectory planner, and what it answers to motions of the tool.
 class ToolMotions : public ::testing::Test {
  protected:
-  ToolMotions() {
+  explicit ToolMotions(const std::filesystem::path& settings = HANDSEL_SOURCE_DIR
+                       "/deploy/config") {
     context_.robot = robot_;
-    context_.settings = HANDSEL_SOURCE_DIR "/deploy/config";
+    context_.settings = settings;
     context_.description = HANDSEL_SOURCE_DIR "/deploy/robots/jido/jido.txtpb";
     node_ = std::make_unique<Node>(network_.add("trajectory_planner"), context_);
     Bus& tester = network_.add("manipulation_planner");
@@ -410,6 +415,49 @@ TEST_F(ToolMotions, are_slower_near_people) {
   ASSERT_EQ(reply_.speeds.size(), 1);
   EXPECT_LT(reply_.speeds[0], 0.9);
   EXPECT_GT(reply_.trajectory.duration(), alone + 0.1);
+}
+
+/// The largest velocity, acceleration and jerk beside a person, with settings of one's own.
+class WithSettings : public ToolMotions {
+ public:
+  explicit WithSettings(const std::filesystem::path& settings) : ToolMotions(settings) {}
+  void TestBody() override {}
+  AxisExtremes largest() {
+    Vector to = RobotModel::part(request_.start, robot_->require_group("arm"));
+    request_.nodes = {to};
+    to[0] += 0.5;
+    request_.nodes.push_back(to);
+    ask(test::person_at(Vector3(home_.translation().x() + 0.8, home_.translation().y() + 0.3, 0)));
+    EXPECT_TRUE(reply_.solved) << reply_.reason;
+    AxisExtremes all;
+    for (const AxisTrajectory& axis : reply_.trajectory.axes) {
+      const AxisExtremes one = extremes(axis);
+      all.velocity = std::max(all.velocity, one.velocity);
+      all.acceleration = std::max(all.acceleration, one.acceleration);
+      all.jerk = std::max(all.jerk, one.jerk);
+    }
+    return all;
+  }
+};
+
+TEST(TrajectoryPlannerNode, lowers_each_limit_near_people_as_its_settings_say) {
+  const std::filesystem::path shipped = HANDSEL_SOURCE_DIR "/deploy/config";
+  const AxisExtremes as_shipped = WithSettings(shipped).largest();
+  const test::TemporaryFolder folder;
+  std::filesystem::copy(shipped, folder.path() / "config",
+                        std::filesystem::copy_options::recursive);
+  const std::filesystem::path file = folder.path() / "config/trajectory_planner.txtpb";
+  std::ifstream in(file);
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  for (const std::string key : {"min_acceleration_factor: ", "min_jerk_factor: "}) {
+    const std::size_t at = text.find(key + "0.7");
+    ASSERT_NE(at, std::string::npos) << key;
+    text.replace(at, key.size() + 3, key + "0.1");
+  }
+  std::ofstream(file) << text;
+  const AxisExtremes gentle = WithSettings(folder.path() / "config").largest();
+  EXPECT_LT(gentle.acceleration, 0.9 * as_shipped.acceleration);
+  EXPECT_LT(gentle.jerk, 0.9 * as_shipped.jerk);
 }
 
 }  // namespace
