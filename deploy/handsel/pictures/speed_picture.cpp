@@ -38,10 +38,10 @@ SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axe
     gone += (state.position - last).norm();
     last = state.position;
     q(axes) = state.position;
-    const auto look = people.at(q);
+    const auto sample = people.at(q);
     curve.progress.push_back(gone);
-    curve.cost.push_back(look.cost);
-    curve.allowed.push_back(look.factor.velocity);
+    curve.cost.push_back(sample.cost);
+    curve.allowed.push_back(sample.factor.velocity);
     curve.speed.push_back((state.velocity.cwiseAbs().array() / limits.array()).maxCoeff());
   }
   for (double& way : curve.progress) way /= gone > 0 ? gone : 1;
