@@ -14,7 +14,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr int kMaxMeetings = 3;    // of the hands, for one pass
 constexpr int kMaxCloseTries = 2;  // of a hand on what the other one holds
 constexpr double kAsideDistances[] = {0.15, 0.25,
                                       0.35};             // of what an arm draws to its own side [m]
@@ -123,30 +122,24 @@ struct StepResult {
 /// `grasp` is how it takes the object.
 Routine<Outcome> meet(Parts& parts, const std::string& object, const RegraspStep& step,
                       std::optional<Grasp>& grasp) {
-  Outcome done =
-      Outcome::failure("the other arm does not reach " + object + " where the first holds it");
-  for (int tries = 0; tries < kMaxMeetings && !grasp; ++tries) {
-    Outcome own = co_await use_arm(parts, step.from);
-    if (!own.good) co_return own;
-    // On the way the object may have turned in the hand.
-    const SceneObject* held = parts.now.object(object);
-    if (held == nullptr) co_return Outcome::out_of_sight(object);
-    parts.held.hold(*held);
-    const std::optional<Vector> meeting = meeting_configuration(parts, step);
-    if (!meeting)
-      co_return Outcome::failure("the arms do not reach the place where " + object +
-                                 " is to change hands");
-    MotionSpec bring;
-    bring.phase = ActionPhase::carry_to_other_hand;
-    bring.goals = {*meeting};
-    bring.speed = parts.settings.carry_speed;
-    Outcome brought = co_await move(parts, bring);
-    if (!brought.good) co_return brought;
-    own = co_await use_arm(parts, step.to);
-    if (!own.good) co_return own;
-    grasp = grasp_now(parts, object, step.grasp);
-  }
-  if (grasp) done = Outcome{};
+  // On the way the object may have turned in the hand.
+  const SceneObject* held = parts.now.object(object);
+  if (held == nullptr) co_return Outcome::out_of_sight(object);
+  parts.held.hold(*held);
+  const std::optional<Vector> meeting = meeting_configuration(parts, step);
+  if (!meeting)
+    co_return Outcome::failure("the arms do not reach the place where " + object +
+                               " is to change hands");
+  MotionSpec bring;
+  bring.phase = ActionPhase::carry_to_other_hand;
+  bring.goals = {*meeting};
+  bring.speed = parts.settings.carry_speed;
+  Outcome done = co_await move(parts, bring);
+  if (done.good) done = co_await use_arm(parts, step.to);
+  if (!done.good) co_return done;
+  grasp = grasp_now(parts, object, step.grasp);
+  if (!grasp)
+    done = Outcome::failure("the other arm does not reach " + object + " where the first holds it");
   co_return done;
 }
 
