@@ -223,13 +223,13 @@ TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_wh
   EXPECT_GT(rig.planner.replan_counts().unchanged, 1u);
   EXPECT_EQ(rig.planner.replan_counts().retimed, 0u);
   const double before = left();
-  rig.share = 0.5;  // somebody has come near
+  rig.speed_scale = 0.5;  // somebody has come near
   runs(0.6);
   const auto& counts = rig.planner.replan_counts();
   ASSERT_EQ(rig.commands.size(), 2u)
       << counts.checks << " checks, " << counts.refused << " refused";
   EXPECT_GT(left() + 0.6, before + 0.15);
-  rig.share = 0.97;  // and has gone
+  rig.speed_scale = 0.97;  // and has gone
   const double slow = left();
   EXPECT_GT(slow, 1.5) << "the test needs a longer way";
   runs(0.6);

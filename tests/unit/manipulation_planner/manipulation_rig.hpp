@@ -168,9 +168,9 @@ class Rig {
       KinematicLimits limits = robot->comfort_limits();
       const std::vector<int>& axes = robot->require_group("arm").axes;
       limits = {limits.velocity(axes), limits.acceleration(axes), limits.jerk(axes)};
-      const std::vector<LimitZones> zones(request.nodes.size() - 1, LimitZones{{1, share}});
+      const std::vector<LimitZones> zones(request.nodes.size() - 1, LimitZones{{1, {speed_scale}}});
       reply.trajectory = smooth(request.nodes, limits, {}, {}, zones).trajectory;
-      reply.speeds = Vector::Constant(static_cast<Eigen::Index>(zones.size()), share);
+      reply.speeds = Vector::Constant(static_cast<Eigen::Index>(zones.size()), speed_scale);
       return planner.on(reply);
     }
     for (int i = 0; i < target.size(); ++i)
@@ -271,7 +271,7 @@ class Rig {
   int opens_for{}, opening{};  // the hand, told to move: cycles that it takes, and that are left
   double opens_by{};           // the first axis of the hand before a grasp [rad]
   bool moves{};                // trajectories take their time, paths are kept
-  double share{1};             // of the velocity limits, because of people
+  double speed_scale{1};       // of the velocity limits, because of people
   Trajectory way;              // that runs
   double along{}, latest{};
   std::vector<TrajectoryCommand> commands;

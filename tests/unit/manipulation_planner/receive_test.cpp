@@ -103,7 +103,7 @@ TEST(ManipulationPlanner, who_was_asked_for_it_offers_it_with_a_bent_arm_too) {
 TEST(ManipulationPlanner, an_offer_whose_measure_trembles_does_not_end) {
   Rig rig;
   rig.moves = true;
-  rig.share = 0.15;
+  rig.speed_scale = 0.15;
   rig.hold_out();
   rig.facts.facts.clear();
   Vector3 p_mug{0.995, 0.1, 1.1};  // 3 cm beyond the least extension
@@ -124,7 +124,7 @@ TEST(ManipulationPlanner, an_offer_whose_measure_trembles_does_not_end) {
 TEST(ManipulationPlanner, an_offer_that_is_shifted_is_followed_while_the_arm_moves) {
   Rig rig;
   rig.moves = true;
-  rig.share = 0.15;
+  rig.speed_scale = 0.15;
   rig.hold_out();
   rig.start(ActionKind::receive);
   rig.run_until("approach");
@@ -165,7 +165,7 @@ TEST(ManipulationPlanner, foresees_when_the_object_changes_hands) {
 TEST(ManipulationPlanner, what_is_put_into_the_open_hand_on_its_way_is_held_at_once) {
   Rig rig;
   rig.moves = true;
-  rig.share = 0.15;
+  rig.speed_scale = 0.15;
   rig.hold_out();
   Vector grasping = rig.q;
   grasping[rig.robot->require_group("arm").axes.front()] += 0.2;  // as the rig answers
@@ -201,7 +201,7 @@ TEST(ManipulationPlanner, what_is_drawn_back_is_not_gone_after) {
 TEST(ManipulationPlanner, who_steps_toward_the_hand_that_is_near_is_stepped_back_from) {
   Rig rig;
   rig.moves = true;
-  rig.share = 0.15;
+  rig.speed_scale = 0.15;
   rig.hold_out();
   rig.scene.objects[0].T_world_object.translation() =
       rig.tool().translation() + Vector3(0.35, 0, 0);
@@ -255,7 +255,7 @@ TEST(ManipulationPlanner, the_arm_before_the_giver_makes_room_first_then_the_oth
 TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
   Rig rig;
   rig.moves = true;
-  rig.share = 0.02;
+  rig.speed_scale = 0.02;
   rig.scene.objects[0].holder = Holder::human;
   rig.scene.objects[0].holder_id = "anna";
   rig.draw_back();
