@@ -21,6 +21,9 @@ SimWorld::Impl::Impl(const RobotModel& robot_model, const ObjectLibrary& library
       reference{side.position(), side.velocity(), side.acceleration(), side.effort()},
       limits(robot_model, s.robot_side.max_gap, s.setpoint_period),
       separations(robot_model, s.ssm) {
+  if (drives(model))
+    odometry.emplace(model, setup.start, settings.odometry, settings.localisation,
+                     seed ^ 0x0d0'4e7'27ULL);
   settings.constraint = settings.constraint || setup.help_hold;
   dynamics.setGravity(btVector3(0, 0, -9.81));
   dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
@@ -101,6 +104,10 @@ void SimWorld::Impl::build_fixed() {
   }
 }
 
+Vector SimWorld::Impl::measured_position() const {
+  return odometry ? odometry->measured_position(robot->position()) : robot->position();
+}
+
 void SimWorld::Impl::step() {
   while (next_disturbance < setup.disturbances.size() &&
          setup.disturbances[next_disturbance].at <= now() + 1e-9) {
@@ -111,15 +118,20 @@ void SimWorld::Impl::step() {
   reference.velocity = side.velocity();
   reference.acceleration = side.acceleration();
   reference.effort = side.effort();
+  if (odometry) odometry->to_root(reference.position, reference.velocity, reference.acceleration);
   if (stuck_hand) stuck_hand->apply(settings.step, grips_something(), reference);
   robot->drive(reference.position, reference.velocity, reference.acceleration, reference.effort);
   update_robot_hands();
+  if (odometry)
+    people->set_platform(
+        T_world_platform(model, robot->position(), setup.T_world_base).translation());
   people->move(settings.step, robot_hands);
   for (Hand& hand : hands) hold_with(hand);
   dynamics.stepSimulation(settings.step, 0);
   ++steps;
   robot->read();
-  side.measured(robot->position());
+  if (odometry) odometry->advance(robot->position(), now());
+  side.measured(measured_position());
   for (ObjectBody& object : objects) object.read();
   gather(dispatcher, settings.step, kContactDistance, touches);
   update_grasps();
@@ -140,7 +152,7 @@ double SimWorld::time() const { return impl_->now(); }
 
 void SimWorld::command(const JointCommand& command, std::uint64_t writer, double arrival) {
   Impl& w = *impl_;
-  w.limits.observe(command, writer, w.now(), w.robot->position(), w.side.position());
+  w.limits.observe(command, writer, w.now(), w.measured_position(), w.side.position());
   w.side.command(command, w.now(), arrival < 0 ? w.now() : arrival);
 }
 

@@ -1,6 +1,7 @@
 // What is done to the emulated world from outside.
 #include <limits>
 
+#include "common/messages/names.hpp"
 #include "sim/world_parts.hpp"
 
 namespace handsel::sim {
@@ -36,6 +37,20 @@ std::string SimWorld::Impl::disturb(const std::string& source, const SensorFault
     any = true;
   }
   return any ? "" : "there is no source of people " + source;
+}
+
+/// `until`: end of a loss [s].
+std::string SimWorld::Impl::disturb_platform(const SimControl& c, double until) {
+  if (!odometry)
+    return std::string("the robot does not drive: ") +
+           kSimActionNames[static_cast<std::size_t>(c.action)] + " needs a platform";
+  if (c.action == SimAction::localisation_lost)
+    odometry->lose(until);
+  else if (c.action == SimAction::localisation_jump)
+    odometry->shift(c.value);
+  else
+    odometry->slip(c.value);
+  return "";
 }
 
 std::string SimWorld::Impl::control(const SimControl& c) {
@@ -87,8 +102,13 @@ std::string SimWorld::Impl::control(const SimControl& c) {
                       Vector3::Zero(), c.value});
     case SimAction::human_elsewhere:
       return disturb(c.subject, {SensorFaultKind::elsewhere, now(), until - now(), kElsewhere});
+    case SimAction::localisation_lost:
+    case SimAction::localisation_jump:
+    case SimAction::wheel_slip:
+      return disturb_platform(c, until);
     case SimAction::restore:
       human_silent_until = state_silent_until = 0;
+      if (odometry) odometry->lose(0), odometry->shift(0);
       for (HumanSensor& sensor : human_sensors) sensor.restore();
       return "";
     default:

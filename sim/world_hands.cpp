@@ -140,10 +140,15 @@ bool SimWorld::robot_state(RobotState& out) {
   out.robot = w.model.name();
   out.sequence = ++w.state_sequence;
   out.T_world_base = w.setup.T_world_base;
-  out.position = w.robot->position();
+  if (w.odometry) {
+    out.T_world_base = w.setup.T_world_base * w.odometry->T_root_odometry();
+    out.localisation_age = w.odometry->age(w.now());
+  }
+  out.position = w.measured_position();
   for (Eigen::Index i = 0; i < out.position.size(); ++i)
     out.position[i] += w.noise(w.settings.position_noise);
-  out.velocity = w.robot->velocity();
+  out.velocity =
+      w.odometry ? w.odometry->measured_velocity(w.robot->velocity()) : w.robot->velocity();
   out.effort = w.robot->effort();
   w.side.report(out.reference);
   out.external_torque = w.hands.front().measured.external_torque();

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 
+#include "common/model/platform.hpp"
 #include "sim/world_parts.hpp"
 
 namespace handsel::sim {
@@ -144,20 +145,28 @@ void SimWorld::ground_truth(GroundTruth& out) const {
   out.set_points = w.limits.count();
   out.hash = w.hash.value;
   out.robot_moving = false;
+  const Group* platform = w.model.group(kPlatformGroup);
+  const auto of_platform = [platform](Eigen::Index axis) {
+    return platform != nullptr &&
+           std::find(platform->axes.begin(), platform->axes.end(), axis) != platform->axes.end();
+  };
   const auto of_arm = [](const Impl::Hand& hand, Eigen::Index axis) {
     return hand.arm == nullptr ||
            std::find(hand.arm->axes.begin(), hand.arm->axes.end(), axis) != hand.arm->axes.end();
   };
   for (Eigen::Index i = 0; i < w.robot->velocity().size(); ++i) {
-    const bool counts = std::any_of(w.hands.begin(), w.hands.end(),
-                                    [&](const Impl::Hand& hand) { return of_arm(hand, i); });
+    const bool counts =
+        of_platform(i) || std::any_of(w.hands.begin(), w.hands.end(),
+                                      [&](const Impl::Hand& hand) { return of_arm(hand, i); });
     if (counts && std::abs(w.robot->velocity()[i]) > 1e-3) out.robot_moving = true;
   }
   out.person.clear();
   double least = std::numeric_limits<double>::infinity();
+  const Vector3 p_world_robot =
+      T_world_platform(w.model, w.robot->position(), w.setup.T_world_base).translation();
   for (std::size_t p = 0; p < w.people->size(); ++p) {
     const Person& person = w.people->model(p).body();
-    const double d = (person.joints.front().position - w.setup.T_world_base.translation()).norm();
+    const double d = (person.joints.front().position - p_world_robot).norm();
     if (d < least) least = d, out.person = person.joints;
   }
 }

@@ -19,6 +19,7 @@
 #include "sim/oracle/taking_oracle.hpp"
 #include "sim/people/people.hpp"
 #include "sim/robot/hand_measure.hpp"
+#include "sim/robot/platform_odometry.hpp"
 #include "sim/robot/robot_grasp.hpp"
 #include "sim/robot/stuck_hand.hpp"
 #include "sim/world.hpp"
@@ -74,6 +75,9 @@ struct SimWorld::Impl {
   /// Adds one body that does not move; `shape` must outlive the world.
   void add_fixed(btCollisionShape* shape, const Pose& T, Owner owner, int index);
 
+  /// Returns all axes as the robot side measures them.
+  Vector measured_position() const;
+
   // world_hands.cpp: grasps of the robot's hands
   BodyState tool_state(const Hand& hand) const;  ///< of its palm, world
   void update_robot_hands();                     ///< writes what people see of all hands
@@ -106,6 +110,8 @@ struct SimWorld::Impl {
   std::string stop_robot(const std::string& how);  ///< empty, or one sentence: why not
   /// Applies a fault to the source of people, or to all sources; empty, or one sentence: why not.
   std::string disturb(const std::string& source, const SensorFault& fault);
+  /// Disturbs localisation or wheels; empty, or one sentence: why not.
+  std::string disturb_platform(const SimControl& c, double until);
 
   const RobotModel& model;
   SimSettings settings;
@@ -125,6 +131,7 @@ struct SimWorld::Impl {
   ObjectBodies objects;
   std::unique_ptr<People> people;
 
+  std::optional<PlatformOdometry> odometry;  // of a robot that drives
   RobotSide side;
   Reference reference;
   std::optional<StuckHand> stuck_hand;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/segments.hpp"
 #include "common/model/platform.hpp"
 
 namespace handsel {
@@ -26,6 +27,13 @@ double point_to_segment(const Vector2d& p, const Vector2d& a, const Vector2d& b)
                            ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0)
                            : 0.0;
   return (p - a - share * along).norm();
+}
+
+double segment_to_segment(const Vector2d& a, const Vector2d& b, const Vector2d& c,
+                          const Vector2d& d) {
+  Vector3 on_first, on_second;
+  const auto level = [](const Vector2d& p) { return Vector3(p.x(), p.y(), 0); };
+  return std::sqrt(nearest_points(level(a), level(b), level(c), level(d), on_first, on_second));
 }
 
 double angle(const Vector2d& a, const Vector2d& b) {
@@ -65,27 +73,58 @@ NavigationCost::NavigationCost(const RobotModel& robot, const CostSettings& weig
   }
 }
 
-void NavigationCost::set_people(const HumanState& people) {
+void NavigationCost::set_people(const HumanState& people, const Pose& T_world_root) {
+  const Pose T_root_world = T_world_root.inverse();
+  const auto turned = [&](const Vector3& v) {
+    return Vector2d((T_root_world.linear() * v).head<2>());
+  };
   someone_.clear();
   for (const Person& person : people.people) {
     const SimplifiedBody body = simplified_body(person);
     Someone one{};
-    one.place = body.axis_bottom.head<2>();
+    one.place = (T_root_world * body.axis_bottom).head<2>();
     one.body = body.radius;
     const auto sight = sight_of(person);
     one.gaze = sight && sight->direction.head<2>().norm() > 1e-6
-                   ? sight->direction.head<2>().normalized()
+                   ? turned(sight->direction).normalized()
                    : Vector2d::Zero();
     one.velocity.setZero();
     for (const char* name : {"waist", "torso", "head"})
       if (const BodyJoint* joint = find_joint(person, name)) {
-        one.velocity = joint->velocity.head<2>();
+        one.velocity = turned(joint->velocity);
         break;
       }
     one.speed = one.velocity.norm();
     one.radius = one.speed > settings_.moving ? settings_.radius_moving : settings_.radius;
     someone_.push_back(one);
   }
+  find_conversations();
+}
+
+void NavigationCost::find_conversations() {
+  conversations_.clear();
+  const auto faces = [this](const Someone& one, const Someone& other) {
+    return !one.gaze.isZero() && angle(one.gaze, other.place - one.place) < settings_.facing;
+  };
+  for (std::size_t i = 0; i < someone_.size(); ++i)
+    for (std::size_t k = i + 1; k < someone_.size(); ++k) {
+      const Someone &a = someone_[i], &b = someone_[k];
+      if ((a.place - b.place).norm() < settings_.conversation && faces(a, b) && faces(b, a))
+        conversations_.emplace_back(a.place, b.place);
+    }
+}
+
+/// Highest where the platform stands on a line between two people who talk.
+double NavigationCost::between_people(const Eigen::Rotation2Dd& turn, const Vector2d& place) const {
+  double worst = 0;
+  for (const auto& [a, b] : conversations_) {
+    double gap = std::numeric_limits<double>::infinity();
+    for (const Disc& part : outline_)
+      gap = std::min(gap, segment_to_segment(place + turn * part.a, place + turn * part.b, a, b) -
+                              part.radius);
+    worst = std::max(worst, fade(gap, settings_.between));
+  }
+  return worst;
 }
 
 double NavigationCost::of(const Someone& one, double gap, const Vector2d& to_platform) const {
@@ -104,7 +143,7 @@ double NavigationCost::of(const Someone& one, double gap, const Vector2d& to_pla
 double NavigationCost::operator()(double x, double y, double heading) const {
   const Eigen::Rotation2Dd turn(heading);
   const Vector2d place(x, y);
-  double worst = 0;
+  double worst = between_people(turn, place);
   for (const Someone& one : someone_) {
     const Vector2d seen = turn.inverse() * (one.place - place);
     double gap = std::numeric_limits<double>::infinity();

@@ -96,6 +96,7 @@ enum class Cause : std::uint8_t {
   clamped,  ///< Stop: the arm has been pressed against something for too long
   /// Hold: a person has to resume (after a pause, a fault, a protective, user or emergency stop).
   awaits_person,
+  unlocalised,  ///< Hold: the place of the platform has not been observed for too long
 };
 /// Returns the word of kCauseNames; "unknown" for a value outside the enumeration.
 const char* name(Cause);

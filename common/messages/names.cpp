@@ -14,23 +14,23 @@ constexpr bool ends_with(const char* const (&)[n], Enum last) {
   return n == static_cast<std::size_t>(last) + 1;
 }
 static_assert(ends_with(kBehaviourNames, Behaviour::watch));
-static_assert(ends_with(kCauseNames, Cause::awaits_person));
+static_assert(ends_with(kCauseNames, Cause::unlocalised));
 static_assert(ends_with(kModeNames, Mode::fault));
 static_assert(ends_with(kHandStateNames, HandState::refused));
-static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));
+static_assert(ends_with(kTaskKindNames, TaskKind::drive));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
-static_assert(ends_with(kActionKindNames, ActionKind::carry));
+static_assert(ends_with(kActionKindNames, ActionKind::drive));
 static_assert(ends_with(kRegraspKindNames, RegraspKind::join));
 static_assert(ends_with(kStepStateNames, StepState::dropped));
 static_assert(ends_with(kTaskChangeNames, TaskChange::give));
 static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));
 static_assert(ends_with(kFactNames, FactKind::released));
-static_assert(ends_with(kActionPhaseTexts, ActionPhase::to_rest));
+static_assert(ends_with(kActionPhaseTexts, ActionPhase::moving_platform));
 static_assert(ends_with(kActionFailureNames, ActionFailure::cancelled));
 static_assert(ends_with(kSideNames, Side::right));
 static_assert(ends_with(kHolderNames, Holder::human));
 static_assert(ends_with(kHealthStateNames, HealthState::stopping));
-static_assert(ends_with(kSimActionNames, SimAction::emergency_stop));
+static_assert(ends_with(kSimActionNames, SimAction::wheel_slip));
 
 }  // namespace
 

@@ -41,18 +41,19 @@ inline constexpr const char* kCauseNames[] = {"none",
                                               "stop_unproven",
                                               "second_writer",
                                               "clamped",
-                                              "awaits_person"};
+                                              "awaits_person",
+                                              "unlocalised"};
 inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
 inline constexpr const char* kHandStateNames[] = {"idle",  "moving",   "grasped",
                                                   "empty", "released", "refused"};
 inline constexpr const char* kTaskKindNames[] = {
-    "give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
-    "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
+    "give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",      "lift",
+    "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person", "drive"};
 inline constexpr const char* kTaskStateNames[] = {"accepted", "running",   "paused", "succeeded",
                                                   "failed",   "cancelled", "refused"};
 inline constexpr const char* kRegraspKindNames[] = {"pick", "pass", "place", "join"};
-inline constexpr const char* kActionKindNames[] = {"pick",  "place",   "give", "receive",
-                                                   "go_to", "regrasp", "carry"};
+inline constexpr const char* kActionKindNames[] = {"pick",  "place",   "give",  "receive",
+                                                   "go_to", "regrasp", "carry", "drive"};
 inline constexpr const char* kStepStateNames[] = {"waiting", "running", "done", "failed",
                                                   "dropped"};
 inline constexpr const char* kTaskChangeNames[] = {"none", "suspend", "resume", "abort", "give"};
@@ -84,12 +85,27 @@ inline constexpr const char* kSideNames[] = {"left", "right"};
 inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "human"};
 inline constexpr const char* kPrimitiveNames[] = {"none", "box", "cylinder", "sphere"};
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
-inline constexpr const char* kSimActionNames[] = {
-    "pause",           "resume",        "reset",         "person_freeze",
-    "person_unfreeze", "person_dart",   "person_leave",  "person_refuse",
-    "robot_stop",      "robot_enable",  "silence_human", "silence_robot_state",
-    "restore",         "human_frozen",  "human_empty",   "human_late",
-    "human_elsewhere", "emergency_stop"};
+inline constexpr const char* kSimActionNames[] = {"pause",
+                                                  "resume",
+                                                  "reset",
+                                                  "person_freeze",
+                                                  "person_unfreeze",
+                                                  "person_dart",
+                                                  "person_leave",
+                                                  "person_refuse",
+                                                  "robot_stop",
+                                                  "robot_enable",
+                                                  "silence_human",
+                                                  "silence_robot_state",
+                                                  "restore",
+                                                  "human_frozen",
+                                                  "human_empty",
+                                                  "human_late",
+                                                  "human_elsewhere",
+                                                  "emergency_stop",
+                                                  "localisation_lost",
+                                                  "localisation_jump",
+                                                  "wheel_slip"};
 
 // clang-format off
 inline constexpr const char* kActionPhaseTexts[] = {
@@ -101,7 +117,8 @@ inline constexpr const char* kActionPhaseTexts[] = {
     "reaching the object", "opening the hand", "opening the other hand", "grasp", "lift",
     "carry", "carry to the other hand", "offer", "put down", "put back", "release",
     "release with the first hand", "retreat", "backing off", "stepping back",
-    "retreat from a person", "clear the offer area", "to rest"};
+    "retreat from a person", "clear the offer area", "to rest", "choosing a place for the platform",
+    "moving the platform"};
 inline constexpr const char* kActionFailureNames[] = {
     "none", "other", "no_answer", "timed_out", "not_permitted", "nothing_grasped", "left_behind",
     "not_visible", "not_taken", "cancelled"};

@@ -43,9 +43,12 @@ struct RobotState {
   Stamp stamp{};             ///< time of measurement, UTC [ns]; 0: filled in by the bus
   std::string robot;         ///< name of the robot description
   std::uint64_t sequence{};  ///< grows by one per sample; falls when the robot side restarts
-  Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
-  Vector position, velocity, effort;    ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
-  ServoReference reference{};           ///< what the servos follow or hold
+  /// Root of the robot's model in the world: its root link; of one that drives, the frame in which
+  /// the place of its platform is measured (odometry).
+  Pose T_world_base{Pose::Identity()};
+  double localisation_age{};          ///< since that frame was observed; 0: it does not drive [s]
+  Vector position, velocity, effort;  ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
+  ServoReference reference{};         ///< what the servos follow or hold
   Vector external_torque;  ///< per axis, without model gravity and friction [Nm]; empty if unknown
   /// What the world exerts on the hand with its load, gravity of the hand removed, tool frame.
   Wrench wrist_wrench;

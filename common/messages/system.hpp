@@ -98,11 +98,14 @@ enum class SimAction : std::uint8_t {
   silence_human,
   silence_robot_state,
   restore,
-  human_frozen,     ///< the source repeats its last picture for `value` seconds, with new stamps
-  human_empty,      ///< the source repeats an empty picture for `value` seconds
-  human_late,       ///< the source is late by `value` seconds until restored
-  human_elsewhere,  ///< the source observes another region for `value` seconds
-  emergency_stop    ///< the red button
+  human_frozen,       ///< the source repeats its last picture for `value` seconds, with new stamps
+  human_empty,        ///< the source repeats an empty picture for `value` seconds
+  human_late,         ///< the source is late by `value` seconds until restored
+  human_elsewhere,    ///< the source observes another region for `value` seconds
+  emergency_stop,     ///< the red button
+  localisation_lost,  ///< the place of the platform is not found for `value` seconds
+  localisation_jump,  ///< the place of the platform is found `value` m beside it, along x
+  wheel_slip          ///< the wheels roll on by `value` m without the platform
 };
 
 /// Topic SimControl, profile goal: disturbances and control of the simulator.

@@ -29,6 +29,7 @@ enum class TaskKind : std::uint8_t {
   acknowledge,
   speed,         // about the running one, or the system
   clear_person,  // an operator says that a person who was lost is gone
+  drive,         ///< the platform to object, surface or human, whichever is named, else to `place`
 };
 /// Returns the word of kTaskKindNames; "unknown" for a value outside the enumeration.
 const char* name(TaskKind);
@@ -43,6 +44,8 @@ struct TaskGoal {
   std::string human;    ///< person id; empty: the nearest attentive person
   std::string surface;  ///< scene box id; empty where the kind needs none
   double value{};       ///< of kind speed: speed override, [0, 1]
+  /// Of kind drive, where nothing is named: platform x, y [m], heading [rad] in the world.
+  Vector3 place{Vector3::Zero()};
   /// Box where what is taken, cleared or tidied ends; empty: where there is room.
   std::string onto;
 };
@@ -86,7 +89,7 @@ struct TaskStatus {
   double cost{};                  ///< cost of the remaining plan
 };
 
-enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to, regrasp, carry };
+enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to, regrasp, carry, drive };
 /// Returns the word of kActionKindNames; "unknown" for a value outside the enumeration.
 const char* name(ActionKind);
 
@@ -101,7 +104,8 @@ struct ActionGoal {
   bool cancel{};          ///< stop action `id` with jerk-limited motion and report cancelled
   /// Ids of scene object, person and scene box; empty where the kind needs none.
   std::string object, human, surface;
-  bool has_goal{};  ///< pick, place, regrasp, carry: the final pose of the object is known
+  /// pick, place, regrasp, carry: the final pose of the object is known; drive: of the platform.
+  bool has_goal{};
   Pose T_world_goal{Pose::Identity()};  ///< that pose
 };
 
@@ -142,6 +146,8 @@ enum class ActionPhase : std::uint8_t {
   retreat_from_person,  ///< a person is too near
   clear_offer_area,     ///< for an offer
   to_rest,
+  choosing_platform_place,
+  moving_platform,
 };
 
 /// What kind of failure ended an action: the supervisor's recovery rules decide by it.

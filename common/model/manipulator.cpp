@@ -5,6 +5,7 @@
 #include "common/config/resources.hpp"
 #include "common/config/schema/robot.pb.h"
 #include "common/model/description/robot_model_builder.hpp"
+#include "common/model/description/robot_text.hpp"
 
 namespace handsel {
 namespace {
@@ -61,8 +62,7 @@ int hand_index(const std::vector<Manipulator>& hands, const std::string& fingers
 
 std::vector<Manipulator> manipulators(const std::filesystem::path& description,
                                       const RobotModel& robot) {
-  config::RobotDescription text;
-  load_text_proto(description, text);
+  const config::RobotDescription text = read_robot_text(description);
   std::vector<Manipulator> out;
   const auto add = [&](const std::string& field, const std::string& arm, const std::string& fingers,
                        const std::string& hand) {

@@ -2,15 +2,17 @@
 
 #include <cmath>
 
-#include "common/config/resources.hpp"
 #include "common/model/description/robot_model_builder.hpp"
+#include "common/model/description/robot_text.hpp"
 
 namespace handsel {
 namespace {
 
 constexpr int kAdded = 3;              // axes, joints and links
 constexpr double kMostHeading = 40.0;  // [rad]
-constexpr double kGuardMargin = 1.1;
+// Drives and wheels hold a force of this fraction of the weight, and turn with it at this lever.
+constexpr double kTraction = 0.5, kTractionLever = 0.3;  // [1], [m]
+constexpr double kGravity = 9.81;                        // [m/s^2]
 
 Vector longer(const Vector& of_robot, double linear, double angular) {
   Vector out(of_robot.size() + kAdded);
@@ -18,10 +20,19 @@ Vector longer(const Vector& of_robot, double linear, double angular) {
   return out;
 }
 
-KinematicLimits longer(const KinematicLimits& of_robot, double speed, double turn_speed) {
-  return {longer(of_robot.velocity, speed, turn_speed),
-          longer(of_robot.acceleration, 2 * speed, 2 * turn_speed),
-          longer(of_robot.jerk, 6 * speed, 6 * turn_speed)};
+/// Speeds, accelerations and jerks of the platform over its speeds of comfort.
+struct PlatformRatios {
+  double velocity, acceleration, jerk;
+};
+constexpr PlatformRatios kComfort{1.0, 2.0, 6.0};
+constexpr PlatformRatios kGuard{1.1, 6.0, 60.0};  // and of a stop
+
+KinematicLimits longer(const KinematicLimits& of_robot, double speed, double turn_speed,
+                       const PlatformRatios& ratios) {
+  return {
+      longer(of_robot.velocity, ratios.velocity * speed, ratios.velocity * turn_speed),
+      longer(of_robot.acceleration, ratios.acceleration * speed, ratios.acceleration * turn_speed),
+      longer(of_robot.jerk, ratios.jerk * speed, ratios.jerk * turn_speed)};
 }
 
 }  // namespace
@@ -29,6 +40,9 @@ KinematicLimits longer(const KinematicLimits& of_robot, double speed, double tur
 RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
                                           double turn_speed) {
   RobotModel out = robot;
+  double mass = 0;
+  for (const Link& link : robot.links()) mass += link.mass;
+  const double traction = kTraction * kGravity * mass;
   const char* names[kAdded] = {"platform_x", "platform_y", "platform_heading"};
   std::vector<Link> links(kAdded);
   std::vector<Joint> joints(kAdded);
@@ -47,6 +61,7 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
     joint.lower = -most;
     joint.upper = most;
     joint.max_velocity = i < 2 ? speed : turn_speed;
+    joint.max_effort = i < 2 ? traction : kTractionLever * traction;
   }
   for (Link link : robot.links()) {
     link.parent_joint += kAdded;  // of the root, -1, to the joint that turns it
@@ -62,7 +77,7 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
   for (Axis& axis : out.axes_) axis.joint += kAdded;
   for (int i = 0; i < kAdded; ++i) {
     const Joint& joint = out.joints_[static_cast<std::size_t>(i)];
-    out.axes_.push_back({joint.name, i, joint.lower, joint.upper, 0.0});
+    out.axes_.push_back({joint.name, i, joint.lower, joint.upper, joint.max_effort});
   }
   for (Group& group : out.groups_)
     if (group.tip >= 0) group.tip += kAdded;
@@ -84,19 +99,18 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
       out.disabled_pairs_[static_cast<std::size_t>(a) * static_cast<std::size_t>(n) +
                           static_cast<std::size_t>(b)] =
           robot.pair_disabled(a - kAdded, b - kAdded);
-  out.comfort_ = longer(robot.comfort_, speed, turn_speed);
-  out.guard_ = longer(robot.guard_, kGuardMargin * speed, kGuardMargin * turn_speed);
-  out.stop_ = longer(robot.stop_, kGuardMargin * speed, kGuardMargin * turn_speed);
+  out.comfort_ = longer(robot.comfort_, speed, turn_speed, kComfort);
+  out.guard_ = longer(robot.guard_, speed, turn_speed, kGuard);
+  out.stop_ = longer(robot.stop_, speed, turn_speed, kGuard);
   out.rest_ = longer(robot.rest_, 0.0, 0.0);
   return out;
 }
 
-std::optional<RobotModel> on_platform(const RobotModel& robot,
-                                      const std::filesystem::path& description) {
-  config::RobotDescription text;
-  load_text_proto(description, text);
-  if (!text.has_platform()) return std::nullopt;
-  const double speed = text.platform().speed(), turn_speed = text.platform().turn_speed();
+bool drives(const RobotModel& robot) { return robot.group(kPlatformGroup) != nullptr; }
+
+RobotModel with_platform_axes(const RobotModel& robot, const config::PlatformDescription& platform,
+                              const std::filesystem::path& description) {
+  const double speed = platform.speed(), turn_speed = platform.turn_speed();
   for (const double value : {speed, turn_speed})
     if (!(value > 0) || !std::isfinite(value))
       throw ConfigError(description.string() + ": platform.speed and turn_speed must be > 0");
@@ -107,11 +121,37 @@ std::optional<RobotModel> on_platform(const RobotModel& robot,
   return RobotModelBuilder::on_platform(robot, speed, turn_speed);
 }
 
+std::optional<RobotModel> on_platform(const RobotModel& robot,
+                                      const std::filesystem::path& description) {
+  if (drives(robot)) return robot;
+  const config::RobotDescription text = read_robot_text(description);
+  if (!text.has_platform()) return std::nullopt;
+  return with_platform_axes(robot, text.platform(), description);
+}
+
 Vector with_platform(const Vector& q, const Pose& T_world_base) {
   const Eigen::Matrix3d R = T_world_base.linear();
   Vector out(q.size() + kAdded);
   out << q, T_world_base.translation().head<2>(), std::atan2(R(1, 0), R(0, 0));
   return out;
+}
+
+Vector with_platform_at(const RobotModel& robot, const Vector& q, const Vector3& place) {
+  return RobotModel::with(q, robot.require_group(kPlatformGroup), place);
+}
+
+Vector3 platform_place(const RobotModel& robot, const Vector& q) {
+  return RobotModel::part(q, robot.require_group(kPlatformGroup));
+}
+
+Pose T_world_platform(const RobotModel& robot, const Vector& q, const Pose& T_world_base) {
+  const Group* platform = robot.group(kPlatformGroup);
+  return platform == nullptr ? T_world_base : T_world_base * robot.link_pose(q, platform->tip);
+}
+
+Pose T_world_platform(const RobotModel& robot, const Scene& scene) {
+  return scene.robot_known ? T_world_platform(robot, scene.robot_position, scene.T_world_base)
+                           : scene.T_world_base;
 }
 
 double nearest_heading(double heading, double near) {

@@ -27,6 +27,7 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.stamp(m.stamp, w.stamp);
   io.integer("sequence", m.sequence, w.sequence_number);
   io.pose("T_world_base", m.T_world_base, w.T_world_base);
+  io.number("localisation_age", m.localisation_age, w.localisation_age, {0, 1e6});
   io.vector("position", m.position, w.position, kCoordinate);
   io.vector("velocity", m.velocity, w.velocity, kCoordinate);
   io.vector("effort", m.effort, w.effort, kForce);

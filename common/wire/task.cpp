@@ -21,6 +21,7 @@ void describe(WireIo& io, TaskGoal& m, handsel_TaskGoal& w) {
   io.number("value", m.value, w.value, {-1e9, 1e9});
   io.check(m.kind != TaskKind::speed || (m.value >= 0 && m.value <= 1), "value",
            "must be from 0 to 1 for a speed goal");
+  io.point("place", m.place, w.place);
   io.text("onto", m.onto, w.onto, Text::maybe_empty);
 }
 

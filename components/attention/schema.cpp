@@ -43,8 +43,8 @@ class Search : public Schema {
     const double since = to_seconds(now - last_seen_);
     if (w.active) {
       const double angle = 0.9 * std::sin(0.6 * since);
-      target_ = body_.base_point(w.active->T_world_base,
-                                 Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.3));
+      target_ =
+          body_.base_point(*w.active, Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.3));
       aimed_ = true;
     }
     return since;
@@ -64,11 +64,12 @@ class Search : public Schema {
 
 class Track : public Schema {
  public:
-  Track(const MotorSettings& motor, const ZoneSettings& zones) : motor_(motor), zone_(zones) {}
+  Track(const Body& body, const MotorSettings& motor, const ZoneSettings& zones)
+      : body_(body), motor_(motor), zone_(zones) {}
   Behaviour kind() const override { return Behaviour::track; }
   double perceive(const World& w, TimePoint now) override {
     constexpr double kAngle = 0.1;
-    const Vector3 base = w.active ? Vector3(w.active->T_world_base.translation()) : Vector3::Zero();
+    const Vector3 base = w.active ? body_.base_point(*w.active, Vector3::Zero()) : Vector3::Zero();
     const Person* person = person_of_interest(w, base, motor_.lost_after);
     tracked_ = false;
     if (!person) return kInfinity;
@@ -87,6 +88,7 @@ class Track : public Schema {
   }
 
  private:
+  const Body& body_;
   MotorSettings motor_;
   ZoneTracker zone_;
   bool tracked_{};
@@ -361,7 +363,7 @@ std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const Moto
     case Behaviour::search:
       return std::make_unique<Search>(body, motor);
     case Behaviour::track:
-      return std::make_unique<Track>(motor, zones);
+      return std::make_unique<Track>(body, motor, zones);
     case Behaviour::avoid:
       return std::make_unique<Avoid>(body, motor, zones);
     case Behaviour::pick:

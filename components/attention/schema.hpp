@@ -13,6 +13,7 @@
 #include "common/messages/execution.hpp"
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/platform.hpp"
 #include "common/model/robot_capsules.hpp"
 #include "components/attention/zones.hpp"
 
@@ -38,9 +39,10 @@ class Body {
   Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people,
                            const SeparationExemption& exception) const;
   Vector3 grasp_point(const Vector& q, const Pose& T_world_base) const;  ///< world [m]
-  /// Returns a point of the base frame [m] in the world [m].
-  Vector3 base_point(const Pose& T_world_base, const Vector3& p_base) const {
-    return T_world_base * p_base;
+  /// Returns a point of the frame in which the robot stands [m] in the world [m].
+  Vector3 base_point(const ActiveTrajectory& active, const Vector3& p_base) const {
+    if (active.position.size() != robot_.dof()) return active.T_world_base * p_base;
+    return T_world_platform(robot_, active.position, active.T_world_base) * p_base;
   }
   /// Number of axes of the robot.
   int dof() const { return robot_.dof(); }

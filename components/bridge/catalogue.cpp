@@ -6,7 +6,8 @@
 #include <sstream>
 
 #include "common/config/resources.hpp"
-#include "common/config/schema/robot.pb.h"
+#include "common/model/description/robot_text.hpp"
+#include "common/model/platform.hpp"
 #include "common/topics/topics.hpp"
 #include "common/wire/schema.hpp"
 #include "components/bridge/drawn_urdf.hpp"
@@ -34,8 +35,8 @@ Description describe(const RobotModel& robot, const fs::path& resources) {
   const std::string folder = "robots/" + robot.name();
   const fs::path file = resources / folder / (robot.name() + ".txtpb");
   if (!fs::exists(file)) return out;
-  load_text_proto(file, out.robot);
-  const bool whole = !out.robot.has_mount() && out.robot.without().empty();
+  out.robot = read_robot_text(file);
+  const bool whole = !drives(robot) && !out.robot.has_mount() && out.robot.without().empty();
   if (whole && fs::is_regular_file(resources / folder / out.robot.urdf())) out.folder = folder;
   return out;
 }

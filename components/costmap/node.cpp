@@ -3,6 +3,7 @@
 #include "common/config/settings/costmap.hpp"
 #include "common/config/settings_text.hpp"
 #include "common/cost/cost_settings.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::costmap {
 namespace {
@@ -25,6 +26,7 @@ settings::CostmapSettings load(const NodeContext& context) {
 
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
+      robot_(context.robot),
       repeat_(from_seconds(load(context).repeat)),
       cell_time_(load(context).cell_time),
       maker_({load(context).resolution, load(context).reach, load(context).clearance,
@@ -40,12 +42,18 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus.every(from_seconds(load(context).period), [this](TimePoint now) { step(now); });
 }
 
+/// Where the robot stands [m].
+Vector3 Node::p_world_robot() const {
+  const Pose T = robot_ != nullptr ? T_world_platform(*robot_, *scene_) : scene_->T_world_base;
+  return T.translation();
+}
+
 void Node::step(TimePoint now) {
   const bool current = scene_ && bus_.lag<Scene>() < kStale && bus_.lag<HumanState>() < kStale;
   bus_.set_degraded(current ? "" : "no current Scene or HumanState: no cost map");
   if (!current || making_ || !advised_period_.due(now)) return;
   advised_period_.done(now);
-  const Person* person = nearest_person(people_, scene_->T_world_base.translation());
+  const Person* person = nearest_person(people_, p_world_robot());
   if (person == nullptr) {
     made_ = nullptr;
   } else if (watch_.changed(*person, scene_->boxes) || made_ == nullptr) {

@@ -19,10 +19,12 @@ class Node {
 
  private:
   void step(TimePoint now);
+  Vector3 p_world_robot() const;
   void make(const Person& person);
   void publish(TimePoint now);
 
   Bus& bus_;
+  std::shared_ptr<const RobotModel> robot_;
   Duration repeat_{};
   double cell_time_{};
   MapMaker maker_;  // used by jobs only

@@ -41,6 +41,8 @@ Vector ActiveArm::configuration() const {
   for (const Manipulator& other : manipulators_)
     if (other.arm != nullptr)
       for (const int axis : other.arm->axes) q[axis] = now_.set_point()[axis];
+  if (const Group* platform = robot_->group(kPlatformGroup))
+    for (const int axis : platform->axes) q[axis] = now_.set_point()[axis];
   const bool opens = finger_goal_ && now_.execution() && hand_state() == HandState::moving;
   return opens ? RobotModel::with(q, fingers_, *finger_goal_) : q;
 }

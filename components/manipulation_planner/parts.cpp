@@ -4,9 +4,10 @@ namespace handsel::manipulation_planner {
 
 Parts::Parts(const settings::ManipulationPlannerSettings& s,
              std::shared_ptr<const RobotModel> robot, ObjectLibrary objects, std::uint64_t client,
-             const CostSettings& cost)
+             const CostSettings& cost_settings)
     : settings(s),
-      now(std::move(objects)),
+      cost(cost_settings),
+      now(std::move(objects), robot),
       clients(client, outbox, waiting, settings),
       worker(outbox, waiting, settings.request_timeout),
       arm(std::move(robot), now),
@@ -17,7 +18,7 @@ Parts::Parts(const settings::ManipulationPlannerSettings& s,
       offers(now, settings),
       area(settings, arm, retreat, now),
       monitor(arm, held, offers, area, now, settings),
-      replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost)) {}
+      replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost_settings)) {}
 
 void Parts::refuse(const std::string& what, const std::string& reason) {
   constexpr std::size_t kMaxRefusals = 32;

@@ -31,6 +31,7 @@ struct Parts {
   void refuse(const std::string& what, const std::string& reason);
 
   settings::ManipulationPlannerSettings settings;  ///< as shipped
+  CostSettings cost;                               ///< weights of people's costs
   Snapshot now;                                    ///< newest messages
   ActionStatus action;                             ///< the action that runs or ran last
   Waiting waiting;                                 ///< what the action waits for

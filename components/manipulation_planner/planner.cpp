@@ -186,6 +186,9 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
     case ActionKind::carry:
       outcome = co_await carry(parts_, goal);
       break;
+    case ActionKind::drive:
+      outcome = co_await drive(parts_, goal);
+      break;
   }
   co_return outcome;
 }

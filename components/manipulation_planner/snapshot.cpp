@@ -28,11 +28,12 @@ const ObjectModel* Snapshot::model_of(const std::string& id) const {
 const Person* Snapshot::person(const std::string& id) const {
   const Person* best = nullptr;
   double nearest = 0;
+  const Vector3 p_robot = T_world_platform(*this).translation();
   for (const auto& candidate : people_.people) {
     if (!id.empty() && candidate.id != id) continue;
     const Vector3 torso =
         candidate.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-    const double distance = (torso - scene_.T_world_base.translation()).norm();
+    const double distance = (torso - p_robot).norm();
     if (best == nullptr || distance < nearest) {
       best = &candidate;
       nearest = distance;

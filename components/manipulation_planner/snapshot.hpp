@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,14 +11,17 @@
 #include "common/messages/execution.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/object_model.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::manipulation_planner {
 
 /// Newest scene, people, facts, cost layers and state of the controller.
 class Snapshot {
  public:
-  /// `objects`: the models of the objects that scenes name.
-  explicit Snapshot(ObjectLibrary objects) : objects_(std::move(objects)) {}
+  /// `objects`: the models of the objects that scenes name. `robot`: nullptr: it stands at its
+  /// root.
+  explicit Snapshot(ObjectLibrary objects, std::shared_ptr<const RobotModel> robot = nullptr)
+      : robot_(std::move(robot)), objects_(std::move(objects)) {}
 
   /// Takes the newest scene; objects, boxes and base of the robot in the world frame.
   void on(const Scene& scene) {
@@ -43,8 +47,12 @@ class Snapshot {
   const Scene& scene() const { return scene_; }
   /// Returns how many scenes have come.
   std::uint64_t scene_count() const { return scene_count_; }
-  /// Returns the pose of the robot's base in the world.
+  /// Returns the pose of the root of the robot's model in the world.
   const Pose& T_world_base() const { return scene_.T_world_base; }
+  /// Returns where the robot stands in the world: its platform, or its root.
+  friend Pose T_world_platform(const Snapshot& now) {
+    return now.robot_ ? T_world_platform(*now.robot_, now.scene_) : now.scene_.T_world_base;
+  }
   /// Returns the newest people.
   const HumanState& people() const { return people_; }
   /// Returns the facts that hold.
@@ -75,6 +83,7 @@ class Snapshot {
 
  private:
   TimePoint time_{};
+  std::shared_ptr<const RobotModel> robot_;
   ObjectLibrary objects_;
   Scene scene_;
   std::uint64_t scene_count_{};

@@ -13,7 +13,7 @@ constexpr double kReach = 1.2;  // places are at most this far from the pose, in
 
 }  // namespace
 
-bool drives(const std::string& group) {
+bool is_of_platform(const std::string& group) {
   return group == kPlatformGroup || group == kWholeRobotGroup;
 }
 

@@ -8,8 +8,8 @@
 
 namespace handsel::path_planner {
 
-/// Returns whether the group is one that on_platform adds.
-bool drives(const std::string& group);
+/// Returns whether the group is one that the axes of a platform add.
+bool is_of_platform(const std::string& group);
 
 /// `mobile`: a robot on its platform (on_platform). Completes a problem whose axes are those of a
 /// group that drives: people's costs of the platform; room as far as start and goals and `roam` [m]

@@ -49,7 +49,7 @@ Solver::Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel
       cost_(*robot_, weights) {}
 
 bool Solver::drives_platform(const PathRequest& request) const {
-  return on_platform_ && drives(request.group);
+  return on_platform_ && is_of_platform(request.group);
 }
 
 std::string Solver::complete(PathRequest& request, const Pose& T_world_base) const {
@@ -57,7 +57,7 @@ std::string Solver::complete(PathRequest& request, const Pose& T_world_base) con
   constexpr double kLevel = 0.02;  // [rad]
   if (!(T_world_base.linear()(2, 2) > std::cos(kLevel)))
     return "the platform does not stand level: it cannot be planned for";
-  if (request.start.size() == robot_->dof())
+  if (!drives(*robot_) && request.start.size() == robot_->dof())
     request.start = with_platform(request.start, T_world_base);
   return contradiction(*on_platform_, request);
 }
@@ -68,7 +68,8 @@ PlanningTask Solver::make_task(const PathRequest& request,
   task.request = request;
   task.T_world_root = scene->T_world_base;
   const bool platform_motion = drives_platform(request);
-  if (platform_motion) task.T_world_root = make_pose({0, 0, scene->T_world_base.translation().z()});
+  if (platform_motion && !drives(*robot_))
+    task.T_world_root = make_pose({0, 0, scene->T_world_base.translation().z()});
   task.problem = problem_of(platform_motion ? *on_platform_ : *robot_, request, task.T_world_root);
   task.scene = std::move(scene);
   return task;
@@ -97,7 +98,7 @@ void Solver::set_world(const Selected& selected, PlanningTask& task) {
   selected.models.cost.set_layers(task.layers);
   selected.models.cost.set_base(task.T_world_root);
   if (selected.navigation != nullptr) {
-    selected.navigation->set_people(*task.people);
+    selected.navigation->set_people(*task.people, task.T_world_root);
     drive(selected.models.robot, *selected.navigation, settings_.roam, task.problem);
   }
 }

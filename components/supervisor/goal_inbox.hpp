@@ -12,7 +12,9 @@ namespace handsel::supervisor {
 
 /// Pause, resume, cancel, acknowledge, speed, clear_person: they have room of their own, so that a
 /// flood of tasks does not keep them out.
-inline bool is_control(TaskKind kind) { return kind >= TaskKind::pause; }
+inline bool is_control(TaskKind kind) {
+  return kind >= TaskKind::pause && kind <= TaskKind::clear_person;
+}
 
 class GoalInbox {
  public:

@@ -1,9 +1,10 @@
 #include "components/supervisor/node.hpp"
 
 #include "common/config/resources.hpp"
-#include "common/config/schema/robot.pb.h"
 #include "common/config/settings_text.hpp"
+#include "common/model/description/robot_text.hpp"
 #include "common/model/manipulator.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::supervisor {
 namespace {
@@ -35,13 +36,13 @@ Ability ability_of(const settings::SupervisorSettings& settings, const NodeConte
   Ability ability;
   ability.spot = settings.spot;
   ability.objects = context.objects;
+  ability.person_reach = settings.person_reach;
   if (context.robot == nullptr) return ability;
+  ability.drives = drives(*context.robot);
   if (const auto it = settings.payload.find(context.robot->name()); it != settings.payload.end())
     ability.payload = it->second;
   if (context.description.empty()) return ability;
-  config::RobotDescription description;
-  load_text_proto(context.description, description);
-  ability.hands = 1 + description.other_arms_size();
+  ability.hands = 1 + read_robot_text(context.description).other_arms_size();
   return ability;
 }
 

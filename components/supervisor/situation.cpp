@@ -30,7 +30,7 @@ void Situation::on(const ActionStatus& status) {
 
 World& Situation::world() {
   if (world_) return *world_;
-  world_ = make_world(*facts_, *scene_, ability_);
+  world_ = make_world(*facts_, *scene_, ability_, people_);
   // The hand knows of its load before SPARK does.
   const Atom empty{predicate_of(Derived::hand_empty)};
   if (action_ && action_->holding && world_->is(Type::object, action_->object) &&

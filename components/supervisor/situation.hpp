@@ -20,6 +20,12 @@ class Situation {
   void on(const Facts& facts, TimePoint now);
   /// Replaces the scene. `now`: time of arrival.
   void on(const Scene& scene, TimePoint now);
+  /// Replaces the people, whose places count for a robot that drives.
+  void on(const HumanState& people) {
+    if (!ability_.drives) return;
+    people_ = people;
+    world_.reset();
+  }
   /// Replaces the status of the running action; what the hand holds enters world() at once.
   void on(const ActionStatus& status);
   /// Sets the arms of the robot, whose reach counts from then on.
@@ -47,6 +53,7 @@ class Situation {
   Ability ability_;
   std::optional<Facts> facts_;
   std::optional<Scene> scene_;
+  HumanState people_;
   std::optional<ActionStatus> action_;
   std::optional<World> world_;
   TimePoint known_since_{};

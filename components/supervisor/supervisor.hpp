@@ -60,6 +60,7 @@ class Supervisor {
   /// Updates the people lost from sight. `writer`: identifies the SPARK process.
   void on(const HumanState& people, TimePoint arrival, std::uint64_t writer) {
     lost_.on(people, arrival, writer);
+    situation_.on(people);
   }
   /// Takes the advice of attention; the next step() acts on its change of the task.
   void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }

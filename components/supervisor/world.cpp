@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/messages/names.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::supervisor {
 namespace {
@@ -96,6 +97,17 @@ std::vector<Ability::Arm> arms_with_room(const SceneBox& box, const Scene& scene
   return out;
 }
 
+/// Returns whether a person is within reach of an arm that is held out toward them; true where none
+/// is known.
+bool is_near(const Person& person, const Ability& ability) {
+  const Vector3& torso =
+      person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  return ability.arms.empty() ||
+         std::any_of(ability.arms.begin(), ability.arms.end(), [&](const Ability::Arm& arm) {
+           return (torso - arm.shoulder).norm() <= arm.reach + ability.person_reach;
+         });
+}
+
 /// Returns whether the arm that holds an object, or one that reaches the object, is among `near`. A
 /// person brings what they hold within reach of any arm.
 bool can_bring(const SceneObject& object, const Ability& ability,
@@ -136,7 +148,9 @@ const std::vector<PredicateSign>& known_predicates() {
                            {"model", {T::object, T::name}},
                            {"thing", {T::name}},
                            {"given", {T::name}},
-                           {"same", {T::name, T::name}}});
+                           {"same", {T::name, T::name}},
+                           {"drives", {}},
+                           {"near", {T::name}}});
     return out;
   }();
   return all;
@@ -218,7 +232,8 @@ bool World::is(Type type, const std::string& text) const {
   return at != symbols_.end() && std::find(names.begin(), names.end(), at->second) != names.end();
 }
 
-World make_world(const Facts& facts, const Scene& scene, const Ability& ability) {
+World make_world(const Facts& facts, const Scene& scene, const Ability& ability,
+                 const HumanState& people_now) {
   World world;
   std::set<std::string> objects, surfaces, people;
   for (const auto& object : scene.objects) objects.insert(object.id);
@@ -249,6 +264,17 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   }
   if (!holds) state.set({predicate_of(Derived::hand_empty)});
   if (ability.hands > 1) state.set({predicate_of(Derived::two_hands)});
+  if (ability.drives) state.set({predicate_of(Derived::drives)});
+  const auto set_near = [&](const std::string& text) {
+    state.set({predicate_of(Derived::near), {world.symbol(text), kNothing}});
+  };
+  for (const std::string& text : people)
+    if (!ability.drives) set_near(text);
+  for (const Person& person : people_now.people)
+    if (ability.drives && people.contains(person.id) && is_near(person, ability))
+      set_near(person.id);
+  Ability anywhere = ability;  // a platform brings the arms to any place of a surface
+  if (ability.drives) anywhere.arms.clear();
   for (const auto& object : scene.objects) {
     const Symbol o = world.symbol(object.id);
     state.set({predicate_of(Derived::thing), {o, kNothing}});
@@ -263,14 +289,15 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   }
   for (const auto& box : scene.boxes) {
     if (!box.supports) continue;
-    const double places = places_on(box, scene, ability.arms, ability.spot);
+    const double places = places_on(box, scene, anywhere.arms, ability.spot);
     if (places <= 0) continue;
     const Symbol s = world.symbol(box.id);
+    if (!ability.drives || places_on(box, scene, ability.arms, ability.spot) > 0) set_near(box.id);
     state.set({predicate_of(Derived::room), {s, kNothing}}, places);
     state.set({predicate_of(Derived::one_arm), {kNothing, s}});
-    const std::vector<Ability::Arm> near = arms_with_room(box, scene, ability);
+    const std::vector<Ability::Arm> near = arms_with_room(box, scene, anywhere);
     for (const auto& object : scene.objects)
-      if (can_bring(object, ability, near))
+      if (can_bring(object, anywhere, near))
         state.set({predicate_of(Derived::one_arm), {world.symbol(object.id), s}});
   }
   return world;

@@ -33,6 +33,8 @@ enum class Derived : std::uint8_t {
   thing,       ///< name: it is an object of the scene
   given,       ///< anything: it is not left out
   same,        ///< two names: they are one
+  drives,      ///< the robot has a platform that drives
+  near,        ///< surface, human: an arm serves from where the robot stands
 };
 
 /// Signature of a predicate.
@@ -119,12 +121,16 @@ struct Ability {
     double reach{};                     ///< from the shoulder [m]
   };
   std::vector<Arm> arms{};  ///< empty: not known, everything counts as within reach
+  bool drives{};            ///< the robot brings its arms to where they are needed
+  double person_reach{};    ///< a person at most this far beyond an arm's reach is near [m]
   double spot{0.15};        ///< distance kept between things on a surface [m]
   /// Finds an object model by the name of the model; nullptr: unknown.
   std::function<const ObjectModel*(const std::string&)> objects{};
 };
 
-/// Names in alphabetical order, so that equal worlds give equal plans.
-World make_world(const Facts& facts, const Scene& scene, const Ability& ability);
+/// Names in alphabetical order, so that equal worlds give equal plans. `people`: where the people
+/// of the facts are, for a robot that drives.
+World make_world(const Facts& facts, const Scene& scene, const Ability& ability,
+                 const HumanState& people = {});
 
 }  // namespace handsel::supervisor

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/model/manipulator.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -15,8 +16,12 @@ AxisGroups::AxisGroups(const RobotModel& robot)
   };
   for (const Manipulator& hand : hands_of(robot)) mark(hand.fingers, Part::hand);
   mark(robot.group("head"), Part::head);
+  mark(robot.group(kPlatformGroup), Part::platform);
   for (int axis = 0; axis < robot.dof(); ++axis)
-    if (part(axis) == Part::arm) arm_.push_back(axis);
+    if (part(axis) == Part::arm) arm_joints_.push_back(axis);
+  if (const Group* platform = robot.group(kPlatformGroup)) platform_ = platform->axes;
+  arm_ = arm_joints_;
+  arm_.insert(arm_.end(), platform_.begin(), platform_.end());
   if (const Group* head = robot.group("head")) head_ = head->axes;
 }
 

@@ -42,6 +42,23 @@ SupervisorSettings supervisor_settings(const ControllerSettings& s) {
           s.timeouts};
 }
 
+/// Returns whether a motion of the platform runs.
+bool moves_platform(const AxisGroups& groups, const ArmMotion& arm, const SetPoints& set_points) {
+  const auto of_platform = [&groups](std::uint32_t axis) {
+    return groups.part(static_cast<int>(axis)) == Part::platform;
+  };
+  const std::vector<std::uint32_t>& path = arm.path_axes();
+  return (arm.active() && std::any_of(path.begin(), path.end(), of_platform)) ||
+         set_points.any_moves(groups.platform());
+}
+
+/// Returns the mass that meets a person beside that of the arm: what is held, and the platform
+/// where that moves [kg].
+double contact_load(double held, double platform, const AxisGroups& groups, const ArmMotion& arm,
+                    const SetPoints& set_points) {
+  return platform > 0.0 && moves_platform(groups, arm, set_points) ? held + platform : held;
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const RobotModel> robot)
@@ -49,14 +66,14 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       robot_(std::move(robot)),
       groups_(*robot_),
       inputs_{{}, ObservedPeople(settings.guard.unknown_after), {}, {}, {}},
-      contact_(settings.contact, groups_.arm()),
+      contact_(settings.contact, groups_.arm_joints()),
       set_points_(robot_->dof()),
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       stop_space_(settings.view, proof_, *robot_),
       finger_limit_(proof_, *robot_),
       arm_({settings.period, settings.start_tolerance, settings.switch_reach}, *robot_,
            groups_.arm()),
-      compliance_(compliance_settings(settings), *robot_, arm_),
+      compliance_(compliance_settings(settings), *robot_, groups_.arm_joints().size(), arm_),
       follower_({settings.dry_run, settings.hand_rejoin, settings.timeouts.robot_state}, groups_),
       hands_(settings.hand, *robot_, settings.period),
       head_(*robot_, groups_.head(), settings.head_dead_band, settings.period),
@@ -180,7 +197,8 @@ LookaheadInputs Controller::lookahead_inputs(TimePoint now) noexcept {
           people.uncovered(),
           people.data_age(now),
           deadline_.ease(sent),
-          hands_.held_payload(),
+          contact_load(hands_.held_payload(), proof_.contact_speeds().platform_mass(), groups_,
+                       arm_, set_points_),
           may_run_back,
           compliance_.retreat()};
 }
@@ -253,10 +271,14 @@ bool Controller::step(TimePoint now, bool late) noexcept {
                     lookahead_.retreat_factor(), may_comply, recoils, cycles_});
   step_arm(now);
 
+  const auto load = [this] {
+    return contact_load(hands_.held_payload(), proof_.contact_speeds().platform_mass(), groups_,
+                        arm_, set_points_);
+  };
   const Vector& sent = set_points_.sent().position;
   if (cycles_ % kFingerInterval == 0)
-    hands_.limit_speed(finger_limit_.factor(sent, robot.T_world_base, age, hands_.held_payload(),
-                                            people.capsules()));
+    hands_.limit_speed(
+        finger_limit_.factor(sent, robot.T_world_base, age, load(), people.capsules()));
   const bool new_state = inputs_.robot.has_new_state();
   if (new_state && !arm_.running()) lookahead_.place_links(sent);
   const HandsInputs of_hands{robot, people, lookahead_.links(), new_state, mode, clamped};
@@ -267,7 +289,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
 
   const std::uint64_t unproven = output_check_.unproven();
   const double factor = arm_.speed_factor();
-  output_check_.step({people.capsules(), robot.T_world_base, age, hands_.held_payload(), follows,
+  output_check_.step({people.capsules(), robot.T_world_base, age, load(), follows,
                       follower_.moves_nothing(), compliance_.complying(), cycles_},
                      {arm_, hands_, head_.movers()}, set_points_);
   if (output_check_.unproven() != unproven) lookahead_.lower(factor);

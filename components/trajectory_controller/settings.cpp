@@ -68,6 +68,7 @@ void read_timeouts(const settings::TrajectoryControllerSettings& in, ControllerS
   s.timeouts.forecast = t.forecast;
   s.timeouts.attention = t.attention;
   s.timeouts.supervisor = t.supervisor;
+  s.timeouts.localisation = t.localisation;
 }
 
 void read_guard(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {

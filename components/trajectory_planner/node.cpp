@@ -84,7 +84,7 @@ void Node::refuse(const RequestId& id, const std::string& reason) {
 }
 
 bool Node::drives(const TrajectoryRequest& request) const {
-  return on_platform_ && !request.poses.empty() &&
+  return on_platform_ && !handsel::drives(*robot_) && !request.poses.empty() &&
          std::any_of(request.also.begin(), request.also.end(),
                      [&](std::uint32_t axis) { return static_cast<int>(axis) >= robot_->dof(); });
 }

@@ -174,6 +174,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
   const RobotHandState& robot = hand_for(person, robot_hands);
   const int gripped = robot.gripped;
   PersonView view;
+  view.platform = platform_;
   view.robot_hand = robot.palm.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
     person.object = person.fetches >= 0          ? person.fetches

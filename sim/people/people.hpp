@@ -5,6 +5,7 @@
 #include <array>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sim/oracle/separation_oracle.hpp"
@@ -63,6 +64,8 @@ class People {
   bool follow_somebody() const;  ///< whether any person follows a source outside
   /// Decides, moves and holds for the coming step. `robot_hands`: not empty.
   void move(double dt, const std::vector<RobotHandState>& robot_hands);
+  /// Shows people where the platform of a robot that drives stands, world [m].
+  void set_platform(const Vector3& p_world) { platform_ = p_world; }
   /// Returns whether any person minds how near the fingers of the robot are.
   bool mind_fingers() const;
 
@@ -104,6 +107,7 @@ class People {
   ObjectBodies& objects_;
   btDynamicsWorld& world_;
   std::vector<Body> people_;
+  std::optional<Vector3> platform_;  // of a robot that drives
 };
 
 }  // namespace handsel::sim

@@ -149,10 +149,21 @@ void PersonModel::step(double dt, const PersonView& view) {
   body_.gaze_origin = points_[kHead] + 0.08 * gaze_;
 }
 
+bool PersonModel::waits_for_platform(const PersonView& view) const {
+  constexpr double kAhead = 1.3;   // from the feet to the middle of the platform [m]
+  constexpr double kBeside = 0.9;  // and beside the line on which the person walks [m]
+  if (settings_.kind != PersonKind::walker || !view.platform) return false;
+  const Vector3 walk = walk_direction_ * forward();
+  const Vector3 to = (*view.platform - feet_).cwiseProduct(Vector3(1, 1, 0));
+  const double ahead = to.dot(walk);
+  return ahead > 0 && ahead < kAhead && (to - ahead * walk).norm() < kBeside;
+}
+
 void PersonModel::act(double dt, const PersonView& view) {
   if (wants_grip_ && view.grip_broke) give_up();
   switch (phase_) {
     case PersonPhase::arriving: {
+      if (waits_for_platform(view)) phase_since_ += dt;
       const double length =
           settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
       const double s = length > 0 ? since() * kWalkSpeed / length : 1;

@@ -73,6 +73,9 @@ struct PersonSettings {
 
 /// What the person sees and feels.
 struct PersonView {
+  /// Where the platform of a robot that drives stands, world [m]; nullopt: the robot does not
+  /// drive.
+  std::optional<Vector3> platform{};
   Vector3 robot_hand{Vector3::Zero()};       ///< world [m]
   const ObjectModel* object{nullptr};        ///< the one the handover is about; nullptr: none
   Pose T_world_object{Pose::Identity()};     ///< of `object`
@@ -155,6 +158,8 @@ class PersonModel {
   void look_at(const Vector3& target, double dt);
   void enter(PersonPhase);
   void act(double dt, const PersonView&);
+  /// Returns whether someone walking would come too near to a platform ahead.
+  bool waits_for_platform(const PersonView& view) const;
   void watch(double dt, const PersonView&);
   void reach_out(double dt, const PersonView&);
   void play(double dt, const PersonView&);

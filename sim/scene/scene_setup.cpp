@@ -5,6 +5,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/messages/names.hpp"
+#include "common/model/platform.hpp"
 #include "sim/scene/free_place.hpp"
 
 namespace handsel::sim {
@@ -49,7 +50,9 @@ class Reader {
     require_names(scenario_.objects(), "object");
     require_names(scenario_.people(), "person");
     out_.T_world_base = pose_of(scenario_.base());
+    out_.p_world_robot = out_.T_world_base.translation();
     read_start();
+    if (drives(robot_)) put_on_platform();
     for (const auto& box : scenario_.boxes()) read_box(box);
     for (const auto& object : scenario_.objects()) read_object(object);
     for (int i = 0; i < scenario_.objects_size(); ++i)
@@ -113,6 +116,15 @@ class Reader {
       }
       out_.start[axis - robot_.axes().begin()] = value;
     }
+  }
+
+  /// The base of the scenario is where the platform stands; its place refers to the world.
+  void put_on_platform() {
+    const Pose& T = out_.T_world_base;
+    const double heading = std::atan2(T.linear()(1, 0), T.linear()(0, 0));
+    out_.start =
+        with_platform_at(robot_, out_.start, {T.translation().x(), T.translation().y(), heading});
+    out_.T_world_base = make_pose({0, 0, T.translation().z()});
   }
 
   void read_box(const config::BoxDescription& box) {
@@ -321,9 +333,8 @@ class Reader {
     if (v.only_aside()) way = way < M_PI ? M_PI_2 : 3 * M_PI_2;
     s.behaviour.sidestep_at = within(v.begins_after(), v.begins_before());
     s.behaviour.seated = chance(v.seated());
-    const Vector3 to_robot = (out_.T_world_base.translation() - s.feet)
-                                 .cwiseProduct(Vector3(1, 1, 0))
-                                 .stableNormalized();
+    const Vector3 to_robot =
+        (out_.p_world_robot - s.feet).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
     if (!s.behaviour.seated)
       s.behaviour.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
     s.behaviour.early = chance(v.early());
@@ -382,7 +393,7 @@ class Reader {
     if (!s.T_world_sensor &&
         (s.occlusion || s.range > 0 || s.fov_horizontal > 0 || s.fov_vertical > 0))
       fail("sensor " + s.source + ": occlusion, range and field of view need its pose");
-    const Vector3 centre = out_.T_world_base.translation();
+    const Vector3 centre = out_.p_world_robot;
     s.coverage.low = Vector3(centre.x() - coverage, centre.y() - coverage, -0.1);
     s.coverage.high = Vector3(centre.x() + coverage, centre.y() + coverage, 2.5);
     if (sensor.has_coverage_low() != sensor.has_coverage_high())

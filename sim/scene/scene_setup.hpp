@@ -46,10 +46,12 @@ struct TimedControl {
 };
 
 struct SceneSetup {
-  Pose T_world_base{Pose::Identity()};  ///< root link of the robot
-  Vector start;                         ///< all axes [rad] ([m])
-  std::vector<StartBox> boxes;          ///< in the order of the scenario
-  std::vector<StartObject> objects;     ///< in the order of the scenario
+  /// Root of the robot's model: of one that drives, what its platform's place refers to.
+  Pose T_world_base{Pose::Identity()};
+  Vector start;                            ///< all axes [rad] ([m])
+  Vector3 p_world_robot{Vector3::Zero()};  ///< where the robot stands
+  std::vector<StartBox> boxes;             ///< in the order of the scenario
+  std::vector<StartObject> objects;        ///< in the order of the scenario
   /// In the order of the scenario, without those absent this time.
   std::vector<StartPerson> people;
   std::vector<SensorSettings> human_sensors, object_sensors;  ///< in the order of the scenario

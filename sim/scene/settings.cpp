@@ -39,6 +39,9 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.position_noise = read.position_noise;
   s.coverage = read.coverage;
   s.ssm.reaction = read.reaction;
+  s.odometry = {read.odometry_noise, read.odometry_turn_noise};
+  s.localisation = {read.localisation_rate, read.localisation_noise, read.localisation_turn_noise,
+                    read.localisation_filter};
   s.constraint = std::getenv("HANDSEL_HELP_HOLD") != nullptr;
   s.setpoint_period = read.setpoint_period;
   s.pad.friction = read.pad_friction;

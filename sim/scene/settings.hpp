@@ -7,6 +7,7 @@
 #include "sim/oracle/separation_oracle.hpp"
 #include "sim/people/person_hand.hpp"
 #include "sim/physics/grip.hpp"
+#include "sim/robot/platform_odometry.hpp"
 #include "sim/robot/robot_body.hpp"
 
 namespace handsel::sim {
@@ -31,6 +32,8 @@ struct SimSettings {
   double position_noise{1e-5};  ///< standard deviation of a measured position [rad]
   double coverage{4};           ///< half width of a sensor's default coverage [m]
   double setpoint_period{0};    ///< [s], 0: measured
+  OdometrySettings odometry;    ///< of a platform
+  LocalisationSettings localisation;  ///< of a platform
   // With simulated time only (sim/time_keeper):
   double clock_period{0.01};  ///< one grant lets the components' time advance by this [s]
   double max_lag{0.005};      ///< steps may come this much late before the system's time waits [s]

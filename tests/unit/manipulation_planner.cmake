@@ -10,5 +10,7 @@ handsel_test(manipulation_planner
     ${manipulation_planner_tests}/place_search_test.cpp
     ${manipulation_planner_tests}/receive_test.cpp
     ${manipulation_planner_tests}/retreat_planner_test.cpp
+    ${manipulation_planner_tests}/drive_test.cpp
+    ${manipulation_planner_tests}/standing_search_test.cpp
   LINK handsel_manipulation_planner_core
   LABEL unit)

@@ -5,4 +5,5 @@ handsel_test(sim_person SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_person_test.cp
 handsel_test(sensors SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sensors_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(recording SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/recording_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(robot_side SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/robot_side_test.cpp LINK handsel_drivers LABEL property)
+handsel_test(platform_odometry SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/platform_odometry_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(moving_offer SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/moving_offer_test.cpp LINK handsel_sim_core LABEL unit)

@@ -3,6 +3,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/model/description/robot_model_builder.hpp"
+#include "common/model/description/robot_text.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;
@@ -251,8 +252,7 @@ RobotModel RobotModel::load_urdf(const fs::path& urdf, const fs::path& srdf, Mes
 }
 
 RobotModel RobotModel::load(const fs::path& description) {
-  config::RobotDescription text;
-  load_text_proto(description, text);
+  const config::RobotDescription text = read_robot_text(description);
   if (text.urdf().empty()) throw ConfigError(description.string() + ": urdf is missing");
   RobotModelBuilder builder = described_urdf(description, text, text.without());
   if (text.has_mount()) {
@@ -265,7 +265,9 @@ RobotModel RobotModel::load(const fs::path& description) {
   }
   builder.apply(text, description);
   builder.require_masses();
-  return builder.finish();
+  RobotModel robot = builder.finish();
+  if (!text.platform().drives()) return robot;
+  return with_platform_axes(robot, text.platform(), description);
 }
 
 }  // namespace handsel

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "common/collision/platform_places.hpp"
+#include "common/model/platform.hpp"
 #include "components/grasp_planner/choice/grasp_search.hpp"
-#include "components/grasp_planner/choice/platform_places.hpp"
 #include "components/grasp_planner/pair/retreat.hpp"
 
 namespace handsel::grasp_planner {
@@ -253,7 +254,11 @@ void GraspChooser::search_places(Search& search,
     });
     if (!again && !search.below_support(g)) tried.emplace_back(rank, index);
   }
-  const Pose T_world_now = search.scene.T_world_base;
+  // Elsewhere the platform carries the root of the model along: the arm is planned for as it
+  // stands.
+  const Pose T_world_root = search.scene.T_world_base;
+  const Pose T_world_now = T_world_platform(*robot_, request.start, T_world_root);
+  const Pose T_platform_root = T_world_now.inverse() * T_world_root;
   PlatformFloor floor(*mobile_, library_, search.scene, search.inputs.people,
                       settings_.platform_room);
   const std::uint64_t budget = search.out.reaches + settings_.platform_reaches;
@@ -266,13 +271,13 @@ void GraspChooser::search_places(Search& search,
         (cancelled && cancelled()))
       break;
     ++counts.places;
-    const Pose T_world_base = standing_at(place, T_world_now);
-    const PlatformFloor::Verdict verdict = floor.check(request.start, T_world_base);
+    const Pose T_world_there = standing_at(place, T_world_now);
+    const PlatformFloor::Verdict verdict = floor.check(request.start, T_world_there);
     if (verdict != PlatformFloor::Verdict::free) {
       ++(verdict == PlatformFloor::Verdict::blocked ? counts.blocked : counts.near_person);
       continue;
     }
-    search.stand(T_world_base);
+    search.stand(T_world_there * T_platform_root);
     const std::size_t before = found.size();
     for (const auto& [rank, index] : tried) {
       if (found.size() >= enough || search.out.reaches >= budget) break;
@@ -284,7 +289,7 @@ void GraspChooser::search_places(Search& search,
     }
     ++(found.size() > before ? served : counts.useless);
   }
-  search.stand(T_world_now);
+  search.stand(T_world_root);
 }
 
 }  // namespace handsel::grasp_planner

@@ -8,6 +8,7 @@
 #include "common/cost/person_frame.hpp"
 #include "common/model/human/holding_hand.hpp"
 #include "common/model/object_extent.hpp"
+#include "common/model/platform.hpp"
 #include "components/grasp_planner/pair/double_grasp.hpp"
 #include "components/grasp_planner/pair/retreat.hpp"
 
@@ -109,6 +110,10 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
   stand(scene.T_world_base);
 }
 
+Vector3 GraspChooser::Search::p_world_robot() const {
+  return T_world_platform(robot(), inputs.request.start, scene.T_world_base).translation();
+}
+
 void GraspChooser::Search::stand(const Pose& T_world_base) {
   scene.T_world_base = T_world_base;
   T_root_world = T_world_base.inverse();
@@ -129,7 +134,7 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
   plan_handover();
   const auto arm = human_arm(*person, Side::right);
   if (inputs.pairs != nullptr && arm)
-    places.emplace(*person, *arm, T_world_base.translation(), start.T_world_object.linear(),
+    places.emplace(*person, *arm, p_world_robot(), start.T_world_object.linear(),
                    inputs.object.box().center());
 }
 
@@ -141,7 +146,7 @@ void GraspChooser::Search::plan_handover() {
                   *shoulder = find_joint(*person, "r_shoulder");
   if (torso == nullptr || shoulder == nullptr) return;
   Vector3 place = torso->position;
-  Vector3 to_robot = scene.T_world_base.translation() - place;
+  Vector3 to_robot = p_world_robot() - place;
   to_robot.z() = 0;
   if (to_robot.norm() < 0.3) return;
   to_robot.normalize();
@@ -295,7 +300,7 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
 }
 
 double GraspChooser::Search::on_our_side(const Grasp& g) const {
-  const Vector3 to_robot = (scene.T_world_base.translation() - start.T_world_object.translation())
+  const Vector3 to_robot = (p_world_robot() - start.T_world_object.translation())
                                .cwiseProduct(Vector3(1, 1, 0))
                                .stableNormalized();
   const Vector3 to_hand = start.T_world_object.linear() *

@@ -23,6 +23,8 @@ struct GraspChooser::Search {
   /// The robot stands elsewhere from now on.
   void stand(const Pose& T_world_base);
 
+  /// Where the robot stands.
+  Vector3 p_world_robot() const;
   /// What can be said of a grasp before the arm is checked.
   double rank(const ListedGrasp& listed, std::size_t index) const;
   bool below_support(const Grasp& g);

@@ -28,6 +28,9 @@ Routine<Outcome> change_hands(Parts& parts, const std::string& object);
 Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal);
 /// Carries an object to its goal with two hands, as a closed chain.
 Routine<Outcome> carry(Parts& parts, const ActionGoal& goal);
+/// Drives the platform of the robot to where the arm reaches the object, the surface or the person
+/// of the goal, else to the place of the goal; the arms rest meanwhile.
+Routine<Outcome> drive(Parts& parts, const ActionGoal& goal);
 /// Moves all arms to rest.
 Routine<Outcome> rest_all(Parts& parts);
 

@@ -63,19 +63,18 @@ Routine<Outcome> close_hand(Parts& parts, const std::string& object, const Grasp
   co_return Outcome::failure("the hand closed on nothing", ActionFailure::nothing_grasped);
 }
 
-}  // namespace
-
-Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
-                              std::uint32_t max_grasps) {
-  parts.action.phase = ActionPhase::choosing_grasp;
+GraspRequest grasp_request(Parts& parts, const std::string& object) {
   GraspRequest request;
   parts.clients.grasp.open(request);
   request.object = object;
   request.group = parts.arm.group().name;
   request.start = parts.now.set_point();
-  request.for_human = for_human;
-  request.max_grasps = max_grasps;
   request.seed = parts.action.id;
+  return request;
+}
+
+/// Waits for the grasps of a request, and lists those that were rejected.
+Routine<GraspList> send_request(Parts& parts, const GraspRequest& request) {
   const bool answered = co_await parts.clients.grasp.ask(request);
   GraspList list;
   if (!answered) {
@@ -87,7 +86,27 @@ Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std
   for (const auto& rejected : reply.rejected)
     parts.refuse("grasps: " + rejected.what, rejected.reason);
   if (list.grasps.empty())
-    list.outcome = Outcome::failure("no grasp for " + object + ": " + reply.reason);
+    list.outcome = Outcome::failure("no grasp for " + request.object + ": " + reply.reason);
+  co_return list;
+}
+
+}  // namespace
+
+Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
+                              std::uint32_t max_grasps) {
+  parts.action.phase = ActionPhase::choosing_grasp;
+  GraspRequest request = grasp_request(parts, object);
+  request.for_human = for_human;
+  request.max_grasps = max_grasps;
+  GraspList list = co_await send_request(parts, request);
+  co_return list;
+}
+
+Routine<GraspList> ask_grasps_anywhere(Parts& parts, const std::string& object) {
+  GraspRequest request = grasp_request(parts, object);
+  request.max_grasps = parts.settings.max_grasps;
+  request.move_platform = true;
+  GraspList list = co_await send_request(parts, request);
   co_return list;
 }
 

@@ -39,9 +39,9 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
   return [result = std::move(result), grasps, settings, person, T_world_object,
           robot = parts.arm.shared_robot(), arm = parts.arm.group(), scene = parts.now.scene(),
           layers = parts.now.layers(), q = parts.now.set_point(),
-          hands = hands_of(person, parts.now.scene(), parts.now.T_world_base().translation(),
+          hands = hands_of(person, parts.now.scene(), T_world_platform(parts.now).translation(),
                            parts.settings),
-          backs = std::move(backs)] {
+          backs = std::move(backs), p_robot = Vector3(T_world_platform(parts.now).translation())] {
     const bool has_pairs = std::any_of(grasps.begin(), grasps.end(),
                                        [](const Grasp& grasp) { return !grasp.partners.empty(); });
     for (std::size_t i = 0; i < grasps.size(); ++i) {
@@ -50,8 +50,8 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
       const Pose T_tool_object = grasps[i].T_object_hand.inverse();
       const std::vector<Vector3> barred = barred_directions(grasps[i]);
       const OtpQuery query{
-          scene, person,  layers, T_world_object, T_tool_object, barred, grasps[i].partners,
-          hands, backs[i]};
+          scene, person,   layers, T_world_object, T_tool_object, barred, grasps[i].partners,
+          hands, backs[i], p_robot};
       const OtpSearch search = find_otp(*robot, arm, query, q, settings);
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
@@ -75,6 +75,7 @@ Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const 
     Outcome worked = co_await parts.worker.run(job);
     if (!worked.good) co_return worked;
     if (!result->givable.empty() || parts.now.time() >= deadline) break;
+    if (drives(parts.arm.robot())) co_return Outcome{};  // it is given elsewhere
     parts.action.phase = ActionPhase::waiting_for_person;
     co_await parts.waiting.pause(kPickRetryPause);
   }

@@ -53,10 +53,10 @@ Routine<Outcome> draw_aside(Parts& parts) {
   Outcome rested = co_await rest_others(parts);
   if (rested.good) co_return rested;
   const Pose T_now = parts.arm.T_world_tool();
-  const Pose& T_world_base = parts.now.T_world_base();
-  const Eigen::Matrix3d base = T_world_base.linear();
+  const Pose T_platform = T_world_platform(parts.now);
+  const Eigen::Matrix3d base = T_platform.linear();
   const double side =
-      base.col(1).dot(parts.arm.p_world_shoulder() - T_world_base.translation()) < 0 ? -1 : 1;
+      base.col(1).dot(parts.arm.p_world_shoulder() - T_platform.translation()) < 0 ? -1 : 1;
   const std::vector<Vector3> directions{{0, 1, 0.3}, {0, 1, 0},    {0.5, 1, 0},  {-0.5, 1, 0},
                                         {0, 0.3, 1}, {0, 1, -0.5}, {0.7, 0, 0.7}};
   for (const Vector3& direction : directions) {

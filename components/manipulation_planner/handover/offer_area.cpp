@@ -63,7 +63,8 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
   const Pose T_rest = now_.T_world_base() * arm_.robot().link_pose(q_rest, arm_.palm());
   const Vector3 p_torso =
       person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  const Vector3 away = horizontal(now_.T_world_base().translation() - p_torso).stableNormalized();
+  const Vector3 away =
+      horizontal(T_world_platform(now_).translation() - p_torso).stableNormalized();
   const Vector3 aside = Vector3::UnitZ().cross(away);
   std::vector<Place> places;
   IkOptions options;

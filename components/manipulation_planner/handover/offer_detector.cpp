@@ -91,7 +91,7 @@ bool OfferDetector::is_for_robot(const Person& person, const Vector3& p_shoulder
   const auto aim = [&](const Vector3& p) {
     return out.dot(level(p - p_shoulder).stableNormalized());
   };
-  const double aim_robot = std::max(aim(now_.T_world_base().translation()), aim(p_hand));
+  const double aim_robot = std::max(aim(T_world_platform(now_).translation()), aim(p_hand));
   const double max_angle = settings_.offer_max_angle +
                            (accepted_.giver == person.id ? settings_.offer_accepted_angle : 0.0);
   if (aim_robot < std::cos(max_angle)) return false;

@@ -26,8 +26,8 @@ ReceiverTarget target_of(const Person& person, const ReceiverHands& hands) {
 /// Looks at the hands of the receiver again.
 const ReceiverHands& look_at_hands(Parts& parts, const Person& receiver) {
   parts.receiver_hands =
-      hands_of(receiver, parts.now.scene(), parts.now.T_world_base().translation(), parts.settings,
-               &parts.receiver_hands);
+      hands_of(receiver, parts.now.scene(), T_world_platform(parts.now).translation(),
+               parts.settings, &parts.receiver_hands);
   return parts.receiver_hands;
 }
 
@@ -66,9 +66,10 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
        barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{},
        partners = grasp ? grasp->partners : std::vector<PartnerGrasp>{},
        hands = look_at_hands(parts, *person), settings = parts.settings,
-       back = grasp ? std::optional<Vector3>(parts.arm.direction_back(*grasp)) : std::nullopt] {
+       back = grasp ? std::optional<Vector3>(parts.arm.direction_back(*grasp)) : std::nullopt,
+       p_robot = Vector3(T_world_platform(parts.now).translation())] {
         const OtpQuery query{scene,  who,      layers, T_now, T_tool_object,
-                             barred, partners, hands,  back};
+                             barred, partners, hands,  back,  p_robot};
         choice->search = find_otp(*robot, arm, query, q, settings);
         if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
       };

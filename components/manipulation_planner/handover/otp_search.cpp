@@ -60,7 +60,7 @@ class OtpCosts {
         body_(simplified_body(query.person)),
         furniture_(query.person, query.scene.boxes),
         arms_(placed_arms(query.person)) {
-    toward_robot_ = query.scene.T_world_base.translation() - torso();
+    toward_robot_ = query.p_robot.value_or(query.scene.T_world_base.translation()) - torso();
     toward_robot_.z() = 0;
     apart_ = toward_robot_.norm() >= 1e-3;
     toward_robot_.normalize();

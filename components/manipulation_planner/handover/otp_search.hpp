@@ -61,6 +61,8 @@ struct OtpQuery {
   ReceiverHands hands{};  ///< which hands are free, and which is ready
   /// Unit vector in which the hand retreats after the release, tool frame; nullopt: not known.
   std::optional<Vector3> back{};
+  /// Where the robot stands in the world; nullopt: at the root of its model [m].
+  std::optional<Vector3> p_robot{};
 };
 
 /// Returns the directions, seen from the object, in which a hand that pinches stands (outward

@@ -17,6 +17,7 @@ enum class MotionEnd : std::uint8_t {
   giver_approached,  ///< what it aimed at was moved by a step of the giver toward the hand
   late,              ///< it took longer than it may
   taken,             ///< the receiver takes hold of the object already
+  displaced,         ///< the platform is found elsewhere than its wheels have measured
 };
 
 /// Outcome of a part of an action.
@@ -31,7 +32,8 @@ struct Outcome {
   }
   /// Returns whether another attempt at the same motion is of no use.
   bool is_final() const {
-    return target_moved() || end == MotionEnd::taken || end == MotionEnd::late;
+    return target_moved() || end == MotionEnd::taken || end == MotionEnd::late ||
+           end == MotionEnd::displaced;
   }
   /// Makes a failure for a reason of its own; `why`: one sentence.
   static Outcome failure(std::string why, ActionFailure of_kind = ActionFailure::other) {

@@ -26,10 +26,15 @@ double length_of(const std::vector<Vector>& waypoints) {
 
 }  // namespace
 
+const Group& group_of(const Parts& parts, const MotionSpec& motion) {
+  return motion.is_of_platform ? parts.arm.robot().require_group(kPlatformGroup)
+                               : parts.arm.group();
+}
+
 PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion) {
   PathRequest request;
   parts.clients.path.open(request);
-  request.group = parts.arm.group().name;
+  request.group = group_of(parts, motion).name;
   request.start = start;
   request.goals = motion.goals;
   request.attachment = parts.held.attachment();
@@ -46,7 +51,7 @@ TrajectoryRequest trajectory_request(Parts& parts,
                                      const MotionSpec& motion) {
   TrajectoryRequest request;
   client.open(request);
-  request.group = parts.arm.group().name;
+  request.group = group_of(parts, motion).name;
   request.nodes = waypoints;
   request.start = start;
   request.attachment = parts.held.attachment();
@@ -58,7 +63,7 @@ TrajectoryRequest trajectory_request(Parts& parts,
 TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory,
                                      const MotionSpec& motion) {
   TrajectoryCommand command = parts.link.stop_command();
-  for (const int axis : parts.arm.group().axes)
+  for (const int axis : group_of(parts, motion).axes)
     command.axes.push_back(static_cast<std::uint32_t>(axis));
   command.trajectory = trajectory;
   command.attachment = parts.held.attachment();
@@ -172,7 +177,7 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
         continue;
       }
     }
-    if (!in_the_way.empty()) {
+    if (!in_the_way.empty() && !motion.is_of_platform) {
       const bool freed = co_await free_arm(parts, in_the_way, motion, last);
       if (freed) continue;
     }
@@ -189,7 +194,7 @@ std::vector<Vector3> retreat_directions_from(const Parts& parts, const std::stri
     from = person->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   else if (const SceneObject* object = parts.now.object(touched))
     from = object->T_world_object.translation();
-  return retreat_directions(T_tool, from, parts.now.T_world_base().translation());
+  return retreat_directions(T_tool, from, T_world_platform(parts.now).translation());
 }
 
 /// Returns goals of a retreat, those that lead away from people first, then in the order of the

@@ -1,9 +1,10 @@
-// Plans and executes motions of the arm in use.
+// Plans and executes motions of the arm in use, and of the platform.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "common/model/robot_model.hpp"
 #include "components/manipulation_planner/clients.hpp"
 #include "components/manipulation_planner/motion/motion_spec.hpp"
 
@@ -11,6 +12,8 @@ namespace handsel::manipulation_planner {
 
 struct Parts;
 
+/// Returns the axes that a motion moves.
+const Group& group_of(const Parts& parts, const MotionSpec& motion);
 /// Opens a request for a path. `start`: all axes [rad, m].
 PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion);
 /// Opens a request of `client` for a trajectory along the waypoints. `start`: all axes [rad, m].
@@ -18,7 +21,7 @@ TrajectoryRequest trajectory_request(Parts& parts,
                                      Client<TrajectoryRequest, TrajectoryReply>& client,
                                      const std::vector<Vector>& waypoints, const Vector& start,
                                      const MotionSpec& motion);
-/// Makes a command for the arm in use.
+/// Makes a command for the axes that the motion moves.
 TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory,
                                      const MotionSpec& motion);
 

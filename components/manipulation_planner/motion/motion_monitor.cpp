@@ -61,9 +61,16 @@ bool MotionMonitor::is_late(const MotionSpec& motion, TimePoint began) const {
   return to_seconds(now_.time() - began) > motion.timeout;
 }
 
+double MotionMonitor::displacement(const MotionSpec& motion) const {
+  if (!motion.T_world_root) return 0.0;
+  const Vector3 p_root = now_.T_world_base().inverse() * T_world_platform(now_).translation();
+  return (now_.T_world_base() * p_root - *motion.T_world_root * p_root).norm();
+}
+
 bool MotionMonitor::must_end(const MotionSpec& motion, TimePoint began) const {
   return is_late(motion, began) || blocked_for_ > settings_.blocked_timeout ||
-         has_target_moved(motion) || held_.is_taken_by(motion.yields_to) || is_area_cleared(motion);
+         has_target_moved(motion) || held_.is_taken_by(motion.yields_to) ||
+         is_area_cleared(motion) || displacement(motion) > settings_.max_displacement;
 }
 
 Outcome MotionMonitor::why_ended(const MotionSpec& motion, TimePoint began) const {
@@ -76,6 +83,12 @@ Outcome MotionMonitor::why_ended(const MotionSpec& motion, TimePoint began) cons
         motion.object->grasp && offers_.is_giver_approaching(arm_.T_world_tool().translation());
     why = Outcome::failure(motion.object->object + " was moved away");
     why.end = is_approached ? MotionEnd::giver_approached : MotionEnd::target_moved;
+  } else if (displacement(motion) > settings_.max_displacement) {
+    constexpr double kCentimetres = 100;
+    why = Outcome::failure("the wheels slipped or the localisation jumped: the platform is " +
+                           std::to_string(std::lround(kCentimetres * displacement(motion))) +
+                           " cm from where its wheels have measured it");
+    why.end = MotionEnd::displaced;
   } else {
     why = Outcome::failure("the path is blocked: " + now_.execution()->reason);
     if (is_late(motion, began))

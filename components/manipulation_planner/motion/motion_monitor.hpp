@@ -31,6 +31,9 @@ class MotionMonitor {
   bool has_target_moved(const MotionSpec& motion) const;
   /// Returns whether the person for whom the motion clears the offer area makes an offer.
   bool is_area_cleared(const MotionSpec& motion) const;
+  /// Returns how far the platform is found from where it was measured when its goals were chosen
+  /// [m]; 0: the motion does not depend on that.
+  double displacement(const MotionSpec& motion) const;
   /// Returns whether a motion that began at `began` must end now.
   bool must_end(const MotionSpec& motion, TimePoint began) const;
   /// Makes the failure of a motion that must_end() has ended.

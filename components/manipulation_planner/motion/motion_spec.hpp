@@ -1,4 +1,4 @@
-// What a motion of the arm is to do, and what ends it.
+// What a motion of the arm or the platform is to do, and what ends it.
 #pragma once
 
 #include <limits>
@@ -32,7 +32,8 @@ struct ReceiverTarget {
 
 struct MotionSpec {
   ActionPhase phase{};                 ///< part of the action
-  std::vector<Vector> goals;           ///< axes of the arm, alternatives [rad]
+  bool is_of_platform{false};          ///< the platform moves, in place of the arm in use
+  std::vector<Vector> goals;           ///< axes that move, alternatives [rad] ([m])
   bool is_straight{false};             ///< straight motion of the axes; it is not replanned
   std::vector<std::string> allowed;    ///< what may be touched
   std::vector<std::string> tolerated;  ///< planned around; a foreseen touch does not hold the arm
@@ -42,7 +43,10 @@ struct MotionSpec {
 
   std::optional<ObjectTarget> object;      ///< ends when this object is moved
   std::optional<ReceiverTarget> receiver;  ///< goals are handover configurations for this person
-  std::string yields_to;                   ///< ends when this person takes hold; empty: nobody
+  /// Root of the robot's model in the world when the goals of a platform were chosen: the motion
+  /// ends when the platform is found elsewhere by more than `max_displacement`.
+  std::optional<Pose> T_world_root;
+  std::string yields_to;        ///< ends when this person takes hold; empty: nobody
   std::string clears_area_for;  ///< ends when this person offers the object; empty: nobody
   bool accepts_any_offer{};     ///< such an offer counts however little space there is
 };

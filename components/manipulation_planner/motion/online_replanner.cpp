@@ -18,6 +18,7 @@ constexpr double kRetimedReach =
 constexpr double kReachStep = 0.1;      // or within this more, as often as braking needs it [rad]
 constexpr double kReturnTimeout = 1.0;  // for the controller to report the old command again [s]
 constexpr double kSameTime = 1e-6;      // [s]
+constexpr double kAtRest = 1e-9;        // [rad/s, m/s]
 
 /// Returns whether one of the last `segments` segments must be slower than it was timed, to less
 /// than `ratio` of that. Speeds as in TrajectoryReply.
@@ -43,33 +44,35 @@ bool OnlineReplanner::is_over(const RunningMotion& running) const {
   return status.trajectory != running.command || status.motion != MotionState::running;
 }
 
-SwitchPlanner OnlineReplanner::switch_planner() const {
+SwitchPlanner OnlineReplanner::switch_planner(const MotionSpec& motion) const {
   const auto& settings = parts_.settings;
-  return {
-      parts_.arm.shared_robot(), parts_.arm.group(), {settings.live_slower, settings.live_gain}};
+  return {parts_.arm.shared_robot(),
+          group_of(parts_, motion),
+          {settings.live_slower, settings.live_gain}};
 }
 
 PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
                                            const SwitchPoint& point) const {
   Snapshot& now = parts_.now;
   const Vector q =
-      RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
+      RobotModel::with(parts_.arm.configuration(), group_of(parts_, motion), point.from.position);
   const double gain = period_.is_advised(now.time()) ? cost_gain_ : 1.0;
   return {now.scene(), now.people(), now.layers(), parts_.held.attachment(), motion.allowed,
           q,           gain};
 }
 
-Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, SwitchPoint& point) const {
+Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, const MotionSpec& motion,
+                                           SwitchPoint& point) const {
   const ActiveTrajectory& active = parts_.now.active();
   // What the arm does within that time: less while it is slowed.
   const double replan_time = parts_.settings.replan_time *
                              std::clamp(active.speed_factor, parts_.settings.live_min_factor, 1.0);
   if (active.trajectory != running.command ||
-      active.rest.size() != static_cast<int>(parts_.arm.group().axes.size()))
+      active.rest.size() != static_cast<int>(group_of(parts_, motion).axes.size()))
     return Outcome::failure("the controller tells of another motion");
   const double duration = active.rest.duration();
   point.offset = duration - running.duration;
-  point.at_rest = parts_.arm.at_rest();
+  point.at_rest = is_at_rest(motion);
   point.time = active.time + (point.at_rest ? 0.0 : replan_time);
   if (!point.at_rest && point.time <= point.offset) return Outcome::failure("it has not begun yet");
   if (point.time + replan_time > duration) return Outcome::failure("it is nearly there");
@@ -80,10 +83,10 @@ Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, SwitchP
 
 Routine<Outcome> OnlineReplanner::check(RunningMotion& running, const MotionSpec& motion) {
   SwitchPoint point;
-  Outcome found = find_switch_point(running, point);
+  Outcome found = find_switch_point(running, motion, point);
   if (!found.good) co_return found;
   const Vector start =
-      RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
+      RobotModel::with(parts_.arm.configuration(), group_of(parts_, motion), point.from.position);
   auto& path = parts_.clients.path;
   PathRequest request = path_request(parts_, start, motion);
   request.running = running.waypoints;
@@ -160,7 +163,7 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   auto candidate = std::make_shared<SwitchCandidate>();
   candidate->onto = reply.trajectory;
   candidate->speed = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
-  const SwitchPlanner planner = switch_planner();
+  const SwitchPlanner planner = switch_planner(motion);
   Switched along;
   along.trajectory = reply.trajectory;
   for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach;
@@ -183,9 +186,14 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   co_return switched;
 }
 
-bool OnlineReplanner::is_too_late(const SwitchPoint& point) const {
+bool OnlineReplanner::is_at_rest(const MotionSpec& motion) const {
+  return parts_.now.set_point().size() == parts_.arm.robot().dof() &&
+         parts_.now.active().velocity(group_of(parts_, motion).axes).norm() < kAtRest;
+}
+
+bool OnlineReplanner::is_too_late(const MotionSpec& motion, const SwitchPoint& point) const {
   const double time = parts_.now.active().time;
-  return point.at_rest ? !parts_.arm.at_rest() || time > point.time + kSameTime
+  return point.at_rest ? !is_at_rest(motion) || time > point.time + kSameTime
                        : time + kMinLead > point.time;
 }
 
@@ -195,7 +203,7 @@ Routine<Outcome> OnlineReplanner::switch_to_candidate(
     RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
     const std::shared_ptr<SwitchCandidate>& candidate, const RunningMotion& next) {
   const std::function<void()> job =
-      [candidate, point, cost = cost_, planner = switch_planner(),
+      [candidate, point, cost = cost_, planner = switch_planner(motion),
        world = parts_.worker.world(parts_.arm.robot(), parts_.now.objects()),
        now = snapshot(motion, point)] { planner.evaluate(*candidate, *world, *cost, now, point); };
   Outcome worked = co_await parts_.worker.run(job);
@@ -207,7 +215,7 @@ Routine<Outcome> OnlineReplanner::switch_to_candidate(
   }
   if (!candidate->is_worth)
     co_return Outcome::failure("the new path takes longer than it is worth");
-  if (is_too_late(point)) {
+  if (is_too_late(motion, point)) {
     ++counts_.refused;
     co_return Outcome::failure("the new path came too late");
   }

@@ -50,7 +50,8 @@ class OnlineReplanner {
   Routine<Outcome> check(RunningMotion& running, const MotionSpec& motion);
 
  private:
-  Outcome find_switch_point(const RunningMotion& running, SwitchPoint& point) const;
+  Outcome find_switch_point(const RunningMotion& running, const MotionSpec& motion,
+                            SwitchPoint& point) const;
   Routine<Outcome> plan(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
                         const Vector& start);
   Routine<Outcome> retime(RunningMotion& running, const MotionSpec& motion,
@@ -60,8 +61,9 @@ class OnlineReplanner {
                                        const std::shared_ptr<SwitchCandidate>& candidate,
                                        const RunningMotion& next);
   bool is_over(const RunningMotion& running) const;
-  bool is_too_late(const SwitchPoint& point) const;
-  SwitchPlanner switch_planner() const;
+  bool is_at_rest(const MotionSpec& motion) const;
+  bool is_too_late(const MotionSpec& motion, const SwitchPoint& point) const;
+  SwitchPlanner switch_planner(const MotionSpec& motion) const;
   PlanningSnapshot snapshot(const MotionSpec& motion, const SwitchPoint& point) const;
 
   Parts& parts_;

@@ -9,6 +9,7 @@
 #include "common/cost/person_frame.hpp"
 #include "common/model/manipulator.hpp"
 #include "common/model/object_extent.hpp"
+#include "common/model/platform.hpp"
 #include "components/spark/directed.hpp"
 #include "components/spark/quotas.hpp"
 #include "components/spark/scene_model.hpp"
@@ -73,8 +74,12 @@ int FactFinder::zone_level(Zone& zone, double distance, TimePoint now) const {
   return zone.level;
 }
 
+Vector3 FactFinder::p_world_robot(const Scene& scene) const {
+  return T_world_platform(*robot_, scene).translation();
+}
+
 RobotPartner FactFinder::partner(const Scene& scene) const {
-  const Vector3 base = scene.T_world_base.translation();
+  const Vector3 base = p_world_robot(scene);
   RobotPartner robot{base + Vector3(0, 0, 1.0), base};
   if (scene.robot_known && robot_->tool_link() >= 0)
     robot.tool =
@@ -274,7 +279,7 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
   judged.erase(middle, judged.end());
   Facts out{0, lasting_.settle(judged, now)};
   for (Fact& fact : instant_.settle(remembered, now)) out.facts.push_back(std::move(fact));
-  const Coverage reach = reach_of(*robot_, scene.T_world_base.translation());
+  const Coverage reach = reach_of(*robot_, p_world_robot(scene));
   out.left_out =
       keep_most_relevant(out.facts, quotas_of(settings_).facts, scene, people, reach).count;
   return out;

@@ -49,6 +49,7 @@ class FactFinder {
   void pair_facts(const Scene& scene, std::size_t i, std::size_t k,
                   std::vector<Candidate>& out) const;
   Extent extent(const SceneObject& object) const;
+  Vector3 p_world_robot(const Scene& scene) const;
   RobotPartner partner(const Scene& scene) const;
 
   settings::SparkSettings settings_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/model/manipulator.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -54,7 +55,10 @@ void RobotPlacement::locate() {
       hand.T_world_palm = T_world_base_ * links_[static_cast<std::size_t>(hand.palm)];
 }
 
-Coverage RobotPlacement::reach() const { return around(T_world_base_.translation(), arm_length_); }
+Coverage RobotPlacement::reach() const {
+  const Pose T = known_ ? T_world_platform(*robot_, position_, T_world_base_) : T_world_base_;
+  return around(T.translation(), arm_length_);
+}
 
 Coverage reach_of(const RobotModel& robot, const Vector3& base) {
   return around(base, arm_length(robot));

@@ -364,6 +364,10 @@ std::string PlannedAction::text() const {
       return "give " + what + (human.empty() ? "" : " to " + human);
     case ActionKind::receive:
       return "receive " + what + (human.empty() ? "" : " from " + human);
+    case ActionKind::drive:
+      for (const std::string* target : {&object, &surface, &human})
+        if (!target->empty()) return "drive to " + *target;
+      return "drive to the place";
     default:
       return std::string(name(kind)) + " " + what + (surface.empty() ? "" : " on " + surface);
   }

@@ -66,6 +66,12 @@ class Resolver {
 
 }  // namespace
 
+std::string drive_target(const TaskGoal& goal) {
+  for (const std::string* name : {&goal.object, &goal.surface, &goal.human})
+    if (!name->empty()) return *name;
+  return "a place";
+}
+
 std::string text_of(const TaskGoal& goal) {
   const std::string thing = goal.object.empty() ? "something" : goal.object;
   const std::string who = goal.human.empty() ? "somebody" : goal.human;
@@ -81,6 +87,8 @@ std::string text_of(const TaskGoal& goal) {
       return "clear " + goal.surface + (goal.onto.empty() ? "" : " onto " + goal.onto);
     case TaskKind::tidy:
       return "tidy " + thing + " into " + goal.onto;
+    case TaskKind::drive:
+      return "drive to " + drive_target(goal);
     case TaskKind::go_to:
       return "go to " + (goal.surface.empty() ? "rest" : goal.surface);
     default:
@@ -136,6 +144,12 @@ TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& wor
       resolve.object(goal.object, true);
       out.args = {goal.object, goal.onto};
       break;
+    case TaskKind::drive:
+      resolve.object(goal.object);
+      resolve.surface(goal.surface);
+      resolve.person(goal.human);
+      out.args = {or_nothing(goal.object), or_nothing(goal.surface), or_nothing(goal.human)};
+      break;
     case TaskKind::go_to:
       if (!goal.surface.empty() && goal.surface != "rest")
         resolve.refuse("there is no configuration called " + goal.surface + "; there is rest");
@@ -164,6 +178,8 @@ std::string already(const TaskGoal& goal) {
       return goal.surface + " is clear already";
     case TaskKind::tidy:
       return goal.object + " is on " + goal.onto + " already";
+    case TaskKind::drive:
+      return drive_target(goal) + " is within reach already";
     case TaskKind::pick:
     case TaskKind::lift:
       return "the robot has " + goal.object + " in its hand already";

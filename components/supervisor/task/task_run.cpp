@@ -34,8 +34,13 @@ TaskGoal normal(TaskGoal goal) {
 
 std::string object_of(const PlannedAction& action, Situation& situation) {
   const bool of_held = action.object.empty() && action.kind != ActionKind::receive &&
-                       action.kind != ActionKind::go_to;
+                       action.kind != ActionKind::go_to && action.kind != ActionKind::drive;
   return of_held ? situation.held() : action.object;
+}
+
+bool is_drive_to_place(const ActionGoal& goal) {
+  return goal.kind == ActionKind::drive && goal.object.empty() && goal.human.empty() &&
+         goal.surface.empty();
 }
 
 }  // namespace
@@ -236,6 +241,13 @@ void TaskRun::send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id
   goal.surface = planned.surface;
   goal.task = status_.id;
   goal.epoch = go_epoch;
+  if (is_drive_to_place(goal)) {
+    const Vector3& place = problem_.goal().place;
+    goal.has_goal = true;
+    goal.T_world_goal =
+        make_pose({place.x(), place.y(), 0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(place.z(), Vector3::UnitZ())));
+  }
   if (dispatch_.state() == ActionDispatch::State::idle) {
     broken_.reset();
     obsolete_.reset();

@@ -23,7 +23,7 @@ std::string why_not_axes(const TrajectoryCommand& command, const RobotModel& rob
   for (std::uint32_t axis : command.axes) {
     if (axis >= count) return "axis " + std::to_string(axis) + " does not exist";
     const std::string& name = robot.axes()[axis].name;
-    if (groups.part(static_cast<int>(axis)) != Part::arm)
+    if (!groups.in_trajectories(static_cast<int>(axis)))
       return "axis " + name + " is not moved by trajectories";
     if (used[axis]++) return "axis " + name + " comes twice";
   }

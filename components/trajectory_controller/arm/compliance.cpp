@@ -11,9 +11,11 @@ constexpr int kEvery = 10;  // [cycles] between choices of how to move
 
 }  // namespace
 
-Compliance::Compliance(const ComplianceSettings& settings, const RobotModel& robot, ArmMotion& arm)
+Compliance::Compliance(const ComplianceSettings& settings, const RobotModel& robot,
+                       std::size_t joints, ArmMotion& arm)
     : settings_(settings),
       robot_(robot),
+      joints_(joints),
       arm_(arm),
       from_(Vector::Zero(robot.dof())),
       away_(from_),
@@ -36,7 +38,8 @@ void Compliance::aim_away(const ComplianceInputs& in) noexcept {
   robot_.forward(in.set_points.sent().position, links_);
   const Vector3 p_base = T_world_base.inverse() * in.nearest.on_robot;
   const Vector3 lever = p_base - links_[link].translation();
-  for (int axis : arm_.movers().axes()) {
+  for (std::size_t i = 0; i < joints_; ++i) {
+    const int axis = arm_.movers().axes()[i];
     one_axis_.setZero();
     one_axis_[axis] = 1.0;
     link_twists(robot_, one_axis_, links_, twists_);
@@ -106,7 +109,7 @@ void Compliance::step(const ComplianceInputs& in) noexcept {
   const bool arm_at_rest = arm_.state() == ArmState::at_rest;
   const double reach = pushed ? settings_.reach : settings_.retreat_reach;
   bool resting = true;
-  for (std::size_t i = 0; i < arm_.movers().axes().size(); ++i) {
+  for (std::size_t i = 0; i < joints_; ++i) {
     const int axis = arm_.movers().axes()[i];
     const double push = pushed ? in.contact.push(i) : 0.0;
     const double beyond = std::abs(push) / settings_.torque - 1.0;

@@ -36,8 +36,10 @@ struct ComplianceInputs {
 
 class Compliance {
  public:
-  /// Keeps references to the robot and the arm.
-  Compliance(const ComplianceSettings& settings, const RobotModel& robot, ArmMotion& arm);
+  /// Keeps references to the robot and the arm. `joints`: number of axes of the arm that comply,
+  /// the first ones; a platform does not.
+  Compliance(const ComplianceSettings& settings, const RobotModel& robot, std::size_t joints,
+             ArmMotion& arm);
 
   /// Moves the axes of an arm at rest.
   void step(const ComplianceInputs& in) noexcept;
@@ -60,6 +62,7 @@ class Compliance {
 
   ComplianceSettings settings_;
   const RobotModel& robot_;
+  std::size_t joints_;
   ArmMotion& arm_;
   Wish wish_{Wish::none};
   bool moving_{};

@@ -44,8 +44,10 @@ void OutputCheck::check_limits(MovingParts parts, SetPoints& set_points) noexcep
   const MotionState3 &sent = set_points.sent(), &next = set_points.next();
   for (Eigen::Index i = 0; i < next.position.size(); ++i) {
     if (acceptable(sent, next, i, robot_.guard_limits(), settings_.period)) continue;
-    const Part part = groups_.part(static_cast<int>(i));
-    (part == Part::arm ? stops.arm : part == Part::hand ? stops.hand : stops.head) = true;
+    const int axis = static_cast<int>(i);
+    (groups_.in_trajectories(axis)      ? stops.arm
+     : groups_.part(axis) == Part::hand ? stops.hand
+                                        : stops.head) = true;
   }
   if (!stops.arm && !stops.hand && !stops.head) return;
   limit_violation_ = true;

@@ -32,6 +32,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(hold, Cause::forecast_collision, in.forecast_collision_hold);
   set(hold, Cause::cycle_late, in.cycle_late);
   set(hold, Cause::blind, in.blind);
+  set(hold, Cause::unlocalised, in.localisation_age > timeouts_.localisation);
   set(hold, in.awaits_person ? Cause::awaits_person : Cause::no_go,
       in.go_age >= 0 && !in.go_allowed);
   const bool supervisor_silent = in.go_age > timeouts_.supervisor;
@@ -88,6 +89,7 @@ Cause worst_of(std::uint32_t causes) {
                               Cause::contact,
                               Cause::stop_unproven,
                               Cause::human_state_silent,
+                              Cause::unlocalised,
                               Cause::blind,
                               Cause::forecast_collision,
                               Cause::separation,

@@ -15,6 +15,7 @@ struct TimeoutSettings {
   double forecast{0.1};      ///< Hold, while a trajectory runs [s]
   double attention{0.3};     ///< fixed low factor [s]
   double supervisor{0.3};    ///< Hold at the end of the trajectory [s]
+  double localisation{0.5};  ///< Hold: of a platform's place in the world [s]
 };
 
 /// Inputs of the machine in one cycle. Ages in s; negative = never seen.
@@ -35,6 +36,8 @@ struct ModeInputs {
   /// (Slow), a wall (Slow), contact while moving (Stop), and a contact that lasts (Stop).
   bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{},
       clamped{};
+  /// Age of the observation of the platform's place; 0: the robot does not drive [s].
+  double localisation_age{};
   /// Causes of Slow: attention, human-aware cost ahead, speed override, a set-point without a
   /// checked stop.
   bool attention_slow{}, cost_slow{}, override_slow{}, stop_unproven{};

@@ -1,5 +1,7 @@
 #include "components/trajectory_controller/supervise/supervisor.hpp"
 
+#include <algorithm>
+
 namespace handsel::trajectory_controller {
 
 namespace {
@@ -37,6 +39,8 @@ ModeInputs Supervisor::mode_inputs(const SupervisorInputs& in, TimePoint now) no
   out.running_for = in.running ? to_seconds(now - started_) : 0.0;
   out.at_rest = in.set_points.at_rest();
   const RobotState& robot = in.inputs.robot.state();
+  if (robot.localisation_age > 0)
+    out.localisation_age = robot.localisation_age + std::max(0.0, out.robot_age);
   out.drive_enabled = robot.mode == DriveMode::enabled;
   out.set_points_late = out.drive_enabled && !in.inputs.robot.follows();
   const bool follows = in.inputs.robot.follows() && !settings_.dry_run;

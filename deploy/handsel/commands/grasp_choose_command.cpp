@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include "common/collision/platform_places.hpp"
 #include "common/model/platform.hpp"
 #include "components/grasp_planner/choice/grasp_choice.hpp"
-#include "components/grasp_planner/choice/platform_places.hpp"
 #include "deploy/handsel/cli/terminal.hpp"
 #include "deploy/handsel/commands/grasp_pair_command.hpp"
 #include "deploy/handsel/offline/grasp_stage.hpp"

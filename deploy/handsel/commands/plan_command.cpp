@@ -52,7 +52,7 @@ RobotModel load_robot(const Options& options) {
     throw ConfigError("--srdf belongs to a .urdf; a robot description names its own");
   const std::filesystem::path description = robot_description(options.robot);
   RobotModel robot = RobotModel::load(description);
-  if (!path_planner::drives(options.group)) return robot;
+  if (!path_planner::is_of_platform(options.group)) return robot;
   if (auto mobile = on_platform(robot, description)) return *std::move(mobile);
   throw ConfigError(description.string() + " tells of no platform, which the group \"" +
                     options.group + "\" is about");
@@ -86,7 +86,7 @@ class Batch {
     const std::string unreached = cartesian ? "" : read_goals(item, problem);
     read_upright(item, problem);
     std::optional<NavigationCost> navigation;
-    if (path_planner::drives(options_.group)) {
+    if (path_planner::is_of_platform(options_.group)) {
       navigation.emplace(robot_, weights_in(item));
       navigation->set_people(people);
       path_planner::drive(robot_, *navigation, options_.roam, problem);
@@ -228,7 +228,7 @@ class Batch {
       poses.push_back(one);
     }
     path_planner::PoseGoals found =
-        path_planner::drives(group_->name)
+        path_planner::is_of_platform(group_->name)
             ? path_planner::reach_with_platform(robot_, world_, poses, problem.start, problem.seed)
             : path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
     problem.goals = std::move(found.goals);

@@ -219,6 +219,23 @@ int clear_person(const TaskOptions& options) {
   return done ? 0 : 1;
 }
 
+/// One of the targets must be given.
+void add_drive_options(CLI::App& command, TaskGoal& goal) {
+  CLI::Option_group* target = command.add_option_group("target", "where to");
+  target->add_option("--object", goal.object, "object, to where the arm reaches it");
+  target->add_option("--surface", goal.surface, "surface, to where the arm reaches it");
+  target->add_option("--to", goal.human, "person, to where the arm hands things over");
+  target
+      ->add_option_function<std::vector<double>>(
+          "--at",
+          [&goal](const std::vector<double>& place) {
+            goal.place = {place[0], place[1], place[2]};
+          },
+          "x y [m] and heading [rad] of the platform in the world")
+      ->expected(3);
+  target->require_option(1);
+}
+
 std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* word,
                                  const char* help, TaskKind kind,
                                  int (*action)(const TaskOptions&)) {
@@ -280,6 +297,9 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   object(lift);
   auto go_to = goal("goto", "moves the arm to a named configuration", TaskKind::go_to);
   go_to.first->add_option("place", go_to.second->goal.surface, "configuration: rest")->required();
+  auto drive = goal("drive", "drives the platform to a thing, a surface, a person or a place",
+                    TaskKind::drive);
+  add_drive_options(*drive.first, drive.second->goal);
   add(*task, exit_code, "pause",
       "stops the robot with limited jerk until a person resumes, whatever restarts",
       TaskKind::pause, tell);

@@ -12,9 +12,9 @@ constexpr Duration kResend = std::chrono::seconds(1);
 constexpr Duration kOraclePatience =
     std::chrono::seconds(5);  // the oracle wants the person to carry it alone for 1 s
 constexpr double kDefaultTimeout = 60.0;
-constexpr std::array kKinds = {TaskKind::give,    TaskKind::receive, TaskKind::pick,
-                               TaskKind::place,   TaskKind::clear,   TaskKind::tidy,
-                               TaskKind::regrasp, TaskKind::lift,    TaskKind::go_to};
+constexpr std::array kKinds = {
+    TaskKind::give, TaskKind::receive, TaskKind::pick, TaskKind::place, TaskKind::clear,
+    TaskKind::tidy, TaskKind::regrasp, TaskKind::lift, TaskKind::go_to, TaskKind::drive};
 
 }  // namespace
 
@@ -35,11 +35,12 @@ TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id) {
               .kind = kind,
               .object = task.object(),
               .human = task.human(),
-              .surface = task.surface()};
+              .surface = task.surface(),
+              .place = {task.place().x(), task.place().y(), task.place().z()}};
   }
   throw ConfigError(
       "a task of the scenario has the kind \"" + task.kind() +
-      "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift or go_to");
+      "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift, go_to or drive");
 }
 
 std::vector<TaskGoal> scenario_goals(const config::Scenario& scenario) {

@@ -205,7 +205,7 @@ TEST(Wire, says_what_is_wrong_in_one_sentence) {
   TaskGoal goal;
   goal.kind = static_cast<TaskKind>(99);
   EXPECT_EQ(refusal_of(goal),
-            "TaskGoal.kind is the unknown choice 99, the last known one is 14 (clear_person)");
+            "TaskGoal.kind is the unknown choice 99, the last known one is 15 (drive)");
 }
 
 TEST(Wire, normalises_nearly_unit_quaternions_and_rejects_zero_ones) {

@@ -51,6 +51,12 @@ class Rig {
     planner.on(goal);
   }
 
+  void start(const ActionGoal& goal) {
+    ActionGoal numbered = goal;
+    numbered.id = ++actions;
+    planner.on(numbered);
+  }
+
   void run(double duration) {
     for (double t = 0; t < duration && (t < 0.1 || planner.status().state == ActionState::running);
          t += 0.02)
@@ -149,7 +155,7 @@ class Rig {
       reply.start_touches = touched;
     }
     reply.reason = "goal 0 in collision: link forearm and box table";
-    reply.path = {RobotModel::part(request.start, robot->require_group("arm")),
+    reply.path = {RobotModel::part(request.start, robot->require_group(request.group)),
                   request.goals.front()};
     if (!request.running.empty()) {
       const bool same_goal = (request.goals.front() - request.running.back()).norm() < 1e-9;
@@ -207,7 +213,8 @@ class Rig {
     if (stops > 0)
       --stops;
     else
-      q = RobotModel::with(q, robot->require_group("arm"), target);
+      for (std::size_t i = 0; i < command.axes.size(); ++i)
+        q[command.axes[i]] = target[static_cast<Eigen::Index>(i)];
   }
   void obey(const HandCommand& command) {
     execution.hand_command = command.id;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/resources.hpp"
+#include "common/model/human/human_body.hpp"
 #include "components/supervisor/task/task_planner.hpp"
 #include "tests/support/task_world.hpp"
 
@@ -32,8 +33,8 @@ TaskGoal goal(TaskKind kind, const std::string& object, const std::string& human
 }
 
 Asked ask(const TaskGoal& wanted, const TaskWorld& here, const Forbidden& forbidden = {},
-          const Ability& ability = {}) {
-  const World world = make_world(here.facts(), here.scene(), ability);
+          const Ability& ability = {}, const HumanState& people = {}) {
+  const World world = make_world(here.facts(), here.scene(), ability, people);
   Asked out{query_for(wanted, shipped(), world, here.scene()), {}};
   if (out.query.reason.empty())
     out.plan = make_plan(shipped(), world, out.query.task, out.query.args, forbidden, {4000, 24});
@@ -60,6 +61,48 @@ TEST(TaskPlanner, gives_picks_places_and_goes) {
   EXPECT_EQ(ask(goal(TaskKind::give, "mug", "anna"), world).steps(),
             "give mug to anna, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::pick, "mug"), world).steps(), "");
+}
+
+/// A robot at the origin whose arm reaches 1 m, and Anna at `place` [m].
+struct Driving {
+  explicit Driving(const Vector3& place) {
+    ability.drives = true;
+    ability.arms = {{"hand", Vector3::Zero(), 1.0}};
+    ability.person_reach = 0.5;
+    Person anna;
+    anna.id = "anna";
+    anna.joints = standing_body(place, 0, 1.75);
+    people.people = {anna};
+  }
+  Ability ability;
+  HumanState people;
+};
+
+TEST(TaskPlanner, a_robot_that_drives_goes_to_what_is_out_of_reach_and_only_then) {
+  TaskWorld world;
+  world.on["mug"] = "table";
+  world.people = {{"anna", true}};
+  world.distance["mug"] = 2;
+  const Driving far({4, 0, 0}), near({0.3, 0, -1.2});
+  const auto steps = [&](TaskGoal wanted, const Driving& robot) {
+    return ask(wanted, world, {}, robot.ability, robot.people).steps();
+  };
+  EXPECT_EQ(steps(goal(TaskKind::give, "mug", "anna"), far),
+            "drive to mug, pick mug for anna, drive to anna, give mug to anna, go to rest");
+  world.distance["mug"] = 0.5;
+  EXPECT_EQ(steps(goal(TaskKind::give, "mug", "anna"), near),
+            "pick mug for anna, give mug to anna, go to rest");
+  world.on["mug"] = "shelf";
+  EXPECT_EQ(steps(goal(TaskKind::place, "mug", "", "table"), near),
+            "pick mug, drive to table, place mug on table, go to rest");
+  EXPECT_EQ(steps(goal(TaskKind::drive, "", "anna"), near), "drive to anna");
+  EXPECT_EQ(steps(goal(TaskKind::drive, ""), near), "drive to the place");
+}
+
+TEST(TaskPlanner, a_robot_that_stands_says_that_it_does_not_drive) {
+  const TaskWorld world = mug_on_table();
+  EXPECT_EQ(ask(goal(TaskKind::drive, "", "anna"), world).reason(),
+            "the robot does not drive: its description has no platform that does");
 }
 
 TEST(TaskPlanner, of_people_an_attentive_one_is_cheapest_and_who_refused_is_not_asked_again) {

@@ -77,8 +77,9 @@ export class Robot {
   }
 
   private moves(active: ActiveTrajectory): boolean {
-    const arm = new Set(this.config.groups.arm ?? this.config.axes);
-    return Array.from(active.axes).some((axis) => arm.has(this.config.axes[axis]));
+    const { arm, platform } = this.config.groups;
+    const drawn = new Set([...(arm ?? this.config.axes), ...(platform ?? [])]);
+    return Array.from(active.axes).some((axis) => drawn.has(this.config.axes[axis]));
   }
 
   private drawPath(active: ActiveTrajectory): typeof this.tube {

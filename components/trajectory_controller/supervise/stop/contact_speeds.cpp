@@ -4,18 +4,27 @@
 #include <cmath>
 #include <vector>
 
+#include "common/model/platform.hpp"
+
 namespace handsel::trajectory_controller {
 
 namespace {
 
-/// Half of the mass that the axes move (ISO/TS 15066:2016, A.3.4) [kg].
-double half_moving_mass(const RobotModel& robot) {
+/// Half of the mass that the axes move (ISO/TS 15066:2016, A.3.4), those of the platform
+/// included or not [kg].
+double half_moving_mass(const RobotModel& robot, bool with_platform) {
   std::vector<char> moves(robot.links().size(), 0);
+  const Group* platform = robot.group(kPlatformGroup);
+  const auto counts = [&](const Joint& joint) {
+    if (joint.kind == JointKind::fixed || joint.dof < 0) return false;
+    return with_platform || platform == nullptr ||
+           std::count(platform->axes.begin(), platform->axes.end(), joint.dof) == 0;
+  };
   double mass = 0.0;
   for (const Joint& joint : robot.joints()) {
     const auto parent = static_cast<std::size_t>(joint.parent);
     const auto child = static_cast<std::size_t>(joint.child);
-    moves[child] = moves[parent] || (joint.kind != JointKind::fixed && joint.dof >= 0);
+    moves[child] = moves[parent] || counts(joint);
     if (moves[child]) mass += robot.links()[child].mass;
   }
   return 0.5 * mass;
@@ -28,7 +37,8 @@ ContactSpeeds::ContactSpeeds(const ContactLimits& limits, const RobotModel& robo
     : limits_(limits),
       min_robot_mass_(min_robot_mass),
       finger_mass_(finger_mass),
-      moving_mass_(half_moving_mass(robot)) {}
+      moving_mass_(half_moving_mass(robot, false)),
+      platform_mass_(half_moving_mass(robot, true) - moving_mass_) {}
 
 double ContactSpeeds::arm_mass(double payload) const noexcept {
   return std::max(min_robot_mass_, moving_mass_ + std::max(0.0, payload));

@@ -10,8 +10,8 @@ namespace handsel::trajectory_controller {
 
 class ContactSpeeds {
  public:
-  /// `min_robot_mass`: effective mass of a link at a contact, at least [kg]; `finger_mass`: of the
-  /// heaviest finger [kg].
+  /// While the platform stands: see platform_mass(). `min_robot_mass`: effective mass of a link
+  /// at a contact, at least [kg]; `finger_mass`: of the heaviest finger [kg].
   ContactSpeeds(const ContactLimits& limits, const RobotModel& robot, double min_robot_mass,
                 double finger_mass);
 
@@ -20,6 +20,10 @@ class ContactSpeeds {
   /// Returns the speed of the arm whose contact with the region has the energy of a finger's at 1
   /// m/s [-].
   double finger_ratio_at(BodyRegion region, double payload) const noexcept;
+
+  /// What the platform adds to the mass that is held, at a contact while the platform moves: half
+  /// of its own (ISO/TS 15066:2016, A.3.4); 0 for a robot that does not drive [kg].
+  double platform_mass() const noexcept { return platform_mass_; }
 
   /// Sets the mass that is held [kg] for what follows.
   void set_payload(double payload) noexcept;
@@ -39,6 +43,7 @@ class ContactSpeeds {
   double min_robot_mass_{};
   double finger_mass_{};
   double moving_mass_{};  // half of what the axes carry [kg]
+  double platform_mass_{};
   std::array<double, kBodyRegions> max_speed_{};
   std::array<double, kBodyRegions> finger_ratio_{};  // of a contact, see finger_ratio_at()
   double min_speed_{};

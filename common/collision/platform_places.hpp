@@ -1,9 +1,9 @@
-// Where a robot's platform may stand to take something. Own method.
+// Where a robot's platform may stand to reach something. Own method.
 #pragma once
 
 #include "common/collision/collision_world.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel {
 
 struct PlatformPlace {
   Vector3 pose{Vector3::Zero()};  ///< x, y [m], heading [rad], world
@@ -14,10 +14,11 @@ inline constexpr double kTurnDistance = 0.3;  ///< [m/rad]
 /// Places about `p_world_object` from which `arm` may reach it by its length: four distances of its
 /// shoulder, sixteen directions, twelve headings; the shortest drive first. `q`: all axes.
 std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& arm, const Vector& q,
-                                         const Pose& T_world_base, const Vector3& p_world_object);
+                                         const Pose& T_world_platform,
+                                         const Vector3& p_world_object);
 
-/// The robot's root where its platform is at `place`, as high as in T_world_base.
-Pose standing_at(const PlatformPlace& place, const Pose& T_world_base);
+/// The platform at `place`, as high as in T_world_platform.
+Pose standing_at(const PlatformPlace& place, const Pose& T_world_platform);
 
 /// Checks places. `mobile`: the robot on its platform (on_platform).
 class PlatformFloor {
@@ -26,14 +27,18 @@ class PlatformFloor {
   PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene,
                 const HumanState& people, double room);
 
+  /// Takes along what the hand holds.
+  void carry(const Attachment& attachment) { world_.set_attachment(attachment, {}); }
+
   enum class Verdict : std::uint8_t { free, blocked, near_person };
-  /// Checks the whole robot in configuration q (its own axes) at the place.
-  Verdict check(const Vector& q, const Pose& T_world_base);
+  /// Checks the whole robot in configuration q (its own axes) with its platform there.
+  Verdict check(const Vector& q, const Pose& T_world_platform);
 
  private:
+  const RobotModel& mobile_;
   CollisionWorld world_;
   double room_;
   bool anybody_;
 };
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel

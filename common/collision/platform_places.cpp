@@ -1,4 +1,4 @@
-#include "components/grasp_planner/choice/platform_places.hpp"
+#include "common/collision/platform_places.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "common/model/platform.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel {
 namespace {
 
 constexpr double kDistances[] = {0.6, 0.75, 0.45, 0.9};  // shares of the arm's length
@@ -17,24 +17,27 @@ double heading_of(const Pose& T) { return std::atan2(T.linear()(1, 0), T.linear(
 }  // namespace
 
 std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& arm, const Vector& q,
-                                         const Pose& T_world_base, const Vector3& p_world_object) {
-  std::vector<Pose> T_root_link;
-  robot.forward(q, T_root_link);
+                                         const Pose& T_world_platform,
+                                         const Vector3& p_world_object) {
+  std::vector<Pose> T_platform_link;
+  robot.forward(q, T_platform_link);
+  const Pose T_platform_root = handsel::T_world_platform(robot, q, Pose::Identity()).inverse();
+  for (Pose& T : T_platform_link) T = T_platform_root * T;
   std::vector<Vector3> chain;
   for (const int axis : arm.axes) {
     const Joint& joint =
         robot
             .joints()[static_cast<std::size_t>(robot.axes()[static_cast<std::size_t>(axis)].joint)];
-    chain.push_back(T_root_link[static_cast<std::size_t>(joint.child)].translation());
+    chain.push_back(T_platform_link[static_cast<std::size_t>(joint.child)].translation());
   }
-  chain.push_back(T_root_link[static_cast<std::size_t>(arm.tip)].translation());
+  chain.push_back(T_platform_link[static_cast<std::size_t>(arm.tip)].translation());
   double length = 0;
   for (std::size_t i = 1; i < chain.size(); ++i) length += (chain[i] - chain[i - 1]).norm();
-  const double rise = p_world_object.z() - (T_world_base * chain.front()).z();
+  const double rise = p_world_object.z() - (T_world_platform * chain.front()).z();
   std::vector<PlatformPlace> out;
   if (std::abs(rise) >= length) return out;
   const double level = std::sqrt(length * length - rise * rise),
-               heading_now = heading_of(T_world_base);
+               heading_now = heading_of(T_world_platform);
   for (const double share : kDistances) {
     for (int d = 0; d < kDirections; ++d) {
       const double direction = 2 * std::numbers::pi * d / kDirections;
@@ -45,7 +48,7 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
         const double heading =
             nearest_heading(direction + 2 * std::numbers::pi * h / kHeadings, heading_now);
         const Eigen::Vector2d at = shoulder - Eigen::Rotation2Dd(heading) * chain.front().head<2>();
-        const double distance = (at - T_world_base.translation().head<2>()).norm() +
+        const double distance = (at - T_world_platform.translation().head<2>()).norm() +
                                 kTurnDistance * std::abs(heading - heading_now);
         out.push_back({{at.x(), at.y(), heading}, distance});
       }
@@ -57,14 +60,17 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
   return out;
 }
 
-Pose standing_at(const PlatformPlace& place, const Pose& T_world_base) {
-  return make_pose({place.pose.x(), place.pose.y(), T_world_base.translation().z()},
+Pose standing_at(const PlatformPlace& place, const Pose& T_world_platform) {
+  return make_pose({place.pose.x(), place.pose.y(), T_world_platform.translation().z()},
                    Eigen::Quaterniond(Eigen::AngleAxisd(place.pose.z(), Vector3::UnitZ())));
 }
 
 PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene,
                              const HumanState& people, double room)
-    : world_(mobile, std::move(library)), room_(room), anybody_(!people.people.empty()) {
+    : mobile_(mobile),
+      world_(mobile, std::move(library)),
+      room_(room),
+      anybody_(!people.people.empty()) {
   Scene seen_from_world = scene;
   seen_from_world.T_world_base = Pose::Identity();
   world_.set_base(Pose::Identity());
@@ -72,11 +78,15 @@ PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, co
   world_.set_people(people);
 }
 
-PlatformFloor::Verdict PlatformFloor::check(const Vector& q, const Pose& T_world_base) {
-  const Vector whole = with_platform(q, T_world_base);
+PlatformFloor::Verdict PlatformFloor::check(const Vector& q, const Pose& T_world_platform) {
+  const Vector3& p = T_world_platform.translation();
+  const Vector whole =
+      q.size() == mobile_.dof()
+          ? with_platform_at(mobile_, q, {p.x(), p.y(), heading_of(T_world_platform)})
+          : with_platform(q, T_world_platform);
   if (!world_.is_free(whole)) return Verdict::blocked;
   return anybody_ && world_.distance_to_people(whole) < room_ ? Verdict::near_person
                                                               : Verdict::free;
 }
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel

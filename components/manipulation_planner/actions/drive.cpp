@@ -1,0 +1,189 @@
+#include <algorithm>
+
+#include "common/cost/person_frame.hpp"
+#include "common/messages/names.hpp"
+#include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/grasping.hpp"
+#include "components/manipulation_planner/driving/standing_search.hpp"
+#include "components/manipulation_planner/handover/otp_choice.hpp"
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+#include "components/manipulation_planner/parts.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kArrived = 0.02;     // [m], [rad]: the scene shows the platform where it was sent
+constexpr int kMaxDisplacements = 4;  // drives that end because the platform is found elsewhere
+constexpr double kArrivalTimeout = 1.0;  // until the scene shows that [s]
+constexpr double kEdge = 0.08;      // points to reach are this far inside the edge of a surface [m]
+constexpr double kPointStep = 0.2;  // between points to reach on a surface [m]
+constexpr double kTaken = 0.15;     // and this far from things that stand there [m]
+
+/// Places to drive to, the best first, or why there are none.
+struct DrivePlaces {
+  Outcome outcome;
+  std::vector<Vector3> places;  // x, y [m], heading [rad] in the root frame
+};
+
+Vector3 in_root_frame(const Parts& parts, const Pose& T_world_platform) {
+  const Pose T = parts.now.T_world_base().inverse() * T_world_platform;
+  return {T.translation().x(), T.translation().y(), std::atan2(T.linear()(1, 0), T.linear()(0, 0))};
+}
+
+/// Places from which a grasp of the object serves; none where it is within reach already.
+Routine<DrivePlaces> places_for_object(Parts& parts, const std::string& object) {
+  DrivePlaces found;
+  if (parts.now.object(object) == nullptr) {
+    found.outcome =
+        Outcome::failure("object " + object + " is not in the scene", ActionFailure::not_visible);
+    co_return found;
+  }
+  GraspList list = co_await ask_grasps_anywhere(parts, object);
+  found.outcome = list.outcome;
+  for (const Grasp& grasp : list.grasps) {
+    if (!grasp.has_platform) break;
+    const Pose T =
+        make_pose({grasp.platform.x(), grasp.platform.y(), 0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(grasp.platform.z(), Vector3::UnitZ())));
+    found.places.push_back(in_root_frame(parts, T));
+  }
+  co_return found;
+}
+
+/// Where something could be put down on a surface.
+StandingTarget target_on(const Parts& parts, const SceneBox& box) {
+  StandingTarget target;
+  const Vector3 half = 0.5 * box.size;
+  const double x_end = std::max(0.0, half.x() - kEdge), y_end = std::max(0.0, half.y() - kEdge);
+  for (double x = -x_end; x <= x_end + 1e-9; x += kPointStep)
+    for (double y = -y_end; y <= y_end + 1e-9; y += kPointStep) {
+      const Vector3 p = box.T_world_box * Vector3(x, y, half.z());
+      const bool taken = std::any_of(parts.now.scene().objects.begin(),
+                                     parts.now.scene().objects.end(), [&](const SceneObject& o) {
+                                       return o.id != parts.held.id() &&
+                                              (o.T_world_object.translation() - p).norm() < kTaken;
+                                     });
+      if (!taken) target.points.push_back(p);
+    }
+  return target;
+}
+
+/// Where a person comfortably takes and offers things.
+StandingTarget target_before(const Person& person) {
+  StandingTarget target;
+  for (const Side side : {Side::right, Side::left})
+    target.points.push_back(comfortable_reach(person, side));
+  const Vector3 front = torso_axes(person).col(0).cwiseProduct(Vector3(1, 1, 0));
+  target.front = front.stableNormalized();
+  return target;
+}
+
+/// What a search of places works with, copied for a job.
+struct SearchJob {
+  std::shared_ptr<const RobotModel> robot;
+  Group arm;
+  ObjectLibrary objects;
+  Scene scene;
+  HumanState people;
+  Attachment attachment;
+  Vector q;
+  CostSettings cost;
+  settings::ManipulationPlannerSettings settings;
+  StandingTarget target;
+  StandingSearch result;
+
+  void run() {
+    PlatformFloor floor(*robot, objects, scene, people, settings.standing_room);
+    floor.carry(attachment);
+    NavigationCost navigation(*robot, cost);
+    navigation.set_people(people, scene.T_world_base);
+    const StandingQuery query{*robot, arm, q, scene.T_world_base, navigation};
+    result = find_standing_places(query, target, floor, settings);
+  }
+};
+
+Routine<DrivePlaces> places_for(Parts& parts, StandingTarget target) {
+  auto work = std::make_shared<SearchJob>(SearchJob{parts.arm.shared_robot(),
+                                                    parts.arm.group(),
+                                                    parts.now.objects(),
+                                                    parts.now.scene(),
+                                                    parts.now.people(),
+                                                    parts.held.attachment(),
+                                                    parts.arm.configuration(),
+                                                    parts.cost,
+                                                    parts.settings,
+                                                    std::move(target),
+                                                    {}});
+  const std::function<void()> job = [work] { work->run(); };
+  DrivePlaces found;
+  found.outcome = co_await parts.worker.run(job);
+  for (const auto& refusal : work->result.refusals) parts.refuse(refusal.what, refusal.reason);
+  for (const StandingPlace& place : work->result.places) found.places.push_back(place.place);
+  if (found.outcome.good && found.places.empty())
+    found.outcome = Outcome::failure("the platform finds no place to stand: " +
+                                     work->result.refusals.front().reason);
+  co_return found;
+}
+
+Routine<DrivePlaces> find_places_for(Parts& parts, const ActionGoal& goal) {
+  DrivePlaces found;
+  if (goal.has_goal) {
+    found.places = {in_root_frame(parts, goal.T_world_goal)};
+  } else if (!goal.object.empty()) {
+    found = co_await places_for_object(parts, goal.object);
+  } else if (!goal.human.empty()) {
+    const Person* person = parts.now.person(goal.human);
+    if (person == nullptr)
+      found.outcome = Outcome::out_of_sight("person " + goal.human);
+    else
+      found = co_await places_for(parts, target_before(*person));
+  } else {
+    const SceneBox* box = parts.now.surface(goal.surface);
+    if (box == nullptr)
+      found.outcome = Outcome::failure("there is no surface " + goal.surface);
+    else
+      found = co_await places_for(parts, target_on(parts, *box));
+  }
+  co_return found;
+}
+
+/// Chooses places as the world is now and drives to one of them.
+Routine<Outcome> drive_once(Parts& parts, const ActionGoal& goal) {
+  parts.action.phase = ActionPhase::choosing_platform_place;
+  const DrivePlaces found = co_await find_places_for(parts, goal);
+  if (!found.outcome.good || found.places.empty()) co_return found.outcome;
+  MotionSpec motion;
+  motion.phase = ActionPhase::moving_platform;
+  motion.is_of_platform = true;
+  motion.speed = parts.held.is_holding() ? parts.settings.carry_speed : 1.0;
+  motion.goals.assign(found.places.begin(), found.places.end());
+  motion.T_world_root = parts.now.T_world_base();
+  Outcome driven = co_await move(parts, motion);
+  co_return driven;
+}
+
+}  // namespace
+
+Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
+  const RobotModel& robot = parts.arm.robot();
+  if (!drives(robot))
+    co_return Outcome::failure("robot " + robot.name() + " has no platform that drives");
+  Outcome rested = co_await rest_all(parts);
+  if (!rested.good) co_return rested;
+  Outcome driven;
+  for (int attempt = 0; attempt < kMaxDisplacements; ++attempt) {
+    driven = co_await drive_once(parts, goal);
+    if (driven.end != MotionEnd::displaced) break;
+    parts.refuse(text_of(ActionPhase::moving_platform), driven.reason);
+  }
+  if (!driven.good) co_return driven;
+  const auto has_arrived = [&] {
+    const Vector& seen = parts.now.scene().robot_position;
+    return (platform_place(robot, seen) - platform_place(robot, parts.now.set_point())).norm() <
+           kArrived;
+  };
+  co_await parts.waiting.until(has_arrived, kArrivalTimeout);
+  co_return Outcome{};
+}
+
+}  // namespace handsel::manipulation_planner
