@@ -71,6 +71,7 @@ ObjectModel ObjectModel::load(const fs::path& description) {
   object.name = text.name();
   object.mass = text.mass();
   object.com = to_vector(text.com());
+  object.max_tilt = text.max_tilt();
   if (text.friction() > 0) object.friction = text.friction();
   const Vector3 scale = text.has_scale() ? to_vector(text.scale()) : Vector3::Ones();
   object.mesh = load_mesh(description.parent_path() / text.mesh(), scale);

@@ -37,6 +37,7 @@ struct Upright {
   Vector3 axis_tool{Vector3::UnitZ()};
   Vector3 up_root{Vector3::UnitZ()};  ///< up in the frame of the robot's root link
   double max_angle{};                 ///< [rad], in (0, pi)
+  int link{-1};                       ///< whose frame the axis is in; -1: the tool of the robot
 };
 
 /// The platform is among the axes that are planned for: which they are (x, y, heading), and what

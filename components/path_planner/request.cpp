@@ -97,7 +97,7 @@ Problem problem_of(const RobotModel& robot, const PathRequest& request, const Po
   if (request.upright)
     problem.upright =
         Upright{request.upright_axis, T_world_root.linear().transpose() * Vector3::UnitZ(),
-                request.max_tilt};
+                request.max_tilt, robot.group(request.group)->tip};
   return problem;
 }
 

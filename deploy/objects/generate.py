@@ -117,7 +117,7 @@ def ball(radius):
     return revolve(profile)
 
 
-def describe(name, text, mesh, mass, friction, parts, com=None):
+def describe(name, text, mesh, mass, friction, parts, com=None, max_tilt=None):
     os.makedirs(os.path.join(HERE, name), exist_ok=True)
     mesh.write(name)
     with open(os.path.join(HERE, name, name + ".txtpb"), "w") as f:
@@ -126,6 +126,8 @@ def describe(name, text, mesh, mass, friction, parts, com=None):
         f.write(f"mass: {mass:g}\nfriction: {friction:g}\n")
         if com:
             f.write("com {{ x: {:g} y: {:g} z: {:g} }}\n".format(*com))
+        if max_tilt:
+            f.write(f"max_tilt: {max_tilt:g}\n")
 
 
 def at(x, y, z, roll=0.0, pitch=0.0):
@@ -145,17 +147,17 @@ def cup_walls(R, H, wall, bottom):
     return "".join(f"\n  walls {{ {w} }}" for w in out)
 
 
-def mug():
+def mug(name, text, mass, com, max_tilt=None):
     R, H, wall, bottom = 0.040, 0.095, 0.004, 0.006
     reach, half, thick = 0.028, 0.028, 0.006
     h = H / 2
     mesh = revolve([(0, -h), (R, -h), (R, h), (R - wall, h), (R - wall, -h + bottom), (0, -h + bottom)])
     add_handle(mesh, R - wall / 2, reach + wall / 2, half, thick)
-    describe("mug", "An empty mug of 0.3 l with its handle toward +x.", mesh, 0.32, 0.6,
+    describe(name, text, mesh, mass, 0.6,
              [f"cylinder {{ radius: {R} length: {H} }}{cup_walls(R, H, wall, bottom)}\n",
               f"{at(R + 0.6 * reach, 0, half, 0, math.pi / 2)} capsule {{ radius: {thick} length: {reach:g} }}",
               f"{at(R + reach - thick / 2, 0, 0)} capsule {{ radius: {thick} length: {2 * half:g} }}",
-              f"{at(R + 0.6 * reach, 0, -half, 0, math.pi / 2)} capsule {{ radius: {thick} length: {reach:g} }}"], (0.003, 0, -0.008))
+              f"{at(R + 0.6 * reach, 0, -half, 0, math.pi / 2)} capsule {{ radius: {thick} length: {reach:g} }}"], com, max_tilt)
 
 
 def bottle():
@@ -220,7 +222,8 @@ def tray():
              (0, 0, 0.04 - middle))
 
 
-mug()
+mug("mug", "An empty mug of 0.3 l with its handle toward +x.", 0.32, (0.003, 0, -0.008))
+mug("full_mug", "The mug, filled to 0.2 l.", 0.52, (0.002, 0, -0.009), 0.35)
 bottle()
 can()
 torch()

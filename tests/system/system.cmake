@@ -87,3 +87,7 @@ handsel_test(robot_drives SOURCES ${CMAKE_CURRENT_LIST_DIR}/driving/robot_drives
 target_compile_definitions(test_robot_drives PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(test_robot_drives handsel)
 set_tests_properties(robot_drives PROPERTIES TIMEOUT 300)
+handsel_test(carried_upright SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasps/carried_upright_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)
+target_compile_definitions(test_carried_upright PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_carried_upright handsel)
+set_tests_properties(carried_upright PROPERTIES PROCESSORS 2 TIMEOUT 300)

@@ -22,6 +22,21 @@ bool is_opened_beside_another(const Parts& parts) {
   return off.cwiseAbs().maxCoeff() > kAtRest;
 }
 
+/// Returns the rest configuration, or where what is held must stay upright and would not, one with
+/// the hand in the same place and turned as little as that needs.
+Vector upright_at(const Parts& parts, const Vector& at_rest) {
+  const std::optional<TiltBound> bound = tilt_bound(parts, {});
+  if (!bound) return at_rest;
+  const RobotModel& robot = parts.arm.robot();
+  const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), at_rest);
+  Pose T = robot.link_pose(q, parts.arm.palm());
+  const Vector3 up = parts.now.T_world_base().linear().transpose() * Vector3::UnitZ();
+  const Vector3 axis = T.linear() * bound->axis_tool;
+  if (axis.dot(up) >= std::cos(bound->max_tilt)) return at_rest;
+  T.linear() = Eigen::Quaterniond::FromTwoVectors(axis, up).toRotationMatrix() * T.linear();
+  return robot.inverse(parts.arm.group(), T, q).value_or(at_rest);
+}
+
 }  // namespace
 
 Routine<Outcome> rest(Parts& parts) {
@@ -34,7 +49,7 @@ Routine<Outcome> rest(Parts& parts) {
   const Person* person = parts.now.person("");
   if (person != nullptr && parts.area.is_occupied(*person, q))
     motion.goals = parts.area.clear_configurations(*person);
-  if (motion.goals.empty()) motion.goals = {at_rest};
+  if (motion.goals.empty()) motion.goals = {upright_at(parts, at_rest)};
   Outcome outcome = co_await move(parts, motion);
   const Vector off = RobotModel::part(parts.now.set_point(), arm) - at_rest;
   if (!outcome.good || off.cwiseAbs().maxCoeff() > kAtRest || !is_opened_beside_another(parts))

@@ -1,6 +1,7 @@
 #include "components/manipulation_planner/motion/motion_executor.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/messages/names.hpp"
 #include "common/model/human/human_body.hpp"
@@ -15,6 +16,10 @@ constexpr double kMaxDuration = 600;      // a motion this long has been forgott
 constexpr double kAttemptPause = 0.3;     // before the next attempt [s]
 constexpr double kMaxRetreatRatio = 1.5;  // of the retreat distance, from people
 constexpr double kYieldRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
+
+constexpr double kTiltNoise = 0.01;  // the start of a path may be tilted by this more [rad]
+
+double tilt_of(const Vector3& axis) { return std::acos(std::clamp(axis.z(), -1.0, 1.0)); }
 
 /// Returns the sum of the max norms of the segments [rad].
 double length_of(const std::vector<Vector>& waypoints) {
@@ -31,6 +36,16 @@ const Group& group_of(const Parts& parts, const MotionSpec& motion) {
                                : parts.arm.group();
 }
 
+std::optional<TiltBound> tilt_bound(const Parts& parts, const MotionSpec& motion) {
+  const ObjectModel* model =
+      parts.held.is_holding() ? parts.now.model_of(parts.held.id()) : nullptr;
+  if (model == nullptr || model->max_tilt <= 0 || motion.is_of_platform) return std::nullopt;
+  const Vector3 axis = parts.held.attachment().T_tool_object.linear() * Vector3::UnitZ();
+  const double now = tilt_of(parts.arm.T_world_tool().linear() * axis);
+  if (now > model->max_tilt) return std::nullopt;
+  return TiltBound{axis, std::max(model->max_tilt - parts.settings.tilt_margin, now + kTiltNoise)};
+}
+
 PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion) {
   PathRequest request;
   parts.clients.path.open(request);
@@ -42,6 +57,11 @@ PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& mo
   request.time_limit = parts.settings.planning_time;
   request.seed = parts.action.id + request.id.number;
   request.straight = motion.is_straight;
+  if (const std::optional<TiltBound> bound = tilt_bound(parts, motion)) {
+    request.upright = true;
+    request.upright_axis = bound->axis_tool;
+    request.max_tilt = bound->max_tilt;
+  }
   return request;
 }
 

@@ -1,6 +1,7 @@
 // Plans and executes motions of the arm in use, and of the platform.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct Parts;
 
 /// Returns the axes that a motion moves.
 const Group& group_of(const Parts& parts, const MotionSpec& motion);
+/// Returns how what is held must be carried by a motion; nullopt: in any way. What is tilted
+/// farther already may be carried in any way, too.
+std::optional<TiltBound> tilt_bound(const Parts& parts, const MotionSpec& motion);
 /// Opens a request for a path. `start`: all axes [rad, m].
 PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion);
 /// Opens a request of `client` for a trajectory along the waypoints. `start`: all axes [rad, m].

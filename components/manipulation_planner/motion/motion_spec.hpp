@@ -51,6 +51,12 @@ struct MotionSpec {
   bool accepts_any_offer{};     ///< such an offer counts however little space there is
 };
 
+/// What is held keeps an axis of the hand within an angle of up.
+struct TiltBound {
+  Vector3 axis_tool{Vector3::UnitZ()};  ///< unit, frame of the hand in use
+  double max_tilt{};                    ///< [rad]
+};
+
 /// A path of the arm, or why there is none.
 struct PlannedPath {
   Outcome outcome;                ///< whether there is a path

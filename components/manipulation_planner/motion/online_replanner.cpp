@@ -57,8 +57,15 @@ PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
   const Vector q =
       RobotModel::with(parts_.arm.configuration(), group_of(parts_, motion), point.from.position);
   const double gain = period_.is_advised(now.time()) ? cost_gain_ : 1.0;
-  return {now.scene(), now.people(), now.layers(), parts_.held.attachment(), motion.allowed,
-          q,           gain};
+  return {now.scene(),
+          now.people(),
+          now.layers(),
+          parts_.held.attachment(),
+          motion.allowed,
+          q,
+          gain,
+          tilt_bound(parts_, motion),
+          parts_.arm.palm()};
 }
 
 Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, const MotionSpec& motion,

@@ -57,8 +57,15 @@ bool SwitchPlanner::is_within_limits(const Vector& joints) const {
   return true;
 }
 
+bool SwitchPlanner::is_upright(const Vector& q, const PlanningSnapshot& now) const {
+  if (!now.tilt || now.palm < 0) return true;
+  const Pose T_world_palm = now.scene.T_world_base * robot_->link_pose(q, now.palm);
+  const Vector3 axis = T_world_palm.linear() * now.tilt->axis_tool;
+  return axis.z() >= std::cos(now.tilt->max_tilt);
+}
+
 bool SwitchPlanner::is_free(CollisionWorld& world, const Switched& motion,
-                            const Vector& q_other) const {
+                            const PlanningSnapshot& now) const {
   double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
   for (const AxisTrajectory& axis : motion.trajectory.axes)
     rate = std::max(rate, std::abs(axis.start.velocity));
@@ -71,8 +78,8 @@ bool SwitchPlanner::is_free(CollisionWorld& world, const Switched& motion,
     const double t = k <= first ? connecting * k / first
                                 : connecting + (whole - connecting) * (k - first) / (steps - first);
     const Vector joints = motion.trajectory.at(t).position;
-    if (!is_within_limits(joints) || !world.is_free(RobotModel::with(q_other, arm_, joints)))
-      return false;
+    const Vector q = RobotModel::with(now.q, arm_, joints);
+    if (!is_within_limits(joints) || !is_upright(q, now) || !world.is_free(q)) return false;
   }
   return true;
 }
@@ -91,7 +98,7 @@ std::optional<Trajectory> SwitchPlanner::free_motion(CollisionWorld& world,
   const Vector q_start = RobotModel::with(now.q, arm_, from.position);
   const Vector q_end = RobotModel::with(now.q, arm_, to.at(to.duration()).position);
   set_scene_with_margins(world, now.scene, {kMargin, kMargin}, {q_start, q_end});
-  if (!is_free(world, motion, now.q)) return std::nullopt;
+  if (!is_free(world, motion, now)) return std::nullopt;
   return motion.trajectory;
 }
 

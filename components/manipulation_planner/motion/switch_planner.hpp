@@ -10,6 +10,7 @@
 #include "common/collision/collision_world.hpp"
 #include "common/cost/human_cost.hpp"
 #include "common/trajectory/switch.hpp"
+#include "components/manipulation_planner/motion/motion_spec.hpp"
 
 namespace handsel::manipulation_planner {
 
@@ -47,6 +48,8 @@ struct PlanningSnapshot {
   std::vector<std::string> allowed;  ///< what may be touched
   Vector q;                          ///< axes that are not the arm's [rad, m]
   double cost_gain{1};               ///< factor of the saved cost, as attention has it
+  std::optional<TiltBound> tilt{};   ///< of what is held
+  int palm{-1};                      ///< link of the hand that holds it
 };
 
 class SwitchPlanner {
@@ -67,7 +70,8 @@ class SwitchPlanner {
   std::optional<Trajectory> free_motion(CollisionWorld& world, const PlanningSnapshot& now,
                                         const MotionState3& from,
                                         const SwitchCandidate& candidate) const;
-  bool is_free(CollisionWorld& world, const Switched& motion, const Vector& q_other) const;
+  bool is_free(CollisionWorld& world, const Switched& motion, const PlanningSnapshot& now) const;
+  bool is_upright(const Vector& q, const PlanningSnapshot& now) const;
   double cost_along(const HumanCost& cost, const Trajectory& trajectory, const Vector& q_other,
                     double level) const;
   double cost_at(const HumanCost& cost, const Vector& joints, const Vector& q_other) const;

@@ -21,8 +21,9 @@ UprightBound::UprightBound(const RobotModel& robot, const Problem& problem, Vect
       axes_(problem),
       lower_(std::move(lower)),
       upper_(std::move(upper)),
-      tool_(robot.tool_link() >= 0 ? robot.tool_link()
-                                   : static_cast<int>(robot.links().size()) - 1) {}
+      tool_(problem.upright && problem.upright->link >= 0 ? problem.upright->link
+            : robot.tool_link() >= 0                      ? robot.tool_link()
+                                     : static_cast<int>(robot.links().size()) - 1) {}
 
 double UprightBound::tilt(const Vector& q) const {
   if (!problem_.upright) return 0.0;

@@ -135,6 +135,8 @@ void Criteria::watch_handover(const GroundTruth& ground_truth) {
   const Vector3 p = ground_truth.T_world_object.translation();
   const std::string before = last_ ? last_->carrier : "";
   if (ground_truth.carrier == "robot") {
+    const double up = ground_truth.T_world_object.linear()(2, 2);
+    max_tilt_ = std::max(max_tilt_.value_or(0.0), std::acos(std::clamp(up, -1.0, 1.0)));
     if (before == "robot" && carried_from_)
       carried_ += (p - last_->T_world_object.translation()).norm();
     else if (before != "both")
@@ -183,6 +185,7 @@ nlohmann::json Criteria::fields() const {
           {"functional_delay_s", both_idle_},
           {"discomfort", discomfort_ ? Json(*discomfort_) : Json(nullptr)},
           {"legibility", legibility_ ? Json(*legibility_) : Json(nullptr)},
+          {"max_tilt_rad", max_tilt_ ? Json(*max_tilt_) : Json(nullptr)},
           {"cpu_s", cpu},
           {"cpu_chain_s", chain},
           {"runs", runs},

@@ -41,6 +41,8 @@ class Criteria {
   ///   (arm_comfort_cost); null: it did not
   /// - `legibility`: straight distance of the object that the robot carried to a person over the
   ///   length of its path, (0, 1]; null: it carried nothing there
+  /// - `max_tilt_rad`: largest angle between up and the z axis of the object while the robot alone
+  ///   carried it; null: it carried nothing
   /// - `cpu_s`: of each component's handlers and jobs, thread CPU time; `cpu_chain_s`: of
   ///   perception and planning
   /// - `runs`: how often each piece of work was done; `work_period_s`: mean period that was advised
@@ -73,7 +75,7 @@ class Criteria {
       concurrent_{}, both_idle_{};
   std::optional<Vector3> carried_from_;  // where the robot alone began to carry it
   double carried_{};                     // distance moved since [m]
-  std::optional<double> discomfort_, legibility_;
+  std::optional<double> discomfort_, legibility_, max_tilt_;
   std::array<double, 5> rates_{};  // sums of advised rates [Hz]
 };
 
