@@ -73,6 +73,8 @@ PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, co
       anybody_(!people.people.empty()) {
   Scene seen_from_world = scene;
   seen_from_world.T_world_base = Pose::Identity();
+  for (SceneBox& box : seen_from_world.boxes)
+    box.size.head<2>() += Eigen::Vector2d::Constant(2 * kFurnitureRoom);
   world_.set_base(Pose::Identity());
   world_.set_scene(seen_from_world);
   world_.set_people(people);

@@ -20,6 +20,10 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
 /// The platform at `place`, as high as in T_world_platform.
 Pose standing_at(const PlatformPlace& place, const Pose& T_world_platform);
 
+/// Kept to furniture where the platform is sent to: it stops beside that place by the errors of its
+/// localisation [m].
+inline constexpr double kFurnitureRoom = 0.05;
+
 /// Checks places. `mobile`: the robot on its platform (on_platform).
 class PlatformFloor {
  public:

@@ -92,6 +92,24 @@ TEST_F(StandingPlaces, the_place_is_given_in_the_root_frame) {
             1e-6);
 }
 
+TEST_F(StandingPlaces, a_robot_that_stops_a_little_beside_its_place_touches_no_furniture) {
+  SceneBox table;
+  table.id = "table";
+  table.T_world_box = make_pose({2, 0, 0.36});
+  table.size = {0.7, 2.0, 0.72};
+  scene_.boxes = {table};
+  StandingTarget target;
+  for (const double y : {-0.8, -0.4, 0.0, 0.4, 0.8}) target.points.push_back({1.75, y, 0.72});
+  const StandingSearch found = search(target);
+  ASSERT_FALSE(found.places.empty());
+  CollisionWorld world(robot(), {});
+  world.set_scene(scene_);
+  for (const StandingPlace& place : found.places)
+    for (const double x : {-0.04, 0.04})
+      for (const double y : {-0.04, 0.04})
+        EXPECT_TRUE(world.is_free(at(place.place + Vector3(x, y, 0))));
+}
+
 TEST_F(StandingPlaces, furniture_is_kept_free_and_what_is_out_of_reach_is_refused) {
   people_ = person({2, 0, 0}, M_PI);
   SceneBox wall;
