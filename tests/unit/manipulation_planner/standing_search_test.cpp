@@ -99,7 +99,8 @@ TEST_F(StandingPlaces, a_robot_that_stops_a_little_beside_its_place_touches_no_f
   table.size = {0.7, 2.0, 0.72};
   scene_.boxes = {table};
   StandingTarget target;
-  for (const double y : {-0.8, -0.4, 0.0, 0.4, 0.8}) target.points.push_back({1.75, y, 0.72});
+  settings_.standing_places = 500;
+  for (double x = 1.7; x < 2.2; x += 0.02) target.points.push_back({x, 0.0, 0.72});
   const StandingSearch found = search(target);
   ASSERT_FALSE(found.places.empty());
   CollisionWorld world(robot(), {});
