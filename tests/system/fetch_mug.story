@@ -4,7 +4,7 @@ wait ready within 15s
 task give mug to anna
 wait carrier robot within 40s
 wait handover within 90s
-expect task done within 100s
+wait task done within 25s
 expect nothing dropped
 expect no limit violations
 expect no separation violations

@@ -248,7 +248,8 @@ std::string StoryRunner::evidence(const Condition& condition) const {
 void StoryRunner::await(const StoryStep& step) {
   const auto watch = std::find_if(watches_.begin(), watches_.end(),
                                   [&](const Watch& w) { return w.step == &step; });
-  const TimePoint deadline = origin_ + step.limit;
+  const TimePoint begin = step.kind == StepKind::wait ? now() : origin_;
+  const TimePoint deadline = begin + step.limit;
   if (step.limit == Duration::zero()) {
     if (!holds(*step.condition, system_->session().snapshot(), now()))
       throw Unfulfilled{"it does not hold" + evidence(*step.condition)};
@@ -263,7 +264,7 @@ void StoryRunner::await(const StoryStep& step) {
     });
     if (!watch->held) throw Unfulfilled{"it did not hold within " + seconds(step.limit)};
     if (watch->first > deadline)
-      throw Unfulfilled{"it took " + seconds(watch->first - origin_) + " instead of " +
+      throw Unfulfilled{"it took " + seconds(watch->first - begin) + " instead of " +
                         seconds(step.limit)};
   }
   std::fprintf(stderr, "%8.3f s  %s (after %s)\n", to_seconds(now() - story_begin_),
