@@ -128,6 +128,8 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
   setenv("CYCLONEDDS_URI", "file://" HANDSEL_SOURCE_DIR "/deploy/dds/loopback.xml", 1);
   const std::string place = scenario();
+  // Read before the person is published: a person not seen meanwhile may be anywhere.
+  const NodeContext context = load_context("jido");
   Background up({HANDSEL_COMMAND, "up", "--ros2", "--headless", "--port", "0", "--domain",
                  std::to_string(kDomain), "--scenario", place});
   RosNode ros;
@@ -197,7 +199,6 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   };
   ASSERT_TRUE(bus.run_until(heard, from_seconds(3)))
       << names.size() << " joints, mug " << mug_told << ", hand " << tool_told;
-  const NodeContext context = load_context("jido");
   ASSERT_EQ(names.size(), context.robot->axes().size());
   ASSERT_EQ(position.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
