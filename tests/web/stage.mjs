@@ -66,25 +66,24 @@ export function launchBrowser(gl = kSoftwareGl) {
   return chromium.launch({ executablePath: join(root, "tests/web/niced_chromium.sh"), args: [...flags, ...gl] });
 }
 
+const decoders = new Map();  // by browser: an empty page that decodes pictures
+
 // The part of the page in `region` as RGBA bytes.
 export async function pixels(page, region) {
   const clip = { x: Math.floor(region.x), y: Math.floor(region.y), width: Math.ceil(region.width), height: Math.ceil(region.height) };
   const picture = (await page.screenshot({ clip })).toString("base64");
-  const blank = await page.context().browser().newPage();
-  try {
-    return await blank.evaluate(async (data) => {
-      const image = new Image();
-      image.src = `data:image/png;base64,${data}`;
-      await image.decode();
-      const canvas = document.createElement("canvas");
-      [canvas.width, canvas.height] = [image.width, image.height];
-      const context = canvas.getContext("2d");
-      context.drawImage(image, 0, 0);
-      return Array.from(context.getImageData(0, 0, image.width, image.height).data);
-    }, picture);
-  } finally {
-    await blank.close();
-  }
+  const browser = page.context().browser();
+  if (!decoders.has(browser)) decoders.set(browser, await browser.newPage());
+  return await decoders.get(browser).evaluate(async (data) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${data}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    return Array.from(context.getImageData(0, 0, image.width, image.height).data);
+  }, picture);
 }
 
 // Share of the pixels of two pictures of one region that clearly differ.
