@@ -149,23 +149,37 @@ void PersonModel::step(double dt, const PersonView& view) {
   body_.gaze_origin = points_[kHead] + 0.08 * gaze_;
 }
 
-bool PersonModel::waits_for_platform(const PersonView& view) const {
-  constexpr double kAhead = 1.3;   // from the feet to the middle of the platform [m]
-  constexpr double kBeside = 0.9;  // and beside the line on which the person walks [m]
+bool PersonModel::waits_for_robot(const PersonView& view) const {
+  constexpr double kAhead = 1.3;        // from the feet to what stands ahead [m]
+  constexpr double kBeside = 0.9;       // from the middle of the platform to the person's line [m]
+  constexpr double kBesideHand = 0.55;  // from the robot's hand to this line [m]
   if (settings_.kind != PersonKind::walker || !view.platform) return false;
   const Vector3 walk = walk_direction_ * forward();
-  const Vector3 to = (*view.platform - feet_).cwiseProduct(Vector3(1, 1, 0));
-  const double ahead = to.dot(walk);
-  return ahead > 0 && ahead < kAhead && (to - ahead * walk).norm() < kBeside;
+  const auto stands_ahead = [&](const Vector3& p_world, double beside) {
+    const Vector3 to = (p_world - feet_).cwiseProduct(Vector3(1, 1, 0));
+    const double ahead = to.dot(walk);
+    return ahead > 0 && ahead < kAhead && (to - ahead * walk).norm() < beside;
+  };
+  return stands_ahead(*view.platform, kBeside) || stands_ahead(view.robot_hand, kBesideHand);
+}
+
+void PersonModel::wait_for_robot(double dt, double duration) {
+  constexpr double kPatience = 3.0;  // [s]
+  phase_since_ += dt;
+  waited_for_robot_ += dt;
+  if (waited_for_robot_ < kPatience) return;
+  waited_for_robot_ = 0;
+  walk_direction_ = -walk_direction_;
+  phase_since_ += 2 * since() - duration;  // at the same place of the walk back
 }
 
 void PersonModel::act(double dt, const PersonView& view) {
   if (wants_grip_ && view.grip_broke) give_up();
   switch (phase_) {
     case PersonPhase::arriving: {
-      if (waits_for_platform(view)) phase_since_ += dt;
       const double length =
           settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
+      if (waits_for_robot(view)) wait_for_robot(dt, length / kWalkSpeed);
       const double s = length > 0 ? since() * kWalkSpeed / length : 1;
       feet_ =
           home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();

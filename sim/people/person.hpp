@@ -158,8 +158,10 @@ class PersonModel {
   void look_at(const Vector3& target, double dt);
   void enter(PersonPhase);
   void act(double dt, const PersonView&);
-  /// Returns whether someone walking would come too near to a platform ahead.
-  bool waits_for_platform(const PersonView& view) const;
+  /// Returns whether someone walking would come too near to a robot that drives.
+  bool waits_for_robot(const PersonView& view) const;
+  /// Stands for a while, then turns back. `duration`: of the whole walk [s].
+  void wait_for_robot(double dt, double duration);
   void watch(double dt, const PersonView&);
   void reach_out(double dt, const PersonView&);
   void play(double dt, const PersonView&);
@@ -230,7 +232,7 @@ class PersonModel {
   Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};
   double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, feet_speed_{0},
-      walk_direction_{1};
+      walk_direction_{1}, waited_for_robot_{0};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()},
       side_of_object_{Vector3::UnitX()}, warp_{Vector3::Zero()}, step_{Vector3::Zero()};
   std::optional<FollowedBody> followed_;    // of an external person

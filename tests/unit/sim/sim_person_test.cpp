@@ -120,6 +120,36 @@ TEST(SimPerson, does_not_reach_for_what_moves_or_is_out_of_reach) {
   EXPECT_EQ(person.phase(), PersonPhase::watching);
 }
 
+TEST(SimPerson, nobody_walks_into_the_arm_of_a_robot_that_drives) {
+  PersonSettings settings;
+  settings.feet = Vector3(0, 0, 0);
+  settings.yaw = 0;
+  settings.kind = PersonKind::walker;
+  settings.approach_from = 2;
+  const auto farthest = [&](const PersonView& view) {
+    PersonModel person(settings);
+    const auto waist = static_cast<std::size_t>(body_joint_index("waist"));
+    double most = -10, before = 0, back = 0;
+    for (int i = 0; i < 20000; ++i) {
+      person.step(0.001, view);
+      const double x = person.body().joints[waist].position.x();
+      EXPECT_TRUE(i == 0 || std::abs(x - before) < 0.004) << "where the person turns back";
+      before = x;
+      most = std::max(most, x);
+      back = std::max(back, most - x);
+    }
+    EXPECT_GT(back, 0.5) << "also who waits turns back";
+    return most;
+  };
+  PersonView view;
+  view.robot_hand = {0.5, 0.3, 1.0};
+  EXPECT_GT(farthest(view), 1.0) << "a robot that stands is what passers-by are used to";
+  view.platform = Vector3(0.5, 1.3, 0);
+  EXPECT_LT(farthest(view), 0.0) << "the hand is ahead";
+  view.robot_hand.y() = 1.0;
+  EXPECT_GT(farthest(view), 1.0) << "hand and platform are beside";
+}
+
 PersonSettings giver() {
   PersonSettings settings;
   settings.id = "anna";
