@@ -66,15 +66,15 @@ Pose standing_at(const PlatformPlace& place, const Pose& T_world_platform) {
 }
 
 PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene,
-                             const HumanState& people, double room)
+                             const HumanState& people, const PlatformRoom& room)
     : mobile_(mobile),
       world_(mobile, std::move(library)),
-      room_(room),
+      room_to_people_(room.people),
       anybody_(!people.people.empty()) {
   Scene seen_from_world = scene;
   seen_from_world.T_world_base = Pose::Identity();
   for (SceneBox& box : seen_from_world.boxes)
-    box.size.head<2>() += Eigen::Vector2d::Constant(2 * kFurnitureRoom);
+    box.size.head<2>() += Eigen::Vector2d::Constant(2 * room.furniture);
   world_.set_base(Pose::Identity());
   world_.set_scene(seen_from_world);
   world_.set_people(people);
@@ -87,8 +87,8 @@ PlatformFloor::Verdict PlatformFloor::check(const Vector& q, const Pose& T_world
           ? with_platform_at(mobile_, q, {p.x(), p.y(), heading_of(T_world_platform)})
           : with_platform(q, T_world_platform);
   if (!world_.is_free(whole)) return Verdict::blocked;
-  return anybody_ && world_.distance_to_people(whole) < room_ ? Verdict::near_person
-                                                              : Verdict::free;
+  return anybody_ && world_.distance_to_people(whole) < room_to_people_ ? Verdict::near_person
+                                                                        : Verdict::free;
 }
 
 }  // namespace handsel

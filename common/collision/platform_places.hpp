@@ -20,16 +20,19 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
 /// The platform at `place`, as high as in T_world_platform.
 Pose standing_at(const PlatformPlace& place, const Pose& T_world_platform);
 
-/// Kept to furniture where the platform is sent to: it stops beside that place by the errors of its
-/// localisation [m].
-inline constexpr double kFurnitureRoom = 0.05;
+/// Distances that the robot keeps where its platform is sent to.
+struct PlatformRoom {
+  double people{0.5};  ///< of all of the robot [m]
+  /// Level, of all of the robot: the platform stops beside its place by the errors of its
+  /// localisation [m].
+  double furniture{0.05};
+};
 
 /// Checks places. `mobile`: the robot on its platform (on_platform).
 class PlatformFloor {
  public:
-  /// `room` [m]: kept between all of the robot and people.
   PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene,
-                const HumanState& people, double room);
+                const HumanState& people, const PlatformRoom& room);
 
   /// Takes along what the hand holds.
   void carry(const Attachment& attachment) { world_.set_attachment(attachment, {}); }
@@ -41,7 +44,7 @@ class PlatformFloor {
  private:
   const RobotModel& mobile_;
   CollisionWorld world_;
-  double room_;
+  double room_to_people_;
   bool anybody_;
 };
 

@@ -133,6 +133,7 @@ ChoiceSettings choice_settings(const settings::GraspPlannerSettings& t) {
   s.off_giver = t.off_giver;
   s.rank_drive = t.rank_drive;
   s.platform_room = t.platform_room;
+  s.furniture_room = t.furniture_room;
   s.platform_reaches = t.platform_reaches;
   return s;
 }

@@ -8,7 +8,9 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr int kTries = 1500;    // places of the platform for each pose
+constexpr int kTries = 1500;  // places of the platform for each pose
+// Of the distance of start or goal: growing sides of a turned box come nearer by more at corners.
+constexpr double kOfDistance = 0.6;
 constexpr double kReach = 1.2;  // places are at most this far from the pose, in the plane [m]
 
 }  // namespace
@@ -38,6 +40,22 @@ void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Pr
     upper[i] = place ? high + roam : heading ? high + M_PI : of.upper;
   }
   problem.room = {lower, upper};
+}
+
+void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, double room,
+                             const std::vector<Vector>& ends) {
+  Scene wider = scene;
+  Scene alone = scene;
+  alone.objects.clear();
+  for (SceneBox& box : wider.boxes) {
+    alone.boxes = {box};
+    world.set_scene(alone);
+    double clearance = room;
+    for (const Vector& q : ends)
+      clearance = std::min(clearance, kOfDistance * world.distance_to_scene(q, room));
+    box.size.head<2>() += Eigen::Vector2d::Constant(2 * clearance);
+  }
+  world.set_scene(wider);
 }
 
 PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,

@@ -16,6 +16,12 @@ bool is_of_platform(const std::string& group);
 /// beyond; headings of goals nearest to that of the start.
 void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Problem& problem);
 
+/// Replaces the scene of a world whose moving axes and attachment are set: furniture is larger by
+/// `room` [m] on every level side, or by less where a configuration of `ends` (all axes) is nearer
+/// to a box: beside a sideboard the platform must be able to stop, and to leave.
+void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, double room,
+                             const std::vector<Vector>& ends);
+
 /// Poses for the whole robot: places of the platform around each, drawn at random and as near to
 /// where it stands as they come, from which the arm reaches it with the other axes as in q_start;
 /// free of collision with what is at rest. Up to `each` a pose.

@@ -10,6 +10,19 @@
 namespace handsel::path_planner {
 namespace {
 
+// Of furniture_room, by a platform on its path: the localisation of the platform varies.
+constexpr double kKept = 0.5;
+
+/// Start and first goal, all axes; the start alone where goals are not configurations.
+std::vector<Vector> first_ends_of(const Problem& problem) {
+  std::vector<Vector> ends = {problem.start};
+  if (problem.goals.empty()) return ends;
+  Vector goal = problem.start;
+  goal(problem.axes) = problem.goals.front();
+  ends.push_back(std::move(goal));
+  return ends;
+}
+
 /// Start and goal of a request to continue, all axes: the goal that is led to if it is wanted
 /// still, else the first one.
 std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far) {
@@ -91,8 +104,11 @@ void Solver::set_world(const Selected& selected, PlanningTask& task) {
   world.set_attachment(task.request.attachment, task.request.allowed_contacts);
   if (!task.request.running.empty()) {
     world.set_moving_axes(task.problem.axes);
-    set_scene_with_margins(world, scene, settings_.replan_margins,
-                           ends_of(task.problem, task.request.running.back()));
+    const std::vector<Vector> ends = ends_of(task.problem, task.request.running.back());
+    if (selected.navigation != nullptr)
+      keep_clear_of_furniture(world, scene, kKept * settings_.furniture_room, ends);
+    else
+      set_scene_with_margins(world, scene, settings_.replan_margins, ends);
   }
   selected.models.cost.set_people(*task.people);
   selected.models.cost.set_layers(task.layers);
@@ -108,10 +124,11 @@ void Solver::solve(PlanningTask& task, const Hooks& hooks) {
   set_world(selected, task);
   const std::uint64_t budget = task.problem.budget;
   std::uint64_t spent = 0;
-  if (keep_head_clearance(selected, task) > 0) {
+  if (keep_clearance(selected, task)) {
     task.problem.budget = budget / 2;
     solve_once(selected, task, hooks);
     selected.models.world.set_obstacles({});
+    if (!task.result.solved) set_world(selected, task);
     spent = task.result.checks;
   }
   if (!task.result.solved && !hooks.cancelled()) {
@@ -147,6 +164,18 @@ double Solver::keep_head_clearance(const Selected& selected, const PlanningTask&
   for (const Vector& goal : problem.goals)
     goals.push_back(RobotModel::with(problem.start, group, goal));
   return keep_clear_of_heads(world, *task.people, settings_.head_room, problem.start, goals);
+}
+
+/// Keeps what clearance start and goal allow: of an arm to heads, of a platform that sets out to
+/// furniture. Returns whether that is any.
+bool Solver::keep_clearance(const Selected& selected, const PlanningTask& task) const {
+  if (selected.navigation == nullptr) return keep_head_clearance(selected, task) > 0;
+  if (!task.request.running.empty() || settings_.furniture_room == 0) return false;
+  Scene scene = *task.scene;
+  scene.T_world_base = task.T_world_root;
+  keep_clear_of_furniture(selected.models.world, scene, settings_.furniture_room,
+                          first_ends_of(task.problem));
+  return true;
 }
 
 Result Solver::plan_new(const Selected& selected, PlanningTask& task, const Hooks& hooks) {

@@ -17,11 +17,12 @@
 namespace handsel::path_planner {
 
 struct SolverSettings {
-  Settings search;         ///< Of every search.
-  ReplanSettings live;     ///< Of requests to continue along a running path.
-  Margins replan_margins;  ///< Clearance that a running path keeps to obstacles [m].
-  double roam{};           ///< How far the platform may drive around start and goals [m].
-  double head_room{};      ///< Clearance to heads that paths between configurations keep [m].
+  Settings search;          ///< Of every search.
+  ReplanSettings live;      ///< Of requests to continue along a running path.
+  Margins replan_margins;   ///< Clearance that a running path keeps to obstacles [m].
+  double roam{};            ///< How far the platform may drive around start and goals [m].
+  double furniture_room{};  ///< Level clearance of paths of the platform from furniture [m].
+  double head_room{};       ///< Clearance to heads that paths between configurations keep [m].
 };
 
 /// One request with what was known when it came.
@@ -70,6 +71,7 @@ class Solver {
   Selected select(const PathRequest& request);
   void set_world(const Selected& selected, PlanningTask& task);
   void solve_once(const Selected& selected, PlanningTask& task, const Hooks& hooks);
+  bool keep_clearance(const Selected& selected, const PlanningTask& task) const;
   double keep_head_clearance(const Selected& selected, const PlanningTask& task) const;
   Result plan_new(const Selected& selected, PlanningTask& task, const Hooks& hooks);
   Result plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses,

@@ -260,7 +260,7 @@ void GraspChooser::search_places(Search& search,
   const Pose T_world_now = T_world_platform(*robot_, request.start, T_world_root);
   const Pose T_platform_root = T_world_now.inverse() * T_world_root;
   PlatformFloor floor(*mobile_, library_, search.scene, search.inputs.people,
-                      settings_.platform_room);
+                      {settings_.platform_room, settings_.furniture_room});
   const std::uint64_t budget = search.out.reaches + settings_.platform_reaches;
   const std::size_t enough = std::max(1U, request.max_grasps);
   std::size_t served = 0;

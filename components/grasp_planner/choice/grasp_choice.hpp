@@ -38,9 +38,10 @@ struct ChoiceSettings {
   /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
   /// it only creep [m].
   double off_giver{0.12};
-  double rank_visible{0.2};   ///< Grasp::visible; when a person is to take the object
-  double rank_drive{0.2};     ///< taken off for each metre the platform has to drive
-  double platform_room{0.5};  ///< kept between robot and people where the platform drives to [m]
+  double rank_visible{0.2};     ///< Grasp::visible; when a person is to take the object
+  double rank_drive{0.2};       ///< taken off for each metre the platform has to drive
+  double platform_room{0.5};    ///< kept between robot and people where the platform drives to [m]
+  double furniture_room{0.05};  ///< level, kept to furniture there [m]
   std::uint32_t platform_reaches{500};  ///< inverse kinematics tried for places of the platform
 };
 

@@ -4,6 +4,7 @@
 #include "common/messages/names.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
+#include "components/manipulation_planner/driving/handover_place.hpp"
 #include "components/manipulation_planner/driving/standing_search.hpp"
 #include "components/manipulation_planner/handover/otp_choice.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
@@ -15,6 +16,7 @@ namespace {
 constexpr double kArrived = 0.02;     // [m], [rad]: the scene shows the platform where it was sent
 constexpr int kMaxDisplacements = 4;  // drives that end because the platform is found elsewhere
 constexpr double kArrivalTimeout = 1.0;  // until the scene shows that [s]
+constexpr double kRetry = 1.0;           // until a drive is tried again that others prevent [s]
 constexpr double kEdge = 0.08;      // points to reach are this far inside the edge of a surface [m]
 constexpr double kPointStep = 0.2;  // between points to reach on a surface [m]
 constexpr double kTaken = 0.15;     // and this far from things that stand there [m]
@@ -90,19 +92,39 @@ struct SearchJob {
   CostSettings cost;
   settings::ManipulationPlannerSettings settings;
   StandingTarget target;
+  std::optional<HandoverNeeds> handover;  ///< nullopt: nothing is handed over there
   StandingSearch result;
 
   void run() {
-    PlatformFloor floor(*robot, objects, scene, people, settings.standing_room);
+    PlatformFloor floor(*robot, objects, scene, people,
+                        {settings.standing_room, settings.furniture_room});
     floor.carry(attachment);
     NavigationCost navigation(*robot, cost);
     navigation.set_people(people, scene.T_world_base);
     const StandingQuery query{*robot, arm, q, scene.T_world_base, navigation};
-    result = find_standing_places(query, target, floor, settings);
+    const ServesFrom serves = [this](const StandingPlace& place) {
+      return can_hand_over_from(place.place, *handover, *robot, arm, scene, settings);
+    };
+    result = find_standing_places(query, target, floor, settings, handover ? serves : nullptr);
   }
 };
 
-Routine<DrivePlaces> places_for(Parts& parts, StandingTarget target) {
+/// What the held object needs to be handed to a person; nullopt: no grasp holds an object.
+std::optional<HandoverNeeds> handover_to(Parts& parts, const Person& person) {
+  const auto& grasp = parts.held.grasp();
+  if (!grasp) return std::nullopt;
+  return HandoverNeeds{person,
+                       parts.arm.configuration(),
+                       parts.now.layers(),
+                       parts.arm.palm(),
+                       parts.held.attachment().T_tool_object,
+                       barred_directions(*grasp),
+                       grasp->partners,
+                       parts.arm.direction_back(*grasp)};
+}
+
+Routine<DrivePlaces> places_for(Parts& parts, StandingTarget target,
+                                std::optional<HandoverNeeds> handover) {
   auto work = std::make_shared<SearchJob>(SearchJob{parts.arm.shared_robot(),
                                                     parts.arm.group(),
                                                     parts.now.objects(),
@@ -113,6 +135,7 @@ Routine<DrivePlaces> places_for(Parts& parts, StandingTarget target) {
                                                     parts.cost,
                                                     parts.settings,
                                                     std::move(target),
+                                                    std::move(handover),
                                                     {}});
   const std::function<void()> job = [work] { work->run(); };
   DrivePlaces found;
@@ -136,13 +159,13 @@ Routine<DrivePlaces> find_places_for(Parts& parts, const ActionGoal& goal) {
     if (person == nullptr)
       found.outcome = Outcome::out_of_sight("person " + goal.human);
     else
-      found = co_await places_for(parts, target_before(*person));
+      found = co_await places_for(parts, target_before(*person), handover_to(parts, *person));
   } else {
     const SceneBox* box = parts.now.surface(goal.surface);
     if (box == nullptr)
       found.outcome = Outcome::failure("there is no surface " + goal.surface);
     else
-      found = co_await places_for(parts, target_on(parts, *box));
+      found = co_await places_for(parts, target_on(parts, *box), std::nullopt);
   }
   co_return found;
 }
@@ -162,6 +185,18 @@ Routine<Outcome> drive_once(Parts& parts, const ActionGoal& goal) {
   co_return driven;
 }
 
+/// Returns whether the kind of a failure excludes that somebody stands in the way.
+bool names_cause(ActionFailure kind) {
+  return kind != ActionFailure::none && kind != ActionFailure::other;
+}
+
+/// Returns whether anybody else than `served` is known: they may stand where the robot could.
+bool others_than(const Parts& parts, const std::string& served) {
+  const auto& people = parts.now.people().people;
+  return std::any_of(people.begin(), people.end(),
+                     [&](const Person& person) { return person.id != served; });
+}
+
 }  // namespace
 
 Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
@@ -171,10 +206,17 @@ Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
   Outcome rested = co_await rest_all(parts);
   if (!rested.good) co_return rested;
   Outcome driven;
-  for (int attempt = 0; attempt < kMaxDisplacements; ++attempt) {
+  const TimePoint begin = parts.now.time();
+  for (int displacements = 0; displacements < kMaxDisplacements;) {
     driven = co_await drive_once(parts, goal);
-    if (driven.end != MotionEnd::displaced) break;
+    const bool is_displaced = driven.end == MotionEnd::displaced;
+    const bool is_in_the_way = !driven.good && driven.end == MotionEnd::failed &&
+                               !names_cause(driven.kind) && others_than(parts, goal.human) &&
+                               to_seconds(parts.now.time() - begin) < parts.settings.drive_patience;
+    if (!is_displaced && !is_in_the_way) break;
     parts.refuse(text_of(ActionPhase::moving_platform), driven.reason);
+    displacements += is_displaced;
+    if (is_in_the_way) co_await parts.waiting.pause(kRetry);
   }
   if (!driven.good) co_return driven;
   const auto has_arrived = [&] {

@@ -9,9 +9,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSamePlace = 0.1;   // nearer places differ by heading only [m]
-constexpr double kReachRatio = 0.9;  // of the reach of the arm that is used
-
 double heading_of(const Pose& T) { return std::atan2(T.linear()(1, 0), T.linear()(0, 0)); }
 
 /// Level angle between two vectors [rad].
@@ -34,7 +31,7 @@ void add_candidates(const StandingQuery& query, const Vector3& point,
     StandingPlace one;
     one.T_world_platform = standing_at(place, T_world_platform);
     const Vector3 p_shoulder = one.T_world_platform * p_platform_shoulder;
-    if ((point - p_shoulder).norm() > kReachRatio * reach.length) continue;
+    if ((point - p_shoulder).norm() > settings.standing_reach * reach.length) continue;
     const Vector3 to_target = point - one.T_world_platform.translation();
     if (front && level_angle(-to_target, *front) > settings.standing_bearing) continue;
     const Pose T_root_platform = T_root_world * one.T_world_platform;
@@ -51,7 +48,8 @@ void add_candidates(const StandingQuery& query, const Vector3& point,
 
 StandingSearch find_standing_places(const StandingQuery& query, const StandingTarget& target,
                                     PlatformFloor& floor,
-                                    const settings::ManipulationPlannerSettings& settings) {
+                                    const settings::ManipulationPlannerSettings& settings,
+                                    const ServesFrom& serves) {
   const Pose T_world_platform = handsel::T_world_platform(query.robot, query.q, query.T_world_root);
   std::vector<StandingPlace> candidates;
   for (const Vector3& point : target.points)
@@ -59,24 +57,30 @@ StandingSearch find_standing_places(const StandingQuery& query, const StandingTa
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const StandingPlace& a, const StandingPlace& b) { return a.cost < b.cost; });
   StandingSearch out;
-  std::size_t blocked = 0, near_person = 0;
+  std::size_t blocked = 0, near_person = 0, useless = 0, checks = 0;
   for (StandingPlace& candidate : candidates) {
-    if (out.places.size() >= settings.standing_places) break;
+    if (out.places.size() >= settings.standing_places || checks >= settings.standing_checks) break;
     const bool known =
         std::any_of(out.places.begin(), out.places.end(), [&](const StandingPlace& other) {
-          return (other.place - candidate.place).head<2>().norm() < kSamePlace;
+          return (other.place - candidate.place).head<2>().norm() < settings.standing_spacing;
         });
     if (known) continue;
     const PlatformFloor::Verdict verdict = floor.check(query.q, candidate.T_world_platform);
     blocked += verdict == PlatformFloor::Verdict::blocked;
     near_person += verdict == PlatformFloor::Verdict::near_person;
-    if (verdict == PlatformFloor::Verdict::free) out.places.push_back(std::move(candidate));
+    if (verdict != PlatformFloor::Verdict::free) continue;
+    checks += serves != nullptr;
+    if (serves && !serves(candidate))
+      ++useless;
+    else
+      out.places.push_back(std::move(candidate));
   }
   const auto refuse = [&](std::size_t count, const char* why) {
     if (count > 0) out.refusals.push_back({std::to_string(count) + " places", why});
   };
   refuse(blocked, "the robot would collide there");
   refuse(near_person, "too near to a person");
+  refuse(useless, "from there no pose of what is held can be reached in which the person takes it");
   if (candidates.empty())
     out.refusals.push_back(
         {"all places", target.front ? "the arm reaches nothing from before the person"

@@ -2,6 +2,7 @@
 // of people are those of chapter section 4.1. Pure.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -41,10 +42,14 @@ struct StandingSearch {
   Refusals refusals;                  ///< how many places were refused, and why
 };
 
+/// Returns whether a place serves; null: all do.
+using ServesFrom = std::function<bool(const StandingPlace&)>;
+
 /// Searches places from which the arm reaches a point of the target by its length, where the robot
-/// is free of collisions and keeps `standing_room` to people.
+/// is free of collisions, and which serve; at most `standing_checks` of these are asked about.
 StandingSearch find_standing_places(const StandingQuery& query, const StandingTarget& target,
                                     PlatformFloor& floor,
-                                    const settings::ManipulationPlannerSettings& settings);
+                                    const settings::ManipulationPlannerSettings& settings,
+                                    const ServesFrom& serves = nullptr);
 
 }  // namespace handsel::manipulation_planner

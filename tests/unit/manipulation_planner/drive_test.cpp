@@ -76,6 +76,23 @@ TEST_F(Drive, goes_where_the_grasp_planner_finds_a_grasp) {
   EXPECT_LT((place() - grasp.platform).norm(), 1e-9);
 }
 
+TEST_F(Drive, waits_while_others_may_stand_in_the_way_and_not_when_nobody_does) {
+  ActionGoal goal;
+  goal.kind = ActionKind::drive;
+  goal.has_goal = true;
+  goal.T_world_goal = make_pose({1, -2, 0});
+  rig_.failing_drives = 12;
+  drive(goal);
+  EXPECT_EQ(status().state, ActionState::succeeded) << status().reason;
+  EXPECT_EQ(rig_.failing_drives, 0);
+  rig_.people.people.clear();
+  rig_.failing_drives = 12;
+  goal.T_world_goal = make_pose({2, -2, 0});
+  drive(goal);
+  EXPECT_EQ(status().state, ActionState::failed);
+  EXPECT_GT(rig_.failing_drives, 0);
+}
+
 TEST_F(Drive, says_what_is_not_there) {
   ActionGoal goal;
   goal.kind = ActionKind::drive;

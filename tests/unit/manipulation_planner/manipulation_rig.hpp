@@ -147,6 +147,10 @@ class Rig {
     PathReply reply;
     reply.id = request.id;
     reply.solved = path_requests > failing_paths;
+    if (request.group == kPlatformGroup && failing_drives > 0) {
+      --failing_drives;
+      reply.solved = false;
+    }
     const bool allowed_to_touch =
         std::find(request.allowed_contacts.begin(), request.allowed_contacts.end(), touched) !=
         request.allowed_contacts.end();
@@ -265,7 +269,7 @@ class Rig {
   bool unsure{false};  // the hand reports that it closed on nothing, also where the object comes
   TimePoint now{};
   std::uint64_t actions{0};
-  int path_requests{0}, failing_paths{0}, stops{0}, led_over{0};
+  int path_requests{0}, failing_paths{0}, failing_drives{0}, stops{0}, led_over{0};
   PathRequest last_path;
   std::vector<RegraspRequest> regrasps;  // all, each answered with no sequence
   std::vector<std::string> path_groups;  // of all paths asked for

@@ -4,6 +4,7 @@
 #include "common/cost/person_frame.hpp"
 #include "common/model/arm_reach.hpp"
 #include "common/model/platform.hpp"
+#include "components/manipulation_planner/driving/handover_place.hpp"
 #include "components/manipulation_planner/driving/standing_search.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
@@ -23,13 +24,14 @@ class StandingPlaces : public ::testing::Test {
   Vector at(const Vector3& place) const {
     return with_platform_at(robot(), robot().rest_configuration(), place);
   }
-  StandingSearch search(const StandingTarget& target) {
-    PlatformFloor floor(robot(), {}, scene_, people_, settings_.standing_room);
+  StandingSearch search(const StandingTarget& target, const ServesFrom& serves = nullptr) {
+    PlatformFloor floor(robot(), {}, scene_, people_,
+                        {settings_.standing_room, settings_.furniture_room});
     NavigationCost navigation(robot(), {});
     navigation.set_people(people_, scene_.T_world_base);
     const Vector q = at(start_);
     const StandingQuery query{robot(), arm(), q, scene_.T_world_base, navigation};
-    return find_standing_places(query, target, floor, settings_);
+    return find_standing_places(query, target, floor, settings_, serves);
   }
   StandingTarget before_person() const {
     StandingTarget target;
@@ -75,6 +77,40 @@ TEST_F(StandingPlaces, not_behind_a_person_even_where_the_drive_is_shorter) {
   const StandingSearch found = search(before_person());
   ASSERT_FALSE(found.places.empty());
   for (const StandingPlace& place : found.places) EXPECT_GT(place.place.x(), 2.4);
+}
+
+TEST_F(StandingPlaces, a_place_that_does_not_serve_is_refused_and_the_search_ends) {
+  people_ = person({2, 0, 0}, M_PI);
+  const std::size_t all = search(before_person()).places.size();
+  const StandingSearch left =
+      search(before_person(), [](const StandingPlace& place) { return place.place.y() > 0; });
+  ASSERT_FALSE(left.places.empty());
+  EXPECT_GT(all, 1u);
+  for (const StandingPlace& place : left.places) EXPECT_GT(place.place.y(), 0);
+  std::size_t asked = 0;
+  const StandingSearch none = search(before_person(), [&](const StandingPlace&) {
+    ++asked;
+    return false;
+  });
+  EXPECT_TRUE(none.places.empty());
+  EXPECT_EQ(asked, settings_.standing_checks);
+  ASSERT_FALSE(none.refusals.empty());
+  EXPECT_EQ(none.refusals.back().what, std::to_string(asked) + " places");
+}
+
+TEST_F(StandingPlaces, something_is_handed_over_from_before_a_person_and_not_from_afar) {
+  people_ = person({2, 0, 0}, M_PI);
+  HandoverNeeds needs;
+  needs.receiver = people_.people[0];
+  needs.q = at(start_);
+  needs.palm = arm().tip;
+  const auto can = [&](const Vector3& place) {
+    return can_hand_over_from(place, needs, robot(), arm(), scene_, settings_);
+  };
+  EXPECT_FALSE(can(start_));
+  const StandingSearch near = search(before_person());
+  EXPECT_TRUE(std::any_of(near.places.begin(), near.places.end(),
+                          [&](const StandingPlace& place) { return can(place.place); }));
 }
 
 TEST_F(StandingPlaces, the_place_is_given_in_the_root_frame) {

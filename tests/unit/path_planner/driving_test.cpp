@@ -50,6 +50,17 @@ class DrivingJido : public ::testing::Test {
     drive(mobile(), navigation_, kRoam, out);
     return out;
   }
+  /// The platform at every place of a path keeps two centimeters to the furniture between its ends.
+  void expect_clear_of(const Scene& scene, const std::vector<Vector>& path) {
+    Scene seen = scene;
+    seen.T_world_base = Pose::Identity();
+    exact_.set_scene(seen);
+    for (std::size_t i = 1; i < path.size(); ++i)
+      for (int k = 0; k < 50; ++k) {
+        const Vector q = path[i - 1] + k / 50.0 * (path[i] - path[i - 1]);
+        EXPECT_GT(exact_.distance_to_scene(at(q[0], q[1], q[2]), 1.0), 0.02);
+      }
+  }
   void obstacles(const std::vector<Obstacle>& all) {
     world_.set_obstacles(all);
     exact_.set_obstacles(all);
@@ -177,6 +188,29 @@ TEST_F(DrivingJido, it_keeps_away_from_a_person_it_could_drive_past) {
   expect_free_and_inside(p, kept);
 }
 
+TEST_F(DrivingJido, furniture_is_kept_clear_of_as_far_as_start_and_goal_allow) {
+  Scene scene;
+  scene.boxes.push_back({"sideboard", make_pose({2.0, 0, 0.4}), {0.5, 1.0, 0.8}, true});
+  const auto distance = [&](const Vector& q) {
+    exact_.set_scene(scene);
+    return exact_.distance_to_scene(q, 10.0);
+  };
+  const auto place_at = [&](double clearance) {  // from which the robot faces the sideboard
+    double x = 0;
+    while (distance(at(x, 0, 0)) > clearance) x += 0.001;
+    return at(x, 0, 0);
+  };
+  const Vector far = at(0, -2, 0), near = place_at(0.06), nearer = place_at(0.02);
+  keep_clear_of_furniture(world_, scene, 0.1, {far});
+  EXPECT_FALSE(world_.is_free(near));
+  EXPECT_TRUE(world_.is_free(far));
+  keep_clear_of_furniture(world_, scene, 0.1, {far, near});
+  EXPECT_TRUE(world_.is_free(near));
+  EXPECT_FALSE(world_.is_free(nearer));
+  keep_clear_of_furniture(world_, scene, 0.0, {far});
+  EXPECT_TRUE(world_.is_free(nearer));
+}
+
 TEST_F(DrivingJido, the_whole_robot_is_one_request) {
   obstacles({box("table", {2.5, 0, 0.36}, {0.7, 1.2, 0.72}),
              box("shelf", {1.2, 1.2, 0.8}, {0.4, 0.8, 1.6})});
@@ -247,6 +281,7 @@ TEST_F(DrivingJido, a_request_on_the_bus_starts_where_the_robot_stands) {
   ASSERT_TRUE(drives.solved) << drives.reason;
   EXPECT_LT((drives.path.front() - Vector(Vector3(1, -2, 3.0))).norm(), 1e-6);
   EXPECT_NEAR(drives.path.back()[2], 2 * M_PI - 3.0, 1e-6) << "turns the short way";
+  expect_clear_of(scene, drives.path);
   r.goals = {Vector3(2.5, -2, 0)};
   EXPECT_THAT(ask(r).reason, HasSubstr("box table"));
   r.goals.clear();
