@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kArrived = 0.02;     // [m], [rad]: the scene shows the platform where it was sent
 constexpr int kMaxDisplacements = 4;  // drives that end because the platform is found elsewhere
+constexpr int kMaxCorrections = 2;    // drives to an object once the platform has stopped at it
 constexpr double kArrivalTimeout = 1.0;  // until the scene shows that [s]
 constexpr double kRetry = 1.0;           // until a drive is tried again that others prevent [s]
 constexpr double kEdge = 0.08;      // points to reach are this far inside the edge of a surface [m]
@@ -170,7 +171,8 @@ Routine<DrivePlaces> find_places_for(Parts& parts, const ActionGoal& goal) {
   co_return found;
 }
 
-/// Chooses places as the world is now and drives to one of them.
+/// Chooses places as the world is now, and drives to one of them until the scene shows the platform
+/// there.
 Routine<Outcome> drive_once(Parts& parts, const ActionGoal& goal) {
   parts.action.phase = ActionPhase::choosing_platform_place;
   const DrivePlaces found = co_await find_places_for(parts, goal);
@@ -182,6 +184,14 @@ Routine<Outcome> drive_once(Parts& parts, const ActionGoal& goal) {
   motion.goals.assign(found.places.begin(), found.places.end());
   motion.T_world_root = parts.now.T_world_base();
   Outcome driven = co_await move(parts, motion);
+  if (!driven.good) co_return driven;
+  const RobotModel& robot = parts.arm.robot();
+  const auto has_arrived = [&] {
+    const Vector& seen = parts.now.scene().robot_position;
+    return (platform_place(robot, seen) - platform_place(robot, parts.now.set_point())).norm() <
+           kArrived;
+  };
+  co_await parts.waiting.until(has_arrived, kArrivalTimeout);
   co_return driven;
 }
 
@@ -197,14 +207,9 @@ bool others_than(const Parts& parts, const std::string& served) {
                      [&](const Person& person) { return person.id != served; });
 }
 
-}  // namespace
-
-Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
-  const RobotModel& robot = parts.arm.robot();
-  if (!drives(robot))
-    co_return Outcome::failure("robot " + robot.name() + " has no platform that drives");
-  Outcome rested = co_await rest_all(parts);
-  if (!rested.good) co_return rested;
+/// Drives, again where the platform is found elsewhere than its wheels have measured, and for a
+/// while where others may stand in the way.
+Routine<Outcome> drive_patiently(Parts& parts, const ActionGoal& goal) {
   Outcome driven;
   const TimePoint begin = parts.now.time();
   for (int displacements = 0; displacements < kMaxDisplacements;) {
@@ -218,14 +223,22 @@ Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
     displacements += is_displaced;
     if (is_in_the_way) co_await parts.waiting.pause(kRetry);
   }
-  if (!driven.good) co_return driven;
-  const auto has_arrived = [&] {
-    const Vector& seen = parts.now.scene().robot_position;
-    return (platform_place(robot, seen) - platform_place(robot, parts.now.set_point())).norm() <
-           kArrived;
-  };
-  co_await parts.waiting.until(has_arrived, kArrivalTimeout);
-  co_return Outcome{};
+  co_return driven;
+}
+
+}  // namespace
+
+Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
+  const RobotModel& robot = parts.arm.robot();
+  if (!drives(robot))
+    co_return Outcome::failure("robot " + robot.name() + " has no platform that drives");
+  Outcome driven = co_await rest_all(parts);
+  if (driven.good) driven = co_await drive_patiently(parts, goal);
+  // The platform stops a little beside its place: the grasps may be out of reach from there. Where
+  // one is within reach, there is nothing left to drive.
+  for (int i = 0; driven.good && !goal.object.empty() && i < kMaxCorrections; ++i)
+    driven = co_await drive_patiently(parts, goal);
+  co_return driven;
 }
 
 }  // namespace handsel::manipulation_planner

@@ -76,6 +76,23 @@ TEST_F(Drive, goes_where_the_grasp_planner_finds_a_grasp) {
   EXPECT_LT((place() - grasp.platform).norm(), 1e-9);
 }
 
+TEST_F(Drive, goes_nearer_when_no_grasp_serves_from_where_the_platform_stopped) {
+  Grasp grasp;
+  grasp.has_platform = true;
+  grasp.platform = {0.4, -1.5, 1.2};
+  rig_.grasps = {grasp};
+  rig_.after_grasp_reply = [&] {  // from the place that it stopped at, only the next one serves
+    rig_.grasps[0].has_platform = rig_.grasps[0].platform.x() < 0.45;
+    rig_.grasps[0].platform.x() += 0.05;
+  };
+  ActionGoal goal;
+  goal.kind = ActionKind::drive;
+  goal.object = "mug";
+  drive(goal);
+  EXPECT_EQ(status().state, ActionState::succeeded) << status().reason;
+  EXPECT_NEAR(place().x(), 0.45, 1e-9);
+}
+
 TEST_F(Drive, waits_while_others_may_stand_in_the_way_and_not_when_nobody_does) {
   ActionGoal goal;
   goal.kind = ActionKind::drive;

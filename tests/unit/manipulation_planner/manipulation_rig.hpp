@@ -131,6 +131,7 @@ class Rig {
     else
       reply.reason = "no frame gives three contacts";
     if (grasp_planner_lives) planner.on(reply);
+    if (after_grasp_reply) after_grasp_reply();
   }
   void answer(const RegraspRequest& request) {
     regrasps.push_back(request);
@@ -269,6 +270,7 @@ class Rig {
   bool unsure{false};  // the hand reports that it closed on nothing, also where the object comes
   TimePoint now{};
   std::uint64_t actions{0};
+  std::function<void()> after_grasp_reply;
   int path_requests{0}, failing_paths{0}, failing_drives{0}, stops{0}, led_over{0};
   PathRequest last_path;
   std::vector<RegraspRequest> regrasps;  // all, each answered with no sequence
