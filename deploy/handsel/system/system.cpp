@@ -21,6 +21,8 @@ SystemOptions checked(SystemOptions options) {
   system_processes(options);
   if (options.web_port >= 0)
     setenv("HANDSEL_WEB_PORT", std::to_string(options.web_port).c_str(), 1);
+  // Large pages: reading meshes fills buffers of 16 MB, page by page a third of the time to start.
+  setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
   return options;
 }
 
