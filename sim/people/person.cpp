@@ -179,7 +179,10 @@ void PersonModel::act(double dt, const PersonView& view) {
     case PersonPhase::arriving: {
       const double length =
           settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
-      if (waits_for_robot(view)) wait_for_robot(dt, length / kWalkSpeed);
+      if (waits_for_robot(view))
+        wait_for_robot(dt, length / kWalkSpeed);
+      else
+        waited_for_robot_ = 0;
       const double s = length > 0 ? since() * kWalkSpeed / length : 1;
       feet_ =
           home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();
