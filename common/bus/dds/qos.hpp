@@ -15,8 +15,10 @@ namespace handsel {
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-/// A health lease shorter than this gives false alarms on a loaded machine.
-inline constexpr dds_duration_t kHealthLease = DDS_MSECS(300);
+/// After a lease without a sign of life a process counts as ended, which must be within a second.
+/// A shorter lease costs processor time: each process sends several signs of life a lease to every
+/// other one.
+inline constexpr dds_duration_t kHealthLease = DDS_MSECS(800);
 
 /// Returns the QoS of a component's reader; the types must be equal on topics of the table.
 Qos reader_qos(const TopicRow& row);
