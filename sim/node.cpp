@@ -13,6 +13,7 @@ namespace {
 // slip, shown in real_time_factor.
 constexpr std::uint64_t kCatchUp = 5;
 
+constexpr Duration kTurn = std::chrono::milliseconds(2);     // with simulated time
 constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, while time stands still
 // Set-points are applied in order, one a step; one older than this with a successor as old is not.
 constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
@@ -39,10 +40,12 @@ Node::Node(Bus& bus, const NodeContext& context)
     keeper_.emplace(settings_);
     clock_out_ = bus.advertise<SimClock>();
     clock_.incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
-    bus.subscribe<ClockReached>([this](const ClockReached& m, const Receipt&) {
-      processes_.add(m.incarnation);
-      keeper_->answered(m.component, m.incarnation, m.sequence);
-    });
+    bus.subscribe<ClockReached>(
+        [this](const ClockReached& m, const Receipt&) {
+          processes_.add(m.incarnation);
+          keeper_->answered(m.component, m.incarnation, m.sequence);
+        },
+        {.wakes = false});
   }
   if (world_->follows())
     bus.subscribe<HumanObservation>(
@@ -51,7 +54,7 @@ Node::Node(Bus& bus, const NodeContext& context)
     bus.subscribe<ActionStatus>(
         [this](const ActionStatus& m, const Receipt&) { world_->announce(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
-  bus.every(from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
+  bus.every(keeper_ ? kTurn : from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
 }
 
 void Node::restart() {
@@ -108,11 +111,7 @@ void Node::step_when_granted(TimePoint now) {
       world_->command(next.message, next.writer, to_seconds(keeper_->time().time_since_epoch()));
       set_points_.pop_front();
     }
-    if (!paused_) {
-      world_->step();
-      ++steps_;
-      publish();
-    }
+    if (!paused_) step_world();
     keeper_->stepped();
     announce(now);
   }
@@ -134,17 +133,17 @@ void Node::tick(TimePoint now) {
     return;
   }
   while (since_start_ < due) {
-    world_->step();
+    step_world();
     ++since_start_;
-    ++steps_;
-    publish();
   }
   factor_.update(now, world_->time());
 }
 
-void Node::publish() {
-  const auto stamp = [this] { return stamp_now(); };
-  output_.publish(*world_, steps_, stamp, factor_.value());
+void Node::step_world() {
+  world_->step();
+  ++steps_;
+  output_.publish(
+      *world_, steps_, [this] { return stamp_now(); }, factor_.value());
 }
 
 }  // namespace handsel::sim

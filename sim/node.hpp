@@ -27,7 +27,8 @@ class Node {
   void step_when_granted(TimePoint now);
   void announce(TimePoint now);
   Stamp stamp_now() const;
-  void publish();
+  /// Steps the world and publishes its state.
+  void step_world();
   void on_control(const SimControl&);
   void restart();
 

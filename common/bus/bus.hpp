@@ -107,6 +107,10 @@ struct SubscribeOptions {
   /// samples are handed over: for slow readers of fast topics, which are then not woken by every
   /// sample.
   Duration period{};
+  /// true: a sample wakes the component. false: the sample waits for the next callback of the
+  /// component and is handed over before that callback; for samples that only a timer uses. A bus
+  /// without threads hands every sample over as it arrives.
+  bool wakes{true};
 };
 
 /// Communication of one component with all others; one bus per component.

@@ -21,6 +21,9 @@ constexpr Duration kJobSilence = std::chrono::seconds(2);
 // A process that the simulator waits for is less behind: the simulator grants two periods of 10 ms
 // ahead.
 constexpr Duration kLongestBurst = std::chrono::milliseconds(40);
+// Simulated time: timers are served at multiples of this period. Each tick computes with the
+// instant at which the tick was due, so only the processor time for waking up becomes less.
+constexpr Duration kServingPeriod = std::chrono::milliseconds(2);
 
 timespec to_timespec(Duration d) {
   return {static_cast<time_t>(d.count() / 1'000'000'000),
@@ -126,6 +129,26 @@ void Executor::after(Duration delay, std::function<void(TimePoint)> on_time) {
   add_timer(now(), Duration::zero(), delay, std::move(on_time));
 }
 
+Executor::Timers::iterator Executor::next_due(TimePoint wall, TimePoint time) {
+  auto next = timers_.end();
+  for (auto timer = timers_.begin(); timer != timers_.end(); ++timer)
+    if ((*timer)->due <= ((*timer)->real ? wall : time) &&
+        (next == timers_.end() || (*timer)->due < (*next)->due))
+      next = timer;
+  return next;
+}
+
+/// With granted time at the instant of the timer that is served next: its time must not be over.
+void Executor::serve_reminder() {
+  if (!drain_ || !reminded_.exchange(false, std::memory_order_acq_rel)) return;
+  const TimePoint wall = monotonic_now(), time = clock_.at(wall);
+  const auto next = next_due(wall, time);
+  if (clock_.paced() && next != timers_.end() && !(*next)->real)
+    due_ = last_ = std::max(last_, (*next)->due);
+  drain_();
+  due_.reset();
+}
+
 void Executor::serve_timers() {
   const TimePoint wall = monotonic_now();
   const bool paced = clock_.paced();
@@ -133,11 +156,7 @@ void Executor::serve_timers() {
   if (paced && !clock_.paced())
     return wake();  // what has come meanwhile is heard before time continues
   while (true) {
-    auto next = timers_.end();
-    for (auto timer = timers_.begin(); timer != timers_.end(); ++timer)
-      if ((*timer)->due <= ((*timer)->real ? wall : time) &&
-          (next == timers_.end() || (*timer)->due < (*next)->due))
-        next = timer;
+    const auto next = next_due(wall, time);
     if (next == timers_.end()) return;
     const bool once = (*next)->period == Duration::zero();
     serve(**next, time);
@@ -173,6 +192,8 @@ void Executor::arm() {
   TimePoint first = TimePoint::max();
   for (const auto& timer : timers_)
     first = std::min(first, timer->real ? timer->due : clock_.look_at(timer->due, wall));
+  if (clock_.paced() && first != TimePoint::max())
+    first += (kServingPeriod - first.time_since_epoch() % kServingPeriod) % kServingPeriod;
   if (first == armed_) return;
   const itimerspec spec{{}, to_timespec(std::max(first.time_since_epoch(), Duration(1)))};
   timerfd_settime(timer_fd_, TFD_TIMER_ABSTIME, &spec, nullptr);
@@ -204,6 +225,7 @@ void Executor::turn(int timeout_ms) {
     else
       armed_ = {};
   }
+  serve_reminder();
   serve_timers();
   if (!woken) return;
   woken_.store(false, std::memory_order_release);

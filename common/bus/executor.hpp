@@ -62,6 +62,9 @@ class Executor {
   /// Makes the executor call the function of on_wake() and finish jobs. Any thread; wake-ups
   /// that are pending at the same time lead to one call.
   void wake() noexcept;
+  /// As wake(), but lets the executor sleep: the function is called before the next callback. Any
+  /// thread.
+  void remind() noexcept { reminded_.store(true, std::memory_order_release); }
 
   /// Serves callbacks on the calling thread until stop().
   void run();
@@ -81,14 +84,20 @@ class Executor {
 
  private:
   struct Timer;
+  using Timers = std::list<std::unique_ptr<Timer>>;
   struct Job {
     std::function<Duration(const CancelToken&)> work;
     std::function<void()> done;
     CancelToken token;
   };
   void turn(int timeout_ms);
+  /// Calls the function of on_wake() if remind() has been called.
+  void serve_reminder();
   /// Serves every timer that is due, the earliest first.
   void serve_timers();
+  /// Returns the earliest of the timers that are due, on the monotonic clock at `wall`, on the time
+  /// of the executor at `time`; the end without one.
+  Timers::iterator next_due(TimePoint wall, TimePoint time);
   void serve(Timer& timer, TimePoint time);
   /// Sets the descriptor of the timers to the earliest.
   void arm();
@@ -104,9 +113,10 @@ class Executor {
   int timer_fd_{-1};
   TimePoint armed_{};  // what timer_fd_ is set to
   std::atomic<bool> woken_{false};
+  std::atomic<bool> reminded_{false};
   std::atomic<bool> stop_{false};
   std::function<void()> drain_;
-  std::list<std::unique_ptr<Timer>> timers_;
+  Timers timers_;
   PacedClock clock_;
   TimePoint last_{};              // now() at the last call
   std::optional<TimePoint> due_;  // of the timer that is served with granted time

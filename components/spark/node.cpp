@@ -47,7 +47,8 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
           scene_.update(state);
         else
           bus_.count_left_out("robot_state: of another robot", 1);
-      });
+      },
+      {.wakes = false});
   bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
     scene_.want(goal.object);
     if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0)

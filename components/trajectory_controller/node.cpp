@@ -20,11 +20,14 @@ Node::Node(Bus& bus, const NodeContext& context)
       active_out_(bus.advertise<ActiveTrajectory>()),
       status_out_(bus.advertise<ExecutionStatus>()) {
   command_.robot = context.robot->name();
-  read<RobotState>(bus, [this, &bus](const RobotState& m, const Receipt& r) {
-    if (m.robot != command_.robot) return bus.count_left_out("robot_state: of another robot", 1);
-    core_.on(m, r.arrival, r.age, robot_writer_ != 0 && r.writer != robot_writer_);
-    robot_writer_ = r.writer;
-  });
+  read<RobotState>(bus,
+                   [this, &bus](const RobotState& m, const Receipt& r) {
+                     if (m.robot != command_.robot)
+                       return bus.count_left_out("robot_state: of another robot", 1);
+                     core_.on(m, r.arrival, r.age, robot_writer_ != 0 && r.writer != robot_writer_);
+                     robot_writer_ = r.writer;
+                   },
+                   {.wakes = false});
   read<HumanState>(bus, [this](const HumanState& m, const Receipt& r) {
     watched_ = watched_ || !m.views.empty();
     core_.on(m, r.arrival - r.age);

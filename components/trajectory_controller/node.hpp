@@ -17,8 +17,9 @@ class Node {
  private:
   /// Subscribes to a topic with one writer.
   template <class M>
-  void read(Bus& bus, std::function<void(const M&, const Receipt&)> on_sample) {
-    inputs_.push_back(&bus.subscribe<M>(std::move(on_sample)));
+  void read(Bus& bus, std::function<void(const M&, const Receipt&)> on_sample,
+            const SubscribeOptions& options = {}) {
+    inputs_.push_back(&bus.subscribe<M>(std::move(on_sample), options));
   }
   void tick(TimePoint now);
   /// Whether a topic this node reads has a second writer.

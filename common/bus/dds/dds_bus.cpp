@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -56,6 +57,7 @@ struct Reader {
   WriterGate gate;
   dds_entity_t entity{0};
   std::atomic<std::int64_t> arrival{0};
+  bool wakes{true};
   std::atomic<bool> pending{false};
   std::atomic<bool> matching_changed{false};
 };
@@ -108,6 +110,8 @@ struct DdsBus::Impl {
     return entity;
   }
   void mark(Reader& reader);
+  /// Adds the reader to those that drain() serves.
+  void queue(Reader& reader);
   void drain();
   bool knows_time();
   void take(Reader& reader);
@@ -123,7 +127,9 @@ namespace {
 void on_data(dds_entity_t, void* arg) {
   Reader& reader = *static_cast<Reader*>(arg);
   reader.arrival.store(monotonic_now().time_since_epoch().count(), std::memory_order_relaxed);
-  reader.bus.mark(reader);
+  if (reader.wakes) return reader.bus.mark(reader);
+  reader.bus.queue(reader);
+  reader.bus.executor.remind();
 }
 
 void on_matching(Reader& reader) {
@@ -198,12 +204,14 @@ class DdsPublisher final : public AnyPublisher {
 
 }  // namespace
 
-void DdsBus::Impl::mark(Reader& reader) {
+void DdsBus::Impl::queue(Reader& reader) {
   if (reader.pending.exchange(true, std::memory_order_acq_rel)) return;
-  {
-    const std::lock_guard lock(pending_mutex);
-    pending.push_back(&reader);
-  }
+  const std::lock_guard lock(pending_mutex);
+  pending.push_back(&reader);
+}
+
+void DdsBus::Impl::mark(Reader& reader) {
+  queue(reader);
   executor.wake();
 }
 
@@ -274,7 +282,9 @@ void DdsBus::Impl::take(Reader& reader) {
     if (n <= 0) return;
     if (!info.valid_data) continue;
     const std::int64_t arrival = reader.arrival.load(std::memory_order_relaxed);
-    const TimePoint at = arrival > 0 ? executor.past(TimePoint(Duration(arrival))) : executor.now();
+    const TimePoint now = executor.now();
+    const TimePoint at =
+        arrival > 0 ? std::min(executor.past(TimePoint(Duration(arrival))), now) : now;
     if (!reader.intake.knows(info.publication_handle)) discover_writers();
     reader.intake.deliver(reader.sample.get(), info.publication_handle, at);
   }
@@ -429,6 +439,7 @@ const SubscriptionStatus& DdsBus::subscribe_any(
       std::make_unique<Reader>(*impl_, type, std::move(on_sample), options.period,
                                [impl = impl_.get()](const std::string& what) { impl->log(what); }));
   Reader* reader = impl_->readers.back().get();
+  reader->wakes = options.wakes;
   const bool polled = options.period > Duration::zero();
   dds_listener_t* listener = dds_create_listener(reader);
   if (!polled) dds_lset_data_available(listener, &on_data);

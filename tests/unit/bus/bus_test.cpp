@@ -1,6 +1,8 @@
 // The rules every bus keeps, played on both.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
 #include <vector>
 
 #include "common/bus/intake.hpp"
@@ -11,6 +13,7 @@
 #include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
 #include "tests/unit/bus/bus_stage.hpp"
+#include "tests/unit/bus/voluntary_switches.hpp"
 
 namespace handsel {
 namespace {
@@ -151,6 +154,48 @@ TYPED_TEST(BusRules, state_keeps_the_last_sample_and_commands_the_last_eight) {
   this->stage.pass(0.1);
   EXPECT_EQ(sizes, std::vector<std::size_t>{12});
   EXPECT_EQ(ids, (std::vector<std::uint64_t>{5, 6, 7, 8, 9, 10, 11, 12}));
+}
+
+TYPED_TEST(BusRules, what_does_not_wake_is_handed_over_before_the_next_callback) {
+  Bus& a = this->stage.add("sim");
+  Bus& b = this->stage.add("b");
+  auto publisher = a.advertise<RobotState>();
+  std::uint64_t sent = 0, received = 0;
+  const auto& status = b.subscribe<RobotState>(
+      [&](const RobotState& m, const Receipt&) { received = m.sequence; }, {.wakes = false});
+  ASSERT_TRUE(this->matched(publisher, status));
+  a.every(std::chrono::milliseconds(5),
+          [&](TimePoint) { sent += publisher->publish(robot_state(sent + 1)); });
+  std::vector<std::uint64_t> at_tick;
+  b.every(std::chrono::milliseconds(20), [&](TimePoint) { at_tick.push_back(received); });
+  ASSERT_TRUE(this->stage.until([&] { return at_tick.size() >= 10; }));
+  EXPECT_GE(status.received, 20u);
+  for (std::size_t i = 2; i < at_tick.size(); ++i) EXPECT_GT(at_tick[i], at_tick[i - 1]) << i;
+}
+
+TEST(DdsBus, sleeps_through_samples_that_do_not_wake) {
+  const auto switches = [](bool wakes) {
+    DdsStage stage;
+    Bus& a = stage.add("sim");
+    auto publisher = a.advertise<RobotState>();
+    DdsBus b({.component = "b", .domain = 100 + static_cast<std::uint32_t>(getpid()) % 100});
+    const auto& status =
+        b.subscribe<RobotState>([](const RobotState&, const Receipt&) {}, {.wakes = wakes});
+    std::atomic<bool> ended{false};
+    a.every(std::chrono::milliseconds(2), [&](TimePoint) { publisher->publish(robot_state(1)); });
+    std::thread writer([&] { stage.until([&] { return ended.load(); }, 20); });
+    b.run_until([&] { return status.received > 3; }, std::chrono::seconds(5));
+    const std::uint64_t received = status.received;
+    const long before = test::voluntary_switches();
+    b.run_until([] { return false; }, std::chrono::milliseconds(500));
+    const long after = test::voluntary_switches();
+    ended = true;
+    writer.join();
+    EXPECT_GT(status.received, received);
+    return after - before;
+  };
+  const long slept = switches(false), woken = switches(true);
+  EXPECT_LT(3 * slept, woken) << slept << " against " << woken << " in half a second";
 }
 
 TYPED_TEST(BusRules, late_joiner_gets_state_but_no_old_command) {

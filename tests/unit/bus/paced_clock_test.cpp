@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "common/bus/executor.hpp"
+#include "tests/unit/bus/voluntary_switches.hpp"
 
 using namespace handsel;
+using test::voluntary_switches;
 
 namespace {
 
@@ -154,6 +156,34 @@ TEST(Executor, of_the_ticks_before_a_jump_of_time_only_the_newest_is_served) {
   EXPECT_LE(now - ticks[0], from_seconds(0.001)) << "served at an instant that is past";
   EXPECT_EQ(status.late_cycles, 1u);
   EXPECT_GT(status.skipped, 100u);
+}
+
+TEST(Executor, a_reminder_is_served_at_the_instant_of_the_tick_that_follows) {
+  Executor executor([](const std::string&) {});
+  std::vector<TimePoint> reminders, ticks;
+  executor.on_wake([&] { reminders.push_back(executor.now()); });
+  executor.grant({.incarnation = 1, .until = monotonic_now() + from_seconds(0.1), .waited = {}});
+  executor.every(from_seconds(0.001), [&](TimePoint now) { ticks.push_back(now); });
+  const timespec nap{0, 5'000'000};
+  nanosleep(&nap, nullptr);  // several ticks are due
+  executor.remind();
+  executor.run_until([&] { return ticks.size() >= 20; }, from_seconds(0.1));
+  ASSERT_EQ(reminders.size(), 1u);
+  ASSERT_GE(ticks.size(), 20u);
+  EXPECT_EQ(reminders[0], ticks[0]) << "served at another instant than the first tick";
+  for (std::size_t i = 1; i < ticks.size(); ++i)
+    EXPECT_EQ(ticks[i] - ticks[i - 1], from_seconds(0.001));
+}
+
+TEST(Executor, wakes_less_often_than_it_ticks_while_time_is_granted) {
+  Executor executor([](const std::string&) {});
+  executor.grant({.incarnation = 1, .until = monotonic_now() + from_seconds(1), .waited = {}});
+  int ticks = 0;
+  executor.every(from_seconds(0.001), [&](TimePoint) { ++ticks; });
+  const long before = voluntary_switches();
+  executor.run_until([&] { return ticks >= 200; }, from_seconds(2));
+  EXPECT_GE(ticks, 200);
+  EXPECT_LE(voluntary_switches() - before, 130);
 }
 
 TEST(Executor, heartbeats_go_on_while_time_stands_still) {
