@@ -124,6 +124,9 @@ void PersonModel::step(double dt, const PersonView& view) {
     } else if (settings_.kind != PersonKind::still) {
       act(dt, view);
     }
+    if (settings_.steps_in.speed > 0)
+      feet_ = home_ -
+              distance_from_place(settings_.steps_in, settings_.approach_from, clock_) * forward();
     step_aside(dt);
     if (!followed_) look_at(looked_at(view), dt);
   }

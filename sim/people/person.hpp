@@ -17,6 +17,7 @@
 #include "sim/people/followed_body.hpp"
 #include "sim/people/moving_offer.hpp"
 #include "sim/people/recording.hpp"
+#include "sim/people/step_in.hpp"
 #include "sim/physics/grip.hpp"
 
 namespace handsel::sim {
@@ -66,6 +67,7 @@ struct PersonSettings {
   double max_warp{0.10};             ///< a recorded hand is moved by no more than this [m]
   double warp_time{0.5};             ///< over the last part before contact [s]
   double fetches_at{};               ///< a fetcher reaches for its object from then on [s]
+  StepInSettings steps_in;           ///< a person at rest otherwise comes from behind
   MovingOfferSettings moving;        ///< how a giver moves what is offered; duration 0: not at all
   BehaviourProfile behaviour{};      ///< what this person does differently
   std::vector<Furniture> furniture;  ///< what they hold is kept above it

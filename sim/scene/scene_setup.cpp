@@ -261,7 +261,19 @@ class Reader {
     }
     if (person.has_varies() && !vary(s, person.varies())) return;
     if (person.has_moves()) read_motion(p, person.moves());
+    if (person.has_steps_in()) read_step_in(s, person.steps_in());
     out_.people.push_back(std::move(p));
+  }
+
+  void read_step_in(PersonSettings& s, const config::StepIn& visit) {
+    if (s.kind != PersonKind::still) fail("person " + s.id + " steps in but is not STILL");
+    if (s.approach_from <= 0) fail("person " + s.id + " steps in but approach_from is not above 0");
+    if (visit.speed() <= 0) fail("steps_in of " + s.id + ": speed must be above 0");
+    if (visit.latest() < visit.earliest())
+      fail("steps_in of " + s.id + ": latest must not be below earliest");
+    const double draw = std::uniform_real_distribution<double>(0, 1)(random_);
+    s.steps_in = {visit.earliest() + draw * (visit.latest() - visit.earliest()), visit.speed(),
+                  visit.stays()};
   }
 
   void read_motion(StartPerson& p, const config::MovingOffer& moves) {
