@@ -127,8 +127,9 @@ class SpeedLimitTest : public testing::Test {
     go.state_revision = 1;
     inputs_.permission.set(go, at(1.0));
   }
-  double wanted(double now = 1.0) { return wanted_factor({}, inputs_, 7, guard_, at(now)); }
+  double wanted(double now = 1.0) { return wanted_factor(settings_, inputs_, 7, guard_, at(now)); }
 
+  SpeedSettings settings_;
   Inputs inputs_{{}, ObservedPeople(0.25), {}, {}, {}};
   GuardVerdict guard_;
 };
@@ -143,6 +144,7 @@ TEST_F(SpeedLimitTest, the_strictest_limit_counts) {
 }
 
 TEST_F(SpeedLimitTest, recoil_is_limited_by_the_guard_and_the_settings) {
+  settings_.recoil_limit = 0.2;
   inputs_.advice.value.speed_factor = -1.0;
   EXPECT_EQ(wanted(), -0.2);
   guard_.backward = -0.1;

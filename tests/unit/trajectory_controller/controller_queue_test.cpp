@@ -41,7 +41,9 @@ TEST(Controller, goes_over_to_another_trajectory_while_moving) {
 }
 
 TEST(Controller, turns_round_for_another_trajectory_while_running_back) {
-  ControllerBench b;
+  ControllerSettings slow_back;
+  slow_back.recoil_limit = 0.2;
+  ControllerBench b(slow_back);
   b.start();
   ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 1), "");
   b.run(2.0);

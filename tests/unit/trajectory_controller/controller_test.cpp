@@ -312,7 +312,9 @@ TEST(Controller, override_and_advice_combine_by_the_least) {
 }
 
 TEST(Controller, recoils_along_the_path_when_advised_and_goes_on_later) {
-  ControllerBench b;
+  ControllerSettings slow_back;
+  slow_back.recoil_limit = 0.2;
+  ControllerBench b(slow_back);
   b.start();
   ASSERT_EQ(b.go_to(goal(), 1), "");
   b.run(1.2);
