@@ -48,8 +48,10 @@ struct AttentionState {
 
 /// Topic AttentionAdvice, profile advice, 50 Hz.
 struct AttentionAdvice {
-  Stamp stamp{};                          ///< time of sending, UTC [ns]; 0: filled in by the bus
-  double speed_factor{1.0};               ///< minimum over the released behaviours, [-1, 1]
+  Stamp stamp{};             ///< time of sending, UTC [ns]; 0: filled in by the bus
+  double speed_factor{1.0};  ///< minimum over the released behaviours, [-1, 1]
+  /// A person closes in, and neither way along the path leads away: retreat beside the path.
+  bool leaves_path{};
   std::string limiting;                   ///< name of the behaviour that asked for it; empty: none
   std::string reason;                     ///< one phrase for people
   bool has_gaze_target{};                 ///< false: `gaze_target` has no meaning

@@ -30,6 +30,7 @@ void describe(WireIo& io, AttentionAdvice& m, handsel_AttentionAdvice& w) {
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.flag("has_gaze_target", m.has_gaze_target, w.has_gaze_target);
   io.point("gaze_target", m.gaze_target, w.gaze_target);
+  io.flag("leaves_path", m.leaves_path, w.leaves_path);
   io.flag("has_target_shift", m.has_target_shift, w.has_target_shift);
   io.point("target_shift", m.target_shift, w.target_shift);
   io.number("cost_gain", m.cost_gain, w.cost_gain, {0, 1e3});

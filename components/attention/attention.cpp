@@ -115,6 +115,7 @@ AttentionAdvice Attention::advice() const {
       advice.limiting = e.name;
       advice.reason = e.schema->reason();
     }
+    advice.leaves_path = advice.leaves_path || e.schema->leaves_path();
     if (kind == Behaviour::avoid) {
       const double urgency = 1.0 - (e.clock.period() - e.settings.p_min) /
                                        std::max(1e-9, e.settings.p_max - e.settings.p_min);

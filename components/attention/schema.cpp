@@ -102,7 +102,7 @@ class Avoid : public Schema {
   Behaviour kind() const override { return Behaviour::avoid; }
   double perceive(const World& w, TimePoint now) override {
     factor_ = 1.0;
-    near_ = false;
+    near_ = leaves_path_ = false;
     if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
     const SeparationExemption exception = handover_exemption(w);
     const ActiveTrajectory& active = *w.active;
@@ -127,18 +127,20 @@ class Avoid : public Schema {
       factor_ = s.distance / closing / contact_time;
       reason_ = "a person comes close";
     }
+    const double reaction = partner ? 0.0 : motor_.recoil_time * closing;
+    const bool closes_in =
+        closing > motor_.recoil_speed && s.distance < motor_.avoid_stop + reaction;
     if (active.trajectory != 0 && active.rest.size() > 0) {
       constexpr double kSame = 2e-4, kFarther = 1e-3;  // [m]
       const double ahead = least_along(active, *w.people, exception, 1);
-      const bool closes_in = s.distance < motor_.avoid_stop && closing > motor_.recoil_speed;
-      if (closes_in && ahead < s.distance + kFarther &&
-          least_along(active, *w.people, exception, -1) > s.distance + kFarther) {
-        factor_ = motor_.recoil_factor;
+      if (closes_in && ahead < s.distance + kFarther) {
+        leaves_path_ = least_along(active, *w.people, exception, -1) <= s.distance + kFarther;
+        if (!leaves_path_) factor_ = motor_.recoil_factor;
         reason_ = "recoil: a person closes in";
       } else if (ahead > s.distance + (closing > motor_.recoil_speed ? kFarther : -kSame)) {
         factor_ = std::max(factor_, motor_.avoid_recede);
       }
-    } else if (s.distance < motor_.avoid_stop && closing > motor_.recoil_speed) {
+    } else if (closes_in) {
       factor_ = motor_.recoil_factor;
       reason_ = "recoil: a person closes in on the resting arm";
     }
@@ -146,6 +148,7 @@ class Avoid : public Schema {
   }
   bool released(const World&) const override { return near_; }
   double speed_factor() const override { return factor_; }
+  bool leaves_path() const override { return leaves_path_; }
   const char* reason() const override { return reason_; }
 
  private:
@@ -170,7 +173,7 @@ class Avoid : public Schema {
   const Body& body_;
   MotorSettings motor_;
   ZoneTracker zone_;
-  bool near_{};
+  bool near_{}, leaves_path_{};
   double factor_{1.0};
   const char* reason_{""};
   MotionState3 sample_;

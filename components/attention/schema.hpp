@@ -102,6 +102,8 @@ class Schema {
   virtual bool released(const World& world) const = 0;
   /// Speed factor asked for, in [-1, 1]; below 0: back along the path.
   virtual double speed_factor() const { return 1.0; }
+  /// Returns whether the arm shall retreat beside its path.
+  virtual bool leaves_path() const { return false; }
   /// One phrase for a factor below 1.
   virtual const char* reason() const { return ""; }
   /// Point the head should look at, world [m]; nothing: none.

@@ -19,8 +19,13 @@ void require(bool good, const char* sentence) {
   if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
 }
 
+/// On a path on which contacts are allowed the hand would shift what it reaches for.
+bool may_retreat_beside(const CommandQueue& path) noexcept {
+  return path.current().allowed_contacts.empty();
+}
+
 ComplianceSettings compliance_settings(const ControllerSettings& s) {
-  return {s.yield_speed, s.yield_reach, s.retreat_reach, s.contact.yield_torque};
+  return {s.yield_speed, s.yield_reach, s.retreat_speed, s.retreat_reach, s.contact.yield_torque};
 }
 
 LookaheadSettings lookahead_settings(const ControllerSettings& s) {
@@ -207,8 +212,11 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   if (supervisor_.mode() >= Mode::hold || arm_.goal() == PathGoal::stop) return 0.0;
   const std::uint64_t trajectory = arm_.queue().current().id;
   const GuardVerdict& guard = lookahead_.verdict();
-  return trajectory_controller::wanted_factor(speed_settings(settings_), inputs_, trajectory, guard,
-                                              now);
+  const double wanted = trajectory_controller::wanted_factor(speed_settings(settings_), inputs_,
+                                                             trajectory, guard, now);
+  // Back along the path only from rest: a motion that turns round takes longer to stop.
+  constexpr double kStands = 1e-3;
+  return arm_.speed_factor() > kStands ? std::max(0.0, wanted) : wanted;
 }
 
 void Controller::supervise(TimePoint now, bool late) noexcept {
@@ -234,9 +242,13 @@ void Controller::step_arm(TimePoint now) noexcept {
   const MotionState3& sent = set_points_.sent();
   const bool rejoins = arm_.goal() == PathGoal::rejoin;
   if (rejoins && mode >= Mode::stop) arm_.interrupt_path(false);
-  if (rejoins && mode < Mode::hold && arm_.state() == ArmState::at_rest && arm_.rejoin(sent))
-    lookahead_.forbid_all();
+  const bool recoils = asks_for_recoil(inputs_, settings_.timeouts.attention, now);
+  const bool may_rejoin = rejoins && !recoils && !compliance_.moving() && mode < Mode::hold;
+  if (may_rejoin && arm_.state() == ArmState::at_rest && arm_.rejoin(sent)) lookahead_.forbid_all();
   ArmOrder order = mode >= Mode::stop ? ArmOrder::stop : ArmOrder::run;
+  if (order == ArmOrder::run && recoils && inputs_.advice.value.leaves_path &&
+      settings_.retreat_reach > 0.0 && may_retreat_beside(arm_.queue()))
+    order = ArmOrder::leave;
   const bool too_fast = mode == Mode::hold || lookahead_.is_too_fast(arm_.speed_factor());
   const double slack = mode == Mode::hold ? kStopSlack : kGuardSlack;
   if (order == ArmOrder::run && arm_.running() && !arm_.path().standing() && too_fast &&
@@ -262,13 +274,15 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   follower_.step({inputs_.robot, set_points_, inputs_.robot.age(now), mode == Mode::fault, cycles_},
                  arm_, head_.movers(), hands_);
   const bool undisturbed = people.partner().empty() && !hands_.any_moving();
-  const bool may_comply = arm_.state() == ArmState::at_rest && arm_.goal() != PathGoal::rejoin &&
-                          !settings_.dry_run && mode < Mode::fault && follows &&
+  const bool may_move = !settings_.dry_run && mode < Mode::fault && follows;
+  const bool beside_path = arm_.goal() == PathGoal::rejoin && !arm_.running();
+  const bool may_comply = arm_.state() == ArmState::at_rest && !beside_path && may_move &&
                           settings_.yield_speed > 0.0 && (undisturbed || clamped);
-  const bool recoils = !inputs_.attention_silent(now, settings_.timeouts.attention) &&
-                       inputs_.advice.value.speed_factor < 0.0;
+  const bool recoils = asks_for_recoil(inputs_, settings_.timeouts.attention, now);
+  const bool may_retreat =
+      recoils && (beside_path ? may_move && may_retreat_beside(arm_.queue()) : may_comply);
   compliance_.step({inputs_, contact_, set_points_, supervisor_.verdict(), lookahead_.nearest(),
-                    lookahead_.retreat_factor(), may_comply, recoils, cycles_});
+                    lookahead_.retreat_factor(), may_comply, may_retreat, cycles_});
   step_arm(now);
 
   const auto load = [this] {

@@ -41,7 +41,7 @@ namespace handsel::trajectory_controller {
 struct ControllerSettings {
   double period{0.001};               ///< control period [s]
   double attention_lost_factor{0.2};  ///< speed factor while attention is silent
-  double recoil_limit{0.2};           ///< largest speed factor back along the path, [0, 1]
+  double recoil_limit{1.0};           ///< largest speed factor back along the path, [0, 1]
   double max_command_age{0.5};        ///< older commands are refused [s]
   /// A trajectory may start this far from the set-point; a short motion bridges the distance [rad].
   double start_tolerance{0.05};
@@ -49,10 +49,11 @@ struct ControllerSettings {
   double switch_reach{0.3};
   double yield_speed{0.2};  ///< largest speed of complying with a push at rest [rad/s]
   double yield_reach{0.3};  ///< largest travel of each axis while complying [rad]
-  /// Largest travel of each axis in a retreat from a person at rest, when attention asks for
-  /// recoil; 0: never [rad].
-  double retreat_reach{0.15};
-  bool dry_run{};  ///< no set-point is sent; everything else runs
+  /// Largest speed of each axis in a retreat from a person at rest, when attention asks for recoil
+  /// [rad/s].
+  double retreat_speed{1.0};
+  double retreat_reach{0.3};  ///< largest travel of each axis then; 0: never [rad]
+  bool dry_run{};             ///< no set-point is sent; everything else runs
   /// A robot side that stands moves its fingers to set-points this near [rad; of a sliding one at
   /// its lever].
   double hand_rejoin{0.25};

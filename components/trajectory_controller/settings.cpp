@@ -184,6 +184,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.cost_factor = in.cost_factor;
   s.yield_speed = in.yield_speed;
   s.yield_reach = in.yield_reach;
+  s.retreat_speed = in.retreat_speed;
   s.retreat_reach = in.retreat_reach;
   s.dry_run = in.dry_run;
   s.switch_reach = in.switch_reach;

@@ -233,13 +233,30 @@ TEST_F(AttentionTest, recoils_only_when_running_back_leads_away) {
   run(attention, 0, 0.5);
   EXPECT_GE(attention.advice().speed_factor, 0.0);
   EXPECT_LT(attention.advice().speed_factor, 0.1);
+  EXPECT_TRUE(attention.advice().leaves_path) << "neither way along the path leads away";
 
   active_.axes = {0};
   active_.rest.axes[0].start = {-0.3, 0.5, 0.0};
   active_.time = 0.6;
   run(attention, 0.5, 1.0);
   EXPECT_LT(attention.advice().speed_factor, 0.0);
+  EXPECT_FALSE(attention.advice().leaves_path);
   EXPECT_EQ(attention.advice().limiting, "avoid");
+}
+
+TEST_F(AttentionTest, the_faster_a_person_comes_the_farther_away_the_arm_recoils) {
+  people_.people = {standing(0.8, 0.5)};
+  const double distance =
+      body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance;
+  ASSERT_GT(distance, 0.15);
+  ASSERT_LT(distance, 0.5);
+  const double needed = distance / settings().motor.recoil_time;
+  for (const double speed : {0.5 * needed, 1.5 * needed}) {
+    move(people_.people[0], Vector3::Zero(), speed * Vector3(-0.8, -0.5, 0).normalized());
+    Attention attention(settings(), body_);
+    run(attention, 0, 0.5);
+    EXPECT_EQ((attention.advice().speed_factor < 0.0), (speed > needed)) << speed << " m/s";
+  }
 }
 
 TEST_F(AttentionTest, an_arm_that_leads_away_keeps_moving) {
@@ -499,10 +516,10 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   const std::string shipped((std::istreambuf_iterator<char>(in)), {});
   EXPECT_EQ(refusal_of(shipped, "tick", "tick"), "no error");
   const std::string order = refusal_of(shipped, "p_min: 0.04 p_max: 0.8", "p_min: 1.0 p_max: 0.8");
-  EXPECT_THAT(order, HasSubstr("attention.txtpb:30"));
+  EXPECT_THAT(order, HasSubstr("attention.txtpb:31"));
   EXPECT_THAT(order, HasSubstr("behaviour avoid: p_max must not be below p_min"));
   const std::string stranger = refusal_of(shipped, "\"give\"", "\"hug\"");
-  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:33"));
+  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:34"));
   EXPECT_THAT(stranger,
               HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
   EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"),

@@ -18,37 +18,56 @@ Compliance::Compliance(const ComplianceSettings& settings, const RobotModel& rob
       joints_(joints),
       arm_(arm),
       from_(Vector::Zero(robot.dof())),
-      away_(from_),
       retreat_velocity_(from_),
-      one_axis_(from_) {
+      one_axis_(from_),
+      hessian_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(joints),
+                                     static_cast<Eigen::Index>(joints))),
+      gradient_(Vector::Zero(static_cast<Eigen::Index>(joints))),
+      solver_(static_cast<Eigen::Index>(joints)) {
   robot_.forward(from_, links_);
   link_twists(robot_, one_axis_, links_, twists_);
+  effects_.assign(links_.size(), Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(joints)));
 }
 
-/// How the axes move the point nearest to a person straight away from that person.
+/// Chooses the velocity at which the links near a person move straight away from that person, as
+/// well as the axes can (damped least squares); not downward: what the robot works on is below. The
+/// nearer a link, the more it counts. The guard lets only links that go clearly away move near a
+/// person, so one velocity for the nearest point alone would be refused.
 void Compliance::aim_away(const ComplianceInputs& in) noexcept {
-  constexpr double kMinLever = 0.05;  // [m]
-  away_.setZero();
+  constexpr double kFar = 1.2;       // beyond this a link does not count [m]
+  constexpr double kDamping = 0.02;  // of the axes [m^2]
   retreat_velocity_.setZero();
-  const Vector3 direction = in.nearest.on_robot - in.nearest.on_person;
-  if (in.nearest.link < 0 || !(direction.norm() > 1e-6)) return;
-  const auto link = static_cast<std::size_t>(in.nearest.link);
-  const Pose& T_world_base = in.inputs.robot.state().T_world_base;
-  const Vector3 toward = T_world_base.linear().transpose() * direction.normalized();
+  if (in.nearest.link < 0) return;
+  const Pose T_base_world = in.inputs.robot.state().T_world_base.inverse();
+  const Vector3 p_person = T_base_world * in.nearest.on_person;
+  const Vector3 up = T_base_world.linear().col(2);
   robot_.forward(in.set_points.sent().position, links_);
-  const Vector3 p_base = T_world_base.inverse() * in.nearest.on_robot;
-  const Vector3 lever = p_base - links_[link].translation();
+  hessian_.setIdentity();
+  hessian_ *= kDamping;
+  gradient_.setZero();
   for (std::size_t i = 0; i < joints_; ++i) {
-    const int axis = arm_.movers().axes()[i];
     one_axis_.setZero();
-    one_axis_[axis] = 1.0;
+    one_axis_[arm_.movers().axes()[i]] = 1.0;
     link_twists(robot_, one_axis_, links_, twists_);
-    const LinkTwist& twist = twists_[link];
-    away_[axis] = (twist.linear + twist.angular.cross(lever)).dot(toward);
+    for (std::size_t link = 0; link < links_.size(); ++link)
+      effects_[link].col(static_cast<Eigen::Index>(i)) = twists_[link].linear;
   }
-  const double max_lever = away_.cwiseAbs().maxCoeff();
-  away_ *= max_lever > kMinLever ? 1.0 / max_lever : 0.0;
-  retreat_velocity_ = settings_.speed * away_;
+  for (std::size_t link = 0; link < links_.size(); ++link) {
+    Vector3 away = links_[link].translation() - p_person;
+    away -= std::min(0.0, away.dot(up)) * up;
+    const double distance = away.norm(), lever = effects_[link].norm();
+    if (distance > kFar || distance < 1e-6 || lever < 1e-6) continue;
+    const double weight = 1.0 - distance / kFar;
+    hessian_.noalias() += weight * effects_[link].transpose().lazyProduct(effects_[link]);
+    gradient_.noalias() += weight * lever / distance * effects_[link].transpose() * away;
+  }
+  solver_.compute(hessian_);
+  solver_.solveInPlace(gradient_);
+  const double largest = gradient_.cwiseAbs().maxCoeff();
+  if (!(largest > 1e-6)) return;
+  for (std::size_t i = 0; i < joints_; ++i)
+    retreat_velocity_[arm_.movers().axes()[i]] =
+        settings_.retreat_speed * gradient_[static_cast<Eigen::Index>(i)] / largest;
 }
 
 /// Each new demand for rest is answered by rest first; a push that lasts then moves the arm again.
@@ -72,21 +91,20 @@ bool Compliance::waits_for_rest(const ComplianceInputs& in) noexcept {
 Compliance::Wish Compliance::find_wish(const ComplianceInputs& in) noexcept {
   const bool waits = waits_for_rest(in);
   const bool silent = (in.verdict.causes & bit(Cause::robot_state_silent)) != 0;
-  if (!in.allowed) return Wish::none;
-  if (!waits && in.contact.pushed() && !silent) return Wish::comply;
-  const bool retreats = in.verdict.mode < Mode::hold && settings_.retreat_reach > 0.0 &&
-                        in.recoils && in.nearest.link >= 0;
+  if (in.may_comply && !waits && in.contact.pushed() && !silent) return Wish::comply;
+  const bool retreats = in.may_retreat && in.verdict.mode < Mode::hold &&
+                        settings_.retreat_reach > 0.0 && in.nearest.link >= 0;
   return retreats ? Wish::retreat : Wish::none;
 }
 
-/// Sets an axis in motion by a ratio of the largest speed, within `reach` of where it began.
-void Compliance::move(int axis, double ratio, double reach) noexcept {
+/// Sets an axis in motion at a speed, within `reach` of where the motion of the arm began.
+void Compliance::move(int axis, double speed, double reach) noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
   AxisLimits limits = limits_of(robot_.comfort_limits(), axis);
-  limits.velocity = std::clamp(settings_.speed * std::abs(ratio), 1e-3, limits.velocity);
+  limits.velocity = std::clamp(std::abs(speed), 1e-3, limits.velocity);
   const Axis& bounds = robot_.axes()[static_cast<std::size_t>(axis)];
   const double now = arm_.movers()[axis].state().position;
-  const double wanted = now + std::copysign(kAhead * limits.velocity, ratio);
+  const double wanted = now + std::copysign(kAhead * limits.velocity, speed);
   double target = std::clamp(wanted, from_[axis] - reach, from_[axis] + reach);
   if (bounds.lower < bounds.upper) target = std::clamp(target, bounds.lower, bounds.upper);
   arm_.movers().go_to(axis, target, limits);
@@ -101,24 +119,27 @@ void Compliance::step(const ComplianceInputs& in) noexcept {
   const double factor = may_retreat ? in.retreat_factor : 0.0;
   const bool pushed = wish_ == Wish::comply;
   const bool wanted = pushed || factor > 0.0;
-  if (wanted && !moving_ && in.set_points.at_rest()) {
+  const bool begins = wish_ == Wish::retreat || in.set_points.at_rest();
+  if (wanted && !moving_ && begins) {
     from_ = in.set_points.sent().position;
     moving_ = true;
   }
   if (!moving_) return;
-  const bool arm_at_rest = arm_.state() == ArmState::at_rest;
+  // A retreat takes over from the stop with which the arm leaves its path.
+  const bool free = arm_.state() == ArmState::at_rest || wish_ == Wish::retreat;
   const double reach = pushed ? settings_.reach : settings_.retreat_reach;
   bool resting = true;
   for (std::size_t i = 0; i < joints_; ++i) {
     const int axis = arm_.movers().axes()[i];
     const double push = pushed ? in.contact.push(i) : 0.0;
     const double beyond = std::abs(push) / settings_.torque - 1.0;
-    const double ratio =
-        pushed ? std::copysign(std::clamp(beyond, 0.0, 1.0), push) : factor * away_[axis];
-    if (arm_at_rest && ratio == 0.0) {
+    const double speed = pushed
+                             ? settings_.speed * std::copysign(std::clamp(beyond, 0.0, 1.0), push)
+                             : factor * retreat_velocity_[axis];
+    if (free && speed == 0.0) {
       if (!arm_.movers()[axis].at_rest()) arm_.movers().stop(axis);
-    } else if (arm_at_rest && chooses) {
-      move(axis, ratio, reach);
+    } else if (free && chooses) {
+      move(axis, speed, reach);
     }
     resting = resting && arm_.movers()[axis].at_rest();
   }

@@ -2,6 +2,7 @@
 // after construction.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <vector>
 
 #include "components/trajectory_controller/arm/arm_motion.hpp"
@@ -15,10 +16,11 @@ namespace handsel::trajectory_controller {
 
 /// How the arm complies and retreats.
 struct ComplianceSettings {
-  double speed{0.2};           ///< largest speed of an axis [rad/s]; 0: never
-  double reach{0.3};           ///< largest travel of each axis while complying [rad]
-  double retreat_reach{0.15};  ///< largest travel of each axis in a retreat; 0: never [rad]
-  double torque{15.0};         ///< an axis pushed by more than this complies [Nm]
+  double speed{0.2};          ///< largest speed of an axis while complying [rad/s]; 0: never
+  double reach{0.3};          ///< largest travel of each axis while complying [rad]
+  double retreat_speed{1.0};  ///< largest speed of an axis in a retreat [rad/s]
+  double retreat_reach{0.3};  ///< largest travel of each axis in a retreat; 0: never [rad]
+  double torque{15.0};        ///< an axis pushed by more than this complies [Nm]
 };
 
 /// Inputs of one step.
@@ -29,8 +31,8 @@ struct ComplianceInputs {
   const ModeVerdict& verdict;   ///< of this cycle
   const GuardVerdict& nearest;  ///< of where the arm is
   double retreat_factor{};      ///< of the speed of a retreat that is allowed, [0, 1]
-  bool allowed{};               ///< the arm may move by itself where it is at rest
-  bool recoils{};               ///< attention asks for a recoil
+  bool may_comply{};            ///< the arm is at rest and may give in to pushes
+  bool may_retreat{};           ///< the arm is off its path, and attention asks for a recoil
   std::uint64_t cycle{};        ///< number of the cycle
 };
 
@@ -58,7 +60,7 @@ class Compliance {
   Wish find_wish(const ComplianceInputs& in) noexcept;
   bool waits_for_rest(const ComplianceInputs& in) noexcept;
   void aim_away(const ComplianceInputs& in) noexcept;
-  void move(int axis, double ratio, double reach) noexcept;
+  void move(int axis, double speed, double reach) noexcept;
 
   ComplianceSettings settings_;
   const RobotModel& robot_;
@@ -67,11 +69,14 @@ class Compliance {
   Wish wish_{Wish::none};
   bool moving_{};
   bool waits_for_rest_{};
-  std::uint32_t demands_{};  // for rest, of the last cycle
-  Vector from_;              // where the motion began, all axes
-  Vector away_;              // motion away from the nearest person, largest 1
-  Vector retreat_velocity_;  // [rad/s]
-  Vector one_axis_;          // scratch of aim_away()
+  std::uint32_t demands_{};                // for rest, of the last cycle
+  Vector from_;                            // where the motion began, all axes
+  Vector retreat_velocity_;                // [rad/s]
+  Vector one_axis_;                        // scratch of aim_away(), as what follows
+  std::vector<Eigen::Matrix3Xd> effects_;  // of each axis on the origin of each link [m]
+  Eigen::MatrixXd hessian_;
+  Vector gradient_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
   std::vector<Pose> links_;
   std::vector<LinkTwist> twists_;
 };

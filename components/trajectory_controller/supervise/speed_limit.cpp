@@ -28,4 +28,10 @@ double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::u
   return wanted >= 0.0 ? wanted : std::max({wanted, guard.backward, -settings.recoil_limit});
 }
 
+bool asks_for_recoil(const Inputs& inputs, double attention_timeout, TimePoint now) noexcept {
+  const AttentionAdvice& advice = inputs.advice.value;
+  return !inputs.attention_silent(now, attention_timeout) && inputs.people.partner().empty() &&
+         (advice.speed_factor < 0.0 || advice.leaves_path);
+}
+
 }  // namespace handsel::trajectory_controller

@@ -11,7 +11,7 @@ namespace handsel::trajectory_controller {
 struct SpeedSettings {
   double attention_lost_factor{0.2};  ///< speed factor while attention is silent
   double attention_timeout{0.3};      ///< attention is silent without advice for so long [s]
-  double recoil_limit{0.2};           ///< largest speed factor back along the path, [0, 1]
+  double recoil_limit{1.0};           ///< largest speed factor back along the path, [0, 1]
   double forecast_hold{0.6};          ///< collision forecast within this time: 0 [s]
   double forecast_slow{2.0};          ///< within this time: slower in proportion [s]
   double cost_from{0.5};    ///< human-aware cost ahead from which the arm is slower, [0, 1)
@@ -26,5 +26,9 @@ double cost_factor(const SpeedSettings& settings, const Inputs& inputs,
 /// Returns the wanted speed factor of the trajectory that runs, [-1, 1].
 double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory,
                      const GuardVerdict& guard, TimePoint now) noexcept;
+
+/// Returns whether attention asks for a motion away from a person, who is not the partner of a
+/// handover. `attention_timeout`: silence from which on the advice does not count.
+bool asks_for_recoil(const Inputs& inputs, double attention_timeout, TimePoint now) noexcept;
 
 }  // namespace handsel::trajectory_controller

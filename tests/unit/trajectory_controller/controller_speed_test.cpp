@@ -104,6 +104,29 @@ TEST(Controller, at_rest_it_draws_back_from_who_comes_too_near_as_far_as_it_may)
   expect_smooth(b);
 }
 
+TEST(Controller, beside_its_path_it_draws_back_from_who_comes_too_near_and_then_goes_on) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(test::goal(), 1), "");
+  b.run(1.2);
+  b.people.people = {b.standing(1.0, 0.5)};
+  b.run(0.1);
+  b.advice.speed_factor = 0.0;
+  b.advice.leaves_path = true;
+  b.run(0.5);
+  const double near = b.core.status().separation;
+  b.run(3.0);
+  EXPECT_GT(b.core.status().separation, near + 0.03);
+  EXPECT_EQ(b.core.status().motion, MotionState::running) << "the path is not given up";
+  EXPECT_TRUE(b.at_rest());
+  b.people.people.clear();
+  b.advice.speed_factor = 1.0;
+  b.advice.leaves_path = false;
+  b.run(8);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  expect_smooth(b);
+}
+
 TEST(Controller, the_causes_of_a_retreat_do_not_flicker) {
   ControllerBench b;
   b.start();
