@@ -49,6 +49,7 @@ handsel_test(clear_table SOURCES ${CMAKE_CURRENT_LIST_DIR}/clear_table_test.cpp 
 set_tests_properties(clear_table PROPERTIES TIMEOUT 600)
 
 handsel_test(recoil SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/recoil_test.cpp LINK handsel_lockstep LABEL system)
+handsel_test(gentler SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/gentler_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(recoil PROPERTIES TIMEOUT 300)
 handsel_test(place_reached SOURCES ${CMAKE_CURRENT_LIST_DIR}/place_reached_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(place_reached PROPERTIES TIMEOUT 1800)
