@@ -112,6 +112,19 @@ TEST(Eval, shards_come_together_as_if_they_had_been_one) {
   EXPECT_EQ(looks("whole")["pairs"], 3);
 }
 
+TEST(Eval, a_scenario_that_cannot_be_performed_is_no_success) {
+  const TemporaryFolder folder;
+  const fs::path scenario =
+      folder.write("unable.txtpb",
+                   "name: \"unable\" robot: \"jido\" people { id: \"ben\" behaviour: TAKER "
+                   "approach_from: 1 steps_in { speed: 1 } }");
+  const Outcome outcome = shell(kHandsel + " eval --trials 1 --scenario " + scenario.string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  const Json line = lines_of(outcome.out).at(0);
+  EXPECT_EQ(line["failure"], "error");
+  EXPECT_THAT(line["reason"].get<std::string>(), HasSubstr("ben steps in but is not STILL"));
+}
+
 TEST(Eval, a_mode_that_cannot_be_is_refused) {
   const auto refused = [](const std::string& arguments, const std::string& says) {
     const Outcome outcome = shell(kHandsel + " eval " + arguments);

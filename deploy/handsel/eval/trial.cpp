@@ -127,13 +127,18 @@ Worker start_worker(const std::vector<Trial>& trials, std::size_t index) {
   _exit(0);
 }
 
-Json finish_worker(const Worker& worker, const std::vector<Trial>& trials, bool& crashed) {
+/// Returns the line of a trial. `clean` becomes false if the trial crashed or could not be
+/// performed.
+Json finish_worker(const Worker& worker, const std::vector<Trial>& trials, bool& clean) {
   close(worker.fd);
   int status = 0;
   waitpid(worker.pid, &status, 0);
   Json line = Json::parse(worker.text, nullptr, false);
-  if (!line.is_discarded() && WIFEXITED(status) && WEXITSTATUS(status) == 0) return line;
-  crashed = true;
+  if (!line.is_discarded() && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+    clean = clean && line["failure"] != "error";
+    return line;
+  }
+  clean = false;
   line = base_line(trials[worker.trial].context, trials[worker.trial].options);
   line.update(
       {{"success", false},
@@ -229,7 +234,7 @@ bool run_trials(const std::vector<Trial>& trials, int jobs,
   std::vector<Worker> running;
   std::map<std::size_t, Json> done;
   std::size_t next = 0, told = 0;
-  bool crashed = false;
+  bool clean = true;
   while (told < trials.size()) {
     while (next < trials.size() && running.size() < static_cast<std::size_t>(jobs))
       running.push_back(start_worker(trials, next++));
@@ -245,7 +250,7 @@ bool run_trials(const std::vector<Trial>& trials, int jobs,
         continue;
       }
       if (n < 0 && errno == EINTR) continue;
-      done[running[i].trial] = finish_worker(running[i], trials, crashed);
+      done[running[i].trial] = finish_worker(running[i], trials, clean);
       running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
     }
     for (auto line = done.find(told); line != done.end(); line = done.find(told)) {
@@ -254,7 +259,7 @@ bool run_trials(const std::vector<Trial>& trials, int jobs,
       ++told;
     }
   }
-  return !crashed;
+  return clean;
 }
 
 std::pair<double, double> wilson_interval(int successes, int trials) {
