@@ -31,7 +31,7 @@ struct ComplianceInputs {
   const ModeVerdict& verdict;   ///< of this cycle
   const GuardVerdict& nearest;  ///< of where the arm is
   double retreat_factor{};      ///< of the speed of a retreat that is allowed, [0, 1]
-  bool may_comply{};            ///< the arm is at rest and may give in to pushes
+  bool may_comply{};            ///< the arm is at rest and may comply with pushes
   bool may_retreat{};           ///< the arm is off its path, and attention asks for a recoil
   std::uint64_t cycle{};        ///< number of the cycle
 };

@@ -104,7 +104,7 @@ TEST(Controller, at_rest_it_draws_back_from_who_comes_too_near_as_far_as_it_may)
   expect_smooth(b);
 }
 
-TEST(Controller, beside_its_path_it_draws_back_from_who_comes_too_near_and_then_goes_on) {
+TEST(Controller, it_retreats_beside_its_path_from_a_person_too_near_and_then_goes_on) {
   ControllerBench b;
   b.start();
   ASSERT_EQ(b.go_to(test::goal(), 1), "");
