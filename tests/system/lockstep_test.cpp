@@ -79,8 +79,8 @@ TEST(Trials, lines_come_in_order_and_a_trial_that_cannot_start_is_one_failure) {
   broken.settings = "/nowhere";
   const TrialOptions options{.scenario = "give_mug", .timeout = 0.5};
   std::vector<nlohmann::json> lines;
-  EXPECT_TRUE(run_trials({{context, options}, {broken, options}}, 2,
-                         [&](const nlohmann::json& line) { lines.push_back(line); }));
+  EXPECT_FALSE(run_trials({{context, options}, {broken, options}}, 2,
+                          [&](const nlohmann::json& line) { lines.push_back(line); }));
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0]["failure"], "timeout");
   EXPECT_EQ(lines[1]["failure"], "error");
