@@ -10,16 +10,17 @@ namespace handsel::trajectory_controller {
 /// Part of the robot.
 enum class Part : char { arm, hand, head, platform };
 
-/// Robot groups "hand" and "head" may be missing; all other axes are moved by trajectories.
+/// Robot groups "hand" and "head" may be missing. All other axes are moved by trajectories alone; a
+/// trajectory may move those of hands and head too.
 class AxisGroups {
  public:
   /// Keeps a reference to the robot.
   explicit AxisGroups(const RobotModel& robot);
 
-  /// Axes that trajectories move, in increasing order; of a robot that drives the last three are
-  /// those of its platform.
+  /// Axes that trajectories alone move, in increasing order; of a robot that drives the last three
+  /// are those of its platform.
   const std::vector<int>& arm() const noexcept { return arm_; }
-  /// Axes that trajectories move, without those of the platform; in increasing order.
+  /// Axes that trajectories alone move, without those of the platform; in increasing order.
   const std::vector<int>& arm_joints() const noexcept { return arm_joints_; }
   /// Axes of the platform: x, y, heading; empty for a robot that does not drive.
   const std::vector<int>& platform() const noexcept { return platform_; }
@@ -27,10 +28,6 @@ class AxisGroups {
   const std::vector<int>& head() const noexcept { return head_; }
   /// Returns the part an axis belongs to; `axis` is not checked.
   Part part(int axis) const noexcept { return parts_[static_cast<std::size_t>(axis)]; }
-  /// Returns whether trajectories move the axis; `axis` is not checked.
-  bool in_trajectories(int axis) const noexcept {
-    return part(axis) == Part::arm || part(axis) == Part::platform;
-  }
   /// Returns the number of axes of the robot.
   int size() const noexcept { return static_cast<int>(parts_.size()); }
   /// Returns a measured position as one inside the axis' bounds, unless it is outside by more than

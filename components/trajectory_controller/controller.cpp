@@ -160,7 +160,8 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   if (commands_.accepted(command.id)) return "it came before; the first one counts";
   const bool joins = arm_.joins(command);
   std::string reason = why_not_now({command.robot, command.epoch, to_seconds(age)}, conditions());
-  if (reason.empty()) reason = why_not_executable(command, *robot_, groups_);
+  if (reason.empty()) reason = why_not_executable(command, *robot_);
+  if (reason.empty()) reason = hands_.why_not_on_path(command.axes);
   if (reason.empty() && command.axes.empty()) {
     commands_.accept_stop(command.id);
     arm_.cancel();
@@ -183,7 +184,8 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
 std::string Controller::accept(const HandCommand& command, Duration age, TimePoint) {
   if (hands_.accepted(command.id)) return {};
   const CommandHead head{command.robot, command.epoch, to_seconds(age)};
-  const std::string reason = hands_.accept(command, why_not_now(head, conditions()));
+  const std::string reason =
+      hands_.accept(command, why_not_now(head, conditions()), arm_.movers().moved());
   if (reason.empty())
     commands_.accept_hand();
   else
@@ -295,11 +297,12 @@ bool Controller::step(TimePoint now, bool late) noexcept {
         finger_limit_.factor(sent, robot.T_world_base, age, load(), people.capsules()));
   const bool new_state = inputs_.robot.has_new_state();
   if (new_state && !arm_.running()) lookahead_.place_links(sent);
-  const HandsInputs of_hands{robot, people, lookahead_.links(), new_state, mode, clamped};
+  const HandsInputs of_hands{robot, people, lookahead_.links(), new_state, arm_.movers().moved(),
+                             mode,  clamped};
   // What the arm feels changes with what a hand holds.
   if (hands_.step(of_hands, now, set_points_.next())) contact_.reset();
   inputs_.robot.mark_used();
-  head_.step(mode < Mode::hold, set_points_.next());
+  head_.step(mode < Mode::hold, arm_.movers().moved(), set_points_.next());
 
   const std::uint64_t unproven = output_check_.unproven();
   const double factor = arm_.speed_factor();

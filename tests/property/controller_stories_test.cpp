@@ -24,11 +24,12 @@ class Story {
         Vector goal(3);
         goal << real(-1.5, 1.5), real(-1.5, 1.5), real(-2.0, 2.0);
         const bool waits = integer(0, 2) == 0;
+        Vector all = bench.core.set_point().position;
+        all << goal, real(-0.2, 1.4), real(-0.2, 1.4), real(-1.5, 1.5), real(-0.7, 0.5);
+        const TrajectoryCommand next =
+            integer(0, 3) == 0 ? bench.command_all(all, ++id_) : bench.command(goal, ++id_);
         switches +=
-            bench.send(bench.command(goal, ++id_), 0.0, waits ? real(0.0, 5.0) : 0.0).empty() &&
-                    !bench.at_rest()
-                ? 1
-                : 0;
+            bench.send(next, 0.0, waits ? real(0.0, 5.0) : 0.0).empty() && !bench.at_rest() ? 1 : 0;
         break;
       }
       case 16:
@@ -106,6 +107,9 @@ class Story {
     bench.run(5.0);
     ++bench.go.epoch;
     bench.run(0.3);
+    // A motion of more axes than the arm's is not switched to one of the arm.
+    for (int k = 0; k < 200 && bench.core.status_key().motion == MotionState::running; ++k)
+      bench.run(0.1);
     Vector goal(3);
     goal << real(-1.5, 1.5), real(-1.5, 1.5), real(-2.0, 2.0);
     const std::string why = bench.go_to(goal, ++id_);

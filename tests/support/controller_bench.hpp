@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +97,16 @@ class ControllerBench {
     const KinematicLimits& l = robot->comfort_limits();
     c.trajectory =
         solve(from, to, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
+    return c;
+  }
+  /// The same for all axes of the robot.
+  TrajectoryCommand command_all(const Vector& goal, std::uint64_t id) const {
+    TrajectoryCommand c = command(goal.head(3), id);
+    c.axes.resize(static_cast<std::size_t>(robot->dof()));
+    std::iota(c.axes.begin(), c.axes.end(), 0u);
+    c.trajectory =
+        solve(rest_state(core.set_point().position), rest_state(goal), robot->comfort_limits())
+            .trajectory;
     return c;
   }
   std::string send(TrajectoryCommand c, double age = 0.0, double switch_at = 0.0) {

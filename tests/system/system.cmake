@@ -49,6 +49,10 @@ handsel_test(clear_table SOURCES ${CMAKE_CURRENT_LIST_DIR}/clear_table_test.cpp 
 set_tests_properties(clear_table PROPERTIES TIMEOUT 600)
 
 handsel_test(recoil SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/recoil_test.cpp LINK handsel_lockstep LABEL system)
+handsel_test(whole_robot SOURCES ${CMAKE_CURRENT_LIST_DIR}/motion/whole_robot_test.cpp LINK handsel_lockstep LABEL system)
+set_tests_properties(whole_robot PROPERTIES TIMEOUT 300)
+add_test(NAME whole_robot_fifty COMMAND test_whole_robot)
+set_tests_properties(whole_robot_fifty PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT HANDSEL_WHOLE_MOTIONS=50)
 handsel_test(gentler SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/gentler_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(recoil PROPERTIES TIMEOUT 300)
 handsel_test(place_reached SOURCES ${CMAKE_CURRENT_LIST_DIR}/place_reached_test.cpp LINK handsel_lockstep LABEL system)

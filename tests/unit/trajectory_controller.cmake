@@ -1,5 +1,6 @@
 handsel_test(guard SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/guard_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_queue_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_whole_robot_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_speed_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_contact_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_silence_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/gaze_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/contact_watch_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/hand_executor_test.cpp

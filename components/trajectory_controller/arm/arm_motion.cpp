@@ -22,6 +22,22 @@ PathLimits path_limits(const RobotModel& robot, const std::vector<std::uint32_t>
   return out;
 }
 
+bool is_in_motion(const MotionState3& set_point, Eigen::Index axis) noexcept {
+  return set_point.velocity[axis] != 0.0 || set_point.acceleration[axis] != 0.0;
+}
+
+/// Returns the state of some axes in a set-point of all axes.
+MotionState3 state_of(const MotionState3& set_point, const std::vector<std::uint32_t>& axes) {
+  MotionState3 part = rest_state(Vector::Zero(static_cast<Eigen::Index>(axes.size())));
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    part.position[k] = set_point.position[axes[i]];
+    part.velocity[k] = set_point.velocity[axes[i]];
+    part.acceleration[k] = set_point.acceleration[axes[i]];
+  }
+  return part;
+}
+
 PathPiece piece_of(const TrajectoryCommand& command, double begin, double offset) {
   return {command.id, begin, offset, command.attachment, command.allowed_contacts};
 }
@@ -48,19 +64,19 @@ std::string ArmMotion::accept(const TrajectoryCommand& command, const MotionStat
 }
 
 std::string ArmMotion::start(const TrajectoryCommand& command, const MotionState3& sent) {
-  for (int axis : movers_.axes())
-    if (sent.velocity[axis] != 0.0 || sent.acceleration[axis] != 0.0)
-      return "the arm is still in motion";
-  std::string reason = why_not_from_rest(command, robot_, sent.position, settings_.start_tolerance);
+  movers_.drop_further_axes();
+  for (const int axis : movers_.axes())
+    if (is_in_motion(sent, axis)) return "the arm is still in motion";
+  const StartReach reach{settings_.start_tolerance, settings_.switch_reach};
+  std::string reason = why_not_from(sent, command, robot_, reach);
   if (!reason.empty()) return reason;
-  MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
-  for (std::size_t i = 0; i < command.axes.size(); ++i)
-    here.position[static_cast<Eigen::Index>(i)] = sent.position[command.axes[i]];
+  const MotionState3 here = state_of(sent, command.axes);
   const MotionState3 there = rest_state(command.trajectory.at(0.0).position);
   Trajectory path = command.trajectory;
   double bridged = 0.0;
   constexpr double kSame = 1e-6;
-  if ((here.position - there.position).cwiseAbs().maxCoeff() > kSame) {
+  const bool is_there = (here.position - there.position).cwiseAbs().maxCoeff() <= kSame;
+  if (!is_there || !here.velocity.isZero(0.0) || !here.acceleration.isZero(0.0)) {
     Solution bridge = solve(here, there, limits_of_axes(robot_.comfort_limits(), command.axes));
     if (!bridge.ok()) return "no motion to its start: " + bridge.reason;
     path = std::move(bridge.trajectory);
@@ -72,6 +88,7 @@ std::string ArmMotion::start(const TrajectoryCommand& command, const MotionState
   }
   reason = runner_.start(path, path_limits(robot_, command.axes));
   if (!reason.empty()) return reason;
+  movers_.set_further_axes(command.axes);
   rest_at(sent.position);
   queue_.restart(piece_of(command, 0.0, bridged));
   path_axes_ = command.axes;
@@ -104,13 +121,6 @@ std::string ArmMotion::switch_to(const TrajectoryCommand& command, const MotionS
 
 std::string ArmMotion::switch_from_stop(const TrajectoryCommand& command,
                                         const MotionState3& sent) {
-  MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
-  for (std::size_t i = 0; i < path_axes_.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    here.position[k] = sent.position[path_axes_[i]];
-    here.velocity[k] = sent.velocity[path_axes_[i]];
-    here.acceleration[k] = sent.acceleration[path_axes_[i]];
-  }
   for (int axis : movers_.axes()) {
     const auto found =
         std::find(path_axes_.begin(), path_axes_.end(), static_cast<std::uint32_t>(axis));
@@ -118,7 +128,8 @@ std::string ArmMotion::switch_from_stop(const TrajectoryCommand& command,
       return "axis " + robot_.axes()[static_cast<std::size_t>(axis)].name +
              ", which it does not move, is still in motion";
   }
-  std::string reason = runner_.start_from(here, command.trajectory, settings_.switch_reach);
+  std::string reason =
+      runner_.start_from(state_of(sent, path_axes_), command.trajectory, settings_.switch_reach);
   if (!reason.empty()) return reason;
   queue_.restart(piece_of(command, 0.0, runner_.offset()));
   return {};
@@ -166,6 +177,8 @@ bool ArmMotion::rejoin(const MotionState3& sent) noexcept {
 
 void ArmMotion::step(ArmOrder order, double wanted, SetPoints& set_points) noexcept {
   MotionState3& next = set_points.next();
+  // Hands and head have seen by now where their axes came to rest.
+  if (state_ == ArmState::at_rest && goal_ != PathGoal::rejoin) movers_.drop_further_axes();
   if (running()) {
     if (order == ArmOrder::stop) {
       interrupt_path(false);

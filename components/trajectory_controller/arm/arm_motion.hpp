@@ -1,5 +1,6 @@
 // The arm on its path: begins, switches and ends trajectories, stops beside the path in time and
-// rejoins it. Pure; no heap in step(), rejoin() and path_at().
+// rejoins it. A path may move axes of hands and head too, from its begin until the arm rests and
+// the path is over. Pure; no heap in step(), rejoin() and path_at().
 #pragma once
 
 #include <cstdint>
@@ -43,13 +44,15 @@ struct ArmSettings {
 
 class ArmMotion {
  public:
-  /// Keeps a reference to the robot. `axes`: of the arm.
+  /// Keeps a reference to the robot. `axes`: those that only trajectories move.
   ArmMotion(const ArmSettings& settings, const RobotModel& robot, const std::vector<int>& axes);
 
   /// Returns whether a command would be joined in motion; else it begins from rest.
   bool joins(const TrajectoryCommand& command) const noexcept;
   /// Runs a trajectory: from rest, with a short motion to its start where that is a little off; in
-  /// motion by a switch, or it waits. Returns why not, one sentence; then nothing has changed.
+  /// motion by a switch, or it waits. The head may be in motion
+  /// where the arm rests: it comes to rest at the start of the trajectory first. Returns why not,
+  /// one sentence; then nothing has changed.
   std::string accept(const TrajectoryCommand& command, const MotionState3& sent);
   /// Comes to rest on the path, and gives it up.
   void cancel() noexcept;
@@ -87,7 +90,8 @@ class ArmMotion {
   const std::vector<std::uint32_t>& path_axes() const noexcept { return path_axes_; }
   /// Commands that the path is made of.
   const CommandQueue& queue() const noexcept { return queue_; }
-  /// Movers of the axes of the arm.
+  /// Movers of the axes whose set-points are written here: those that only trajectories move, and
+  /// those of the path.
   AxisMovers& movers() noexcept { return movers_; }
   /// Returns the state of the axes of the path at `time` [s] at full speed, valid until the next
   /// call.

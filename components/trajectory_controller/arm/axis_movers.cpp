@@ -1,6 +1,30 @@
 #include "components/trajectory_controller/arm/axis_movers.hpp"
 
+#include <utility>
+
 namespace handsel::trajectory_controller {
+
+AxisMovers::AxisMovers(const RobotModel& robot, std::vector<int> axes)
+    : robot_(robot),
+      axes_(std::move(axes)),
+      own_(axes_.size()),
+      moved_(static_cast<std::size_t>(robot.dof()), 0),
+      movers_(moved_.size()) {
+  for (const int axis : axes_) moved_[static_cast<std::size_t>(axis)] = 1;
+}
+
+void AxisMovers::set_further_axes(const std::vector<std::uint32_t>& axes) {
+  drop_further_axes();
+  for (const std::uint32_t axis : axes) {
+    if (moved_[axis] != 0) continue;
+    axes_.push_back(static_cast<int>(axis));
+    moved_[axis] = 1;
+  }
+}
+
+void AxisMovers::drop_further_axes() noexcept {
+  for (; axes_.size() > own_; axes_.pop_back()) moved_[static_cast<std::size_t>(axes_.back())] = 0;
+}
 
 void AxisMovers::reset(const Vector& position) noexcept {
   for (int axis : axes_) reset(axis, position[axis]);

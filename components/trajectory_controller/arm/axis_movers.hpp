@@ -2,7 +2,8 @@
 // construction.
 #pragma once
 
-#include <utility>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/model/robot_model.hpp"
@@ -13,11 +14,16 @@ namespace handsel::trajectory_controller {
 class AxisMovers {
  public:
   /// Keeps a reference to the robot. `axes`: those that are moved.
-  AxisMovers(const RobotModel& robot, std::vector<int> axes)
-      : robot_(robot), axes_(std::move(axes)), movers_(static_cast<std::size_t>(robot.dof())) {}
+  AxisMovers(const RobotModel& robot, std::vector<int> axes);
 
-  /// Axes that are moved.
+  /// Axes that are moved, first those given at construction.
   const std::vector<int>& axes() const noexcept { return axes_; }
+  /// Returns of each axis of the robot whether it is moved.
+  const std::vector<char>& moved() const noexcept { return moved_; }
+  /// Moves these axes of the robot too, beside those given at construction. May allocate.
+  void set_further_axes(const std::vector<std::uint32_t>& axes);
+  /// Moves no axes but those given at construction.
+  void drop_further_axes() noexcept;
   /// Mover of an axis; `axis` is not checked.
   const AxisMover& operator[](int axis) const noexcept {
     return movers_[static_cast<std::size_t>(axis)];
@@ -45,6 +51,8 @@ class AxisMovers {
 
   const RobotModel& robot_;
   std::vector<int> axes_;
+  std::size_t own_;                // number of axes given at construction, the first ones
+  std::vector<char> moved_;        // of each axis of the robot
   std::vector<AxisMover> movers_;  // one an axis of the robot; those of other axes are unused
 };
 

@@ -13,18 +13,15 @@ namespace {
 constexpr double kAtRest = 1e-6;
 
 /// Returns why the trajectory does not fit the axes that the command names.
-std::string why_not_axes(const TrajectoryCommand& command, const RobotModel& robot,
-                         const AxisGroups& groups) {
+std::string why_not_axes(const TrajectoryCommand& command, const RobotModel& robot) {
   if (command.trajectory.size() != static_cast<int>(command.axes.size()))
     return "it has " + std::to_string(command.trajectory.size()) + " axes and names " +
            std::to_string(command.axes.size());
-  const auto count = static_cast<std::size_t>(groups.size());
+  const auto count = static_cast<std::size_t>(robot.dof());
   std::vector<char> used(count, 0);
   for (std::uint32_t axis : command.axes) {
     if (axis >= count) return "axis " + std::to_string(axis) + " does not exist";
     const std::string& name = robot.axes()[axis].name;
-    if (!groups.in_trajectories(static_cast<int>(axis)))
-      return "axis " + name + " is not moved by trajectories";
     if (used[axis]++) return "axis " + name + " comes twice";
   }
   return {};
@@ -63,11 +60,10 @@ std::string why_not_now(const CommandHead& head, const CommandConditions& now) {
   return {};
 }
 
-std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot,
-                               const AxisGroups& groups) {
+std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot) {
   if (command.axes.empty() && command.trajectory.size() == 0) return {};
   if (!std::isfinite(command.switch_at)) return "its switch_at is not a number";
-  std::string reason = why_not_axes(command, robot, groups);
+  std::string reason = why_not_axes(command, robot);
   if (!reason.empty()) return reason;
   const KinematicLimits limits = limits_of_axes(robot.guard_limits(), command.axes);
   reason = why_not_within(command.trajectory, limits, kLimitTolerance);
@@ -86,16 +82,18 @@ std::string why_not_executable(const TrajectoryCommand& command, const RobotMode
   return {};
 }
 
-std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel& robot,
-                              const Vector& position, double tolerance) {
+std::string why_not_from(const MotionState3& set_point, const TrajectoryCommand& command,
+                         const RobotModel& robot, const StartReach& reach) {
   const MotionState3 first = command.trajectory.at(0.0);
   for (std::size_t i = 0; i < command.axes.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const Axis& axis = robot.axes()[command.axes[i]];
     if (std::abs(first.velocity[k]) > kAtRest || std::abs(first.acceleration[k]) > kAtRest)
       return "axis " + axis.name + " does not start at rest";
-    const double off = std::abs(first.position[k] - position[command.axes[i]]);
-    if (!(off <= tolerance))
+    const std::uint32_t number = command.axes[i];
+    const bool rests = set_point.velocity[number] == 0.0 && set_point.acceleration[number] == 0.0;
+    const double off = std::abs(first.position[k] - set_point.position[number]);
+    if (!(off <= (rests ? reach.at_rest : reach.in_motion)))
       return "axis " + axis.name + " starts " + std::to_string(off) + " rad from the set-point";
   }
   return {};

@@ -6,7 +6,6 @@
 
 #include "common/messages/execution.hpp"
 #include "common/model/robot_model.hpp"
-#include "components/trajectory_controller/axis_groups.hpp"
 #include "components/trajectory_controller/input/motion_permission.hpp"
 
 namespace handsel::trajectory_controller {
@@ -33,13 +32,18 @@ std::string why_not_now(const CommandHead& head, const CommandConditions& now);
 
 /// Returns why a trajectory cannot be run: axes, limits, bounds, end at rest. One sentence; empty:
 /// it can. A command without axes is a stop, which can.
-std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot,
-                               const AxisGroups& groups);
+std::string why_not_executable(const TrajectoryCommand& command, const RobotModel& robot);
 
-/// Returns why a trajectory cannot begin at rest at `position` (all axes) or within `tolerance`
-/// [rad] of it, one sentence; empty: it can.
-std::string why_not_from_rest(const TrajectoryCommand& command, const RobotModel& robot,
-                              const Vector& position, double tolerance);
+/// How far an axis may be from where a trajectory begins [rad, m].
+struct StartReach {
+  double at_rest{};    ///< of an axis at rest
+  double in_motion{};  ///< of an axis in motion
+};
+
+/// Returns why a trajectory cannot begin at rest within `reach` of `set_point` (all axes), one
+/// sentence; empty: it can.
+std::string why_not_from(const MotionState3& set_point, const TrajectoryCommand& command,
+                         const RobotModel& robot, const StartReach& reach);
 
 /// Returns the limits of some axes of the robot, in their order.
 KinematicLimits limits_of_axes(const KinematicLimits& limits,

@@ -60,7 +60,7 @@ ReferenceFollower::Target ReferenceFollower::find_target(const RobotState& robot
   return has_adopted_ ? Target::adopted : Target::none;
 }
 
-void ReferenceFollower::follow(Target target, const RobotState& robot,
+void ReferenceFollower::follow(Target target, const RobotState& robot, const std::vector<int>& axes,
                                AxisMovers& movers) const noexcept {
   constexpr double kExact = 1e-12;  // [rad]
   if (target == Target::none) return;
@@ -68,7 +68,7 @@ void ReferenceFollower::follow(Target target, const RobotState& robot,
                            : target == Target::measured ? robot.position
                                                         : adopted_;
   const double dead_band = target == Target::measured ? kDeadBand : kExact;
-  for (int axis : movers.axes()) {
+  for (int axis : axes) {
     const double wanted = groups_.inside(axis, position[axis]);
     if (std::abs(wanted - movers[axis].target()) > dead_band) movers.go_to(axis, wanted);
   }
@@ -88,8 +88,8 @@ void ReferenceFollower::step(const ReferenceInputs& in, ArmMotion& arm, AxisMove
   const bool rests = arm.state() == ArmState::at_rest && in.set_points.at_rest();
   if (!wanted || !due || !rests) return;
   const Target target = find_target(robot);
-  follow(target, robot, arm.movers());
-  follow(target, robot, head);
+  follow(target, robot, groups_.arm(), arm.movers());
+  follow(target, robot, groups_.head(), head);
   // The fingers stay where they came to rest: what they hold bends them, and a person who holds it
   // too moves them all the time.
   const bool joins = robot.mode == DriveMode::enabled && !settings_.dry_run;

@@ -44,7 +44,8 @@ class ReferenceFollower {
   Target find_target(const RobotState& robot) noexcept;
   void adopt(const RobotState& robot) noexcept;
   bool rests(const RobotState& robot, int axis) const noexcept;
-  void follow(Target target, const RobotState& robot, AxisMovers& movers) const noexcept;
+  void follow(Target target, const RobotState& robot, const std::vector<int>& axes,
+              AxisMovers& movers) const noexcept;
 
   ReferenceFollowerSettings settings_;
   const AxisGroups& groups_;

@@ -81,6 +81,11 @@ void HandExecutor::reset(const Vector& robot_position, const Vector& robot_effor
   release_.disarm();
 }
 
+bool HandExecutor::is_free() const noexcept {
+  return at_rest() && level_ <= 0.0 && state_ != HandState::grasped && phase_ == Phase::hold &&
+         !unsure_ && !release_.armed();
+}
+
 void HandExecutor::stop_from(const MotionState3& from) noexcept {
   paused_ = true;
   fingers_.stop_from(from);

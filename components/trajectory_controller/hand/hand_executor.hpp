@@ -65,6 +65,8 @@ class HandExecutor {
   /// Begins at rest at these positions, pressing with these efforts (all axes of the robot; or
   /// empty).
   void reset(const Vector& robot_position, const Vector& robot_effort = {}) noexcept;
+  /// Returns whether the fingers rest and neither press on what is held nor execute a command.
+  bool is_free() const noexcept;
   /// Empty when accepted, else why not, one sentence.
   std::string accept(const HandCommand& command);
   /// Writes the hand axes of the set-point, one period later.

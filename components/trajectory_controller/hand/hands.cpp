@@ -58,6 +58,12 @@ void find_people(const ObservedPeople& people, const Vector3& p, HandInputs& in)
   }
 }
 
+/// Returns whether a trajectory moves fingers of a hand. `on_path`: of each axis of the robot.
+bool is_on_path(const HandExecutor& hand, const std::vector<char>& on_path) noexcept {
+  return std::any_of(hand.axes().begin(), hand.axes().end(),
+                     [&on_path](int axis) { return on_path[static_cast<std::size_t>(axis)] != 0; });
+}
+
 }  // namespace
 
 Hands::Hands(const HandSettings& settings, const RobotModel& robot, double period)
@@ -81,9 +87,24 @@ Hands::Hand* Hands::find(const std::string& group) {
   return group.empty() && !hands_.empty() ? &hands_.front() : nullptr;
 }
 
-std::string Hands::accept(const HandCommand& command, std::string refusal) {
+std::string Hands::why_not_on_path(const std::vector<std::uint32_t>& axes) const {
+  for (const Hand& hand : hands_) {
+    const std::vector<int>& fingers = hand.executor.axes();
+    const bool concerned = std::any_of(axes.begin(), axes.end(), [&](std::uint32_t axis) {
+      return std::find(fingers.begin(), fingers.end(), static_cast<int>(axis)) != fingers.end();
+    });
+    if (concerned && !hand.executor.is_free())
+      return "the hand \"" + hand.group + "\" executes a command or holds something";
+  }
+  return {};
+}
+
+std::string Hands::accept(const HandCommand& command, std::string refusal,
+                          const std::vector<char>& on_path) {
   last_command_ = command.id;
   Hand* hand = find(command.group);
+  if (refusal.empty() && hand != nullptr && is_on_path(hand->executor, on_path))
+    refusal = "a trajectory moves the fingers of the hand \"" + hand->group + "\"";
   if (refusal.empty())
     refusal = hand == nullptr ? "there is no hand \"" + command.group + "\""
                               : hand->executor.accept(command);
@@ -110,7 +131,10 @@ bool Hands::step(const HandsInputs& in, TimePoint now, MotionState3& next) noexc
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];
     const HandState before = hand.executor.state();
-    if (hand.executor.size() > 0) step(i, in, now, next);
+    if (is_on_path(hand.executor, in.on_path))
+      hand.executor.reset(next.position);
+    else if (hand.executor.size() > 0)
+      step(i, in, now, next);
     const HandState state = hand.executor.state();
     if (state == HandState::grasped) hand.payload = hand.grasped_payload;
     if (state == HandState::empty || state == HandState::released) hand.payload = 0.0;

@@ -19,6 +19,7 @@ struct HandsInputs {
   const ObservedPeople& people;          ///< newest
   const std::vector<Pose>& T_root_link;  ///< where the hands are
   bool new_state{};                      ///< robot has come since the last step
+  const std::vector<char>& on_path;      ///< of each axis of the robot: a trajectory moves it
   Mode mode{Mode::hold};                 ///< of this cycle
   bool clamped{};                        ///< the arm is clamped
 };
@@ -30,9 +31,14 @@ class Hands {
 
   /// Returns whether a command with this id was accepted last.
   bool accepted(std::uint64_t id) const noexcept { return id != 0 && id == accepted_; }
-  /// Gives a command to its hand. `refusal`: why no command counts now; empty: it does. Returns
-  /// why it is refused, one sentence; empty when accepted.
-  std::string accept(const HandCommand& command, std::string refusal);
+  /// Gives a command to its hand. `refusal`: why no command counts now; empty: it does. `on_path`:
+  /// of each axis of the robot, whether a trajectory moves it; then the hand takes no command.
+  /// Returns why it is refused, one sentence; empty when accepted.
+  std::string accept(const HandCommand& command, std::string refusal,
+                     const std::vector<char>& on_path);
+  /// Returns why a trajectory cannot move these axes of the robot, one sentence; empty: it can. A
+  /// hand that executes a command or holds something moves its fingers by itself.
+  std::string why_not_on_path(const std::vector<std::uint32_t>& axes) const;
   /// Begins at rest at `position` (all axes) with nothing held or, with `reference`, with the
   /// efforts and masses that the robot side holds: what is held stays held.
   void reset(const Vector& position, const ServoReference* reference) noexcept;

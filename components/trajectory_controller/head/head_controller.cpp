@@ -31,9 +31,14 @@ void HeadController::reset(const Vector& position) noexcept {
   target_.clear();
 }
 
-void HeadController::step(bool may_move, MotionState3& next) noexcept {
+void HeadController::step(bool may_move, const std::vector<char>& on_path,
+                          MotionState3& next) noexcept {
   for (std::size_t i = 0; i < movers_.axes().size(); ++i) {
     const int axis = movers_.axes()[i];
+    if (on_path[static_cast<std::size_t>(axis)] != 0) {
+      movers_.reset(axis, next.position[axis]);
+      continue;
+    }
     if (!may_move && !paused_) {
       movers_.stop(axis);
     } else if (may_move && !target_.empty() &&

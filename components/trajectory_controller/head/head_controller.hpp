@@ -25,7 +25,9 @@ class HeadController {
   /// Starts at rest at `position` (all axes), with no gaze target.
   void reset(const Vector& position) noexcept;
   /// Writes the axes of the head of the next set-point. `may_move`: false: the head stops.
-  void step(bool may_move, MotionState3& next) noexcept;
+  /// `on_path`: of each axis of the robot, whether a trajectory moves it; the head rests there
+  /// afterwards.
+  void step(bool may_move, const std::vector<char>& on_path, MotionState3& next) noexcept;
   /// Movers of the axes of the head.
   AxisMovers& movers() noexcept { return movers_; }
   /// Returns whether the advice has a gaze target that differs from the one in force.

@@ -45,9 +45,8 @@ void OutputCheck::check_limits(MovingParts parts, SetPoints& set_points) noexcep
   for (Eigen::Index i = 0; i < next.position.size(); ++i) {
     if (acceptable(sent, next, i, robot_.guard_limits(), settings_.period)) continue;
     const int axis = static_cast<int>(i);
-    (groups_.in_trajectories(axis)      ? stops.arm
-     : groups_.part(axis) == Part::hand ? stops.hand
-                                        : stops.head) = true;
+    const bool of_arm = parts.arm.movers().moved()[static_cast<std::size_t>(axis)] != 0;
+    (of_arm ? stops.arm : groups_.part(axis) == Part::hand ? stops.hand : stops.head) = true;
   }
   if (!stops.arm && !stops.hand && !stops.head) return;
   limit_violation_ = true;
@@ -71,8 +70,8 @@ bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts,
     parts.arm.interrupt_path(false);  // the planner finds another
   else if (running)
     parts.arm.interrupt_path(true);
-  const Stops stops{set_points.any_moves(groups_.arm()), set_points.any_moves(parts.hands.axes()),
-                    set_points.any_moves(groups_.head())};
+  const Stops stops{set_points.any_moves(parts.arm.movers().axes()),
+                    set_points.any_moves(parts.hands.axes()), set_points.any_moves(groups_.head())};
   stop(stops, parts, settings_.period, set_points);
   return false;
 }
@@ -87,7 +86,7 @@ void OutputCheck::check_observed(const OutputCheckInputs& in, MovingParts parts,
   blind_ = !stop_space_.observes_stops(position, in.T_world_base, in.age);
   if (!blind_ || !in.follows || in.moves_nothing || settings_.dry_run) return;
   if (in.complying) return;
-  const Stops stops{set_points.any_moves(groups_.arm()), false,
+  const Stops stops{set_points.any_moves(parts.arm.movers().axes()), false,
                     set_points.any_moves(groups_.head())};
   if (stops.arm && parts.arm.running()) parts.arm.interrupt_path(true);
   stop(stops, parts, settings_.period, set_points);

@@ -115,9 +115,6 @@ TEST(Controller, refuses_with_the_reason) {
   c.axes = {0, 1, 1};
   refused(c, 0, "twice");
   c = good;
-  c.axes = {0, 1, 3};
-  refused(c, 0, "not moved by trajectories");
-  c = good;
   c.trajectory.axes[1].segments[0].jerk *= 3;
   refused(c, 0, "");
   c = good;
