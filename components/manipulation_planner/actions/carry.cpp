@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "common/messages/names.hpp"
-#include "common/model/srs_arm.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
 #include "components/manipulation_planner/actions/arm_choice.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/actions/two_hands.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
+#include "components/manipulation_planner/motion/tool_motion.hpp"
 #include "components/manipulation_planner/placing/place_search.hpp"
 
 namespace handsel::manipulation_planner {
@@ -121,7 +121,7 @@ Routine<Outcome> back_off(Parts& parts, const std::string& object, const Regrasp
   if (off.good && opened.outcome.good) {
     MotionSpec back;
     back.phase = ActionPhase::backing_off;
-    back.is_straight = true;
+    back.shape = MotionShape::straight_axes;
     back.goals = {step.grasp.approach_joints};
     back.allowed = {object};
     off = co_await move(parts, back);
@@ -160,16 +160,9 @@ Routine<Outcome> move_together(Parts& parts, const std::string& object, const st
   auto& timing = parts.clients.trajectory;
   TrajectoryRequest request = trajectory_request(parts, timing, {}, start, together);
   // The whole path was checked with the elbow where it is.
-  const ik::Chain chain(robot, parts.arm.group(), start);
-  const std::optional<ik::SrsArm> srs = ik::SrsArm::recognise(chain);
   const Pose& T_tool_object = parts.held.attachment().T_tool_object;
-  for (const Pose& T : T_world_object) {
-    TipNode node;
-    node.T_world_tip = T * T_tool_object.inverse();
-    node.has_elbow = srs.has_value();
-    if (srs) node.elbow = srs->elbow_angle(RobotModel::part(start, parts.arm.group()));
-    request.poses.push_back(node);
-  }
+  for (const Pose& T : T_world_object)
+    request.poses.push_back(tip_node(parts, T * T_tool_object.inverse(), start));
   request.follower = follower;
   request.T_tip_follower =
       robot.link_pose(start, parts.arm.palm()).inverse() * robot.link_pose(start, other->palm);

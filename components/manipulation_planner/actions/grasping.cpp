@@ -27,8 +27,11 @@ Routine<Outcome> reach_grasp(Parts& parts, const std::string& object, const Gras
   approach.phase = ActionPhase::approach;
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {object};
-  const MotionSpec reach = reach_along(parts, object, grasp);
+  MotionSpec reach = reach_along(parts, object, grasp);
   const Group& fingers = parts.arm.fingers();
+  const double closing = parts.settings.reach_closing;
+  if (!fingers.axes.empty() && closing > 0.0)
+    reach.fingers = (1.0 - closing) * grasp.pregrasp_joints + closing * grasp.hand_joints;
   Vector opened = parts.now.set_point();
   if (!fingers.axes.empty()) opened = RobotModel::with(opened, fingers, grasp.pregrasp_joints);
   const Vector before = RobotModel::with(opened, parts.arm.group(), grasp.approach_joints);
@@ -119,7 +122,7 @@ MotionSpec reach_along(const Parts& parts, const std::string& object, const Gras
   MotionSpec reach;
   reach.phase = ActionPhase::reaching_object;
   reach.goals = {grasp.arm_joints};
-  reach.is_straight = true;
+  reach.shape = MotionShape::straight_tool;
   reach.allowed = {object};
   reach.speed = parts.settings.approach_speed;
   return reach;
@@ -140,7 +143,7 @@ Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string
                       const std::string& beside) {
   MotionSpec up;
   up.phase = ActionPhase::lift;
-  up.is_straight = true;
+  up.shape = MotionShape::straight_tool;
   up.allowed = {object};
   if (!beside.empty()) up.allowed.push_back(beside);
   up.yields_to = for_human;
@@ -229,7 +232,7 @@ Routine<Outcome> retreat_along(Parts& parts, const Vector3& away, MotionSpec& mo
 Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::string& object) {
   MotionSpec motion;
   motion.phase = ActionPhase::retreat;
-  motion.is_straight = true;
+  motion.shape = MotionShape::straight_tool;
   motion.allowed = {object};
   if (!person.empty()) motion.allowed.push_back(person);
   const Vector3 back = retreat_direction(parts, object);

@@ -137,7 +137,7 @@ Routine<Outcome> lower(Parts& parts, std::vector<PlacingConfiguration> places) {
     MotionSpec down = above;
     down.phase = ActionPhase::put_down;
     down.goals = {reached->arm_at};
-    down.is_straight = true;
+    down.shape = MotionShape::straight_tool;
     down.speed = parts.settings.approach_speed;
     last = co_await move(parts, down);
     if (last.good) co_return last;

@@ -89,7 +89,7 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
   const Vector start = parts.arm.configuration();
   MotionSpec back;
   back.phase = ActionPhase::stepping_back;
-  back.is_straight = true;
+  back.shape = MotionShape::straight_axes;
   back.allowed = {offer.object, offer.giver};
   const std::vector<Vector3> directions = retreat_directions_from(parts, offer.giver);
   for (const Vector3& direction : directions) {
@@ -115,7 +115,7 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
 MotionSpec back_along(const Offer& offer, const Grasp& grasp, ActionPhase phase, double speed) {
   MotionSpec back;
   back.phase = phase;
-  back.is_straight = true;
+  back.shape = MotionShape::straight_axes;
   back.goals = {grasp.approach_joints};
   back.allowed = {offer.object, offer.giver};
   back.speed = speed;
@@ -198,7 +198,7 @@ Routine<Step> reach_offer(Parts& parts, const TakeAttempt& take, std::optional<G
   MotionSpec reach;
   reach.phase = ActionPhase::reaching_object;
   reach.goals = {grasp->arm_joints};
-  reach.is_straight = true;
+  reach.shape = MotionShape::straight_axes;
   reach.allowed = {object, giver};
   reach.object = ObjectTarget{object, p_object, parts.settings.aim_slack, std::nullopt};
   reach.timeout = parts.settings.take_reach_timeout;

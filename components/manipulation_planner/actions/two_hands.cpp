@@ -196,7 +196,7 @@ Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, co
     if (!off) continue;
     MotionSpec away;
     away.phase = ActionPhase::retreat;
-    away.is_straight = true;
+    away.shape = MotionShape::straight_tool;
     away.goals = {*off};
     away.allowed = {object};
     away.speed = parts.settings.approach_speed;

@@ -6,6 +6,7 @@
 #include "common/messages/names.hpp"
 #include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/handover/otp_choice.hpp"
+#include "components/manipulation_planner/motion/tool_motion.hpp"
 #include "components/manipulation_planner/parts.hpp"
 
 namespace handsel::manipulation_planner {
@@ -56,7 +57,7 @@ PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& mo
   request.allowed_contacts = motion.allowed;
   request.time_limit = parts.settings.planning_time;
   request.seed = parts.action.id + request.id.number;
-  request.straight = motion.is_straight;
+  request.straight = motion.shape != MotionShape::free;
   if (const std::optional<TiltBound> bound = tilt_bound(parts, motion)) {
     request.upright = true;
     request.upright_axis = bound->axis_tool;
@@ -116,7 +117,7 @@ static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSp
   const auto is_over = [&] {
     return parts.link.has_ended(running.command) || parts.monitor.must_end(motion, began);
   };
-  const bool is_replanned = parts.settings.live_period > 0 && !motion.is_straight;
+  const bool is_replanned = parts.settings.live_period > 0 && motion.shape == MotionShape::free;
   for (bool done = false; !done;) {
     const double period = is_replanned ? parts.replanner.period(parts.now.time()) : kMaxDuration;
     done = co_await parts.waiting.until(is_over, period);
@@ -132,15 +133,13 @@ static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSp
   co_return parts.link.has_ended(running.command);
 }
 
-Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, MotionSpec& motion) {
+/// Executes the trajectory that was planned last.
+static Routine<Outcome> run_planned(Parts& parts, const std::vector<Vector>& waypoints,
+                                    MotionSpec& motion) {
   auto& timing = parts.clients.trajectory;
-  const TrajectoryRequest request =
-      trajectory_request(parts, timing, waypoints, parts.arm.configuration(), motion);
-  const bool answered = co_await timing.ask(request);
-  if (!answered) co_return Outcome::no_answer("trajectory");
-  if (!timing.reply()->solved) co_return Outcome::failure(timing.reply()->reason);
   for (const auto& corner : timing.reply()->corners) parts.refuse(corner.what, corner.reason);
-  const TrajectoryCommand command = trajectory_command(parts, timing.reply()->trajectory, motion);
+  TrajectoryCommand command = trajectory_command(parts, timing.reply()->trajectory, motion);
+  command.axes = timing.reply()->axes;
   Outcome sent = co_await parts.link.send(command);
   if (!sent.good) co_return sent;
 
@@ -158,6 +157,34 @@ Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, Mot
   co_await parts.link.stop();
   if (is_area_cleared) co_return Outcome{};
   co_return why;
+}
+
+Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, MotionSpec& motion) {
+  auto& timing = parts.clients.trajectory;
+  const TrajectoryRequest request =
+      trajectory_request(parts, timing, waypoints, parts.arm.configuration(), motion);
+  const bool answered = co_await timing.ask(request);
+  if (!answered) co_return Outcome::no_answer("trajectory");
+  if (!timing.reply()->solved) co_return Outcome::failure(timing.reply()->reason);
+  Outcome run = co_await run_planned(parts, waypoints, motion);
+  co_return run;
+}
+
+/// Plans and executes a straight motion of the tool; nullopt: there is none, for a reason that is
+/// reported.
+static Routine<std::optional<Outcome>> move_tool(Parts& parts, MotionSpec& motion) {
+  const std::optional<TrajectoryRequest> request = tool_request(parts, motion);
+  if (!request) co_return std::nullopt;
+  auto& timing = parts.clients.trajectory;
+  const bool answered = co_await timing.ask(*request);
+  if (!answered) co_return Outcome::no_answer("trajectory");
+  if (!timing.reply()->solved) {
+    parts.refuse("straight motion of the tool", timing.reply()->reason);
+    co_return std::nullopt;
+  }
+  const std::vector<Vector> ends{parts.arm.joints(), motion.goals.front()};
+  Outcome run = co_await run_planned(parts, ends, motion);
+  co_return run;
 }
 
 /// Retreats from what ended a motion or is touched at its start; the reason grows if that fails.
@@ -179,10 +206,17 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
     if (parts.held.is_taken_by(motion.yields_to))
       co_return parts.monitor.why_ended(motion, parts.now.time());
     const Vector start = parts.arm.configuration();
-    PlannedPath planned = co_await plan_path(parts, start, motion);
+    std::optional<Outcome> by_tool;
+    if (motion.shape == MotionShape::straight_tool) {
+      by_tool = co_await move_tool(parts, motion);
+      motion.shape = MotionShape::straight_axes;  // in further attempts
+    }
+    PlannedPath planned;
+    if (!by_tool) planned = co_await plan_path(parts, start, motion);
     std::string in_the_way;
     if (planned.outcome.good) {
-      last = co_await execute(parts, planned.waypoints, motion);
+      last = by_tool ? *by_tool : Outcome{};
+      if (!by_tool) last = co_await execute(parts, planned.waypoints, motion);
       if (last.good || last.is_final()) co_return last;
       const Person* person =
           last.end == MotionEnd::person_too_near ? parts.now.person("") : nullptr;
@@ -244,7 +278,7 @@ static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& 
 Routine<Outcome> retreat_from(Parts& parts, const std::string& touched, const MotionSpec& next) {
   MotionSpec off;
   off.phase = ActionPhase::retreat_from_person;
-  off.is_straight = true;
+  off.shape = MotionShape::straight_axes;
   off.speed = parts.settings.approach_speed;
   off.allowed = next.allowed;
   off.allowed.push_back(touched);

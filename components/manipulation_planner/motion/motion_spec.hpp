@@ -1,6 +1,7 @@
 // What a motion of the arm or the platform is to do, and what ends it.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -30,11 +31,21 @@ struct ReceiverTarget {
   ReceiverHands hands{};                   ///< then
 };
 
+/// Shape of a motion between its ends.
+enum class MotionShape : std::uint8_t {
+  free,           ///< as the path planner finds it; replanned while it runs
+  straight_axes,  ///< straight motion of the axes
+  straight_tool,  ///< straight motion of the tool where the arm permits it, else of the axes
+};
+
 struct MotionSpec {
-  ActionPhase phase{};                 ///< part of the action
-  bool is_of_platform{false};          ///< the platform moves, in place of the arm in use
-  std::vector<Vector> goals;           ///< axes that move, alternatives [rad] ([m])
-  bool is_straight{false};             ///< straight motion of the axes; it is not replanned
+  ActionPhase phase{};                   ///< part of the action
+  bool is_of_platform{false};            ///< the platform moves, in place of the arm in use
+  std::vector<Vector> goals;             ///< axes that move, alternatives [rad] ([m])
+  MotionShape shape{MotionShape::free};  ///< between its ends
+  /// Positions of the fingers of the hand in use to which they move in the last part of a straight
+  /// motion of the tool [rad, m]; nullopt: they rest.
+  std::optional<Vector> fingers;
   std::vector<std::string> allowed;    ///< what may be touched
   std::vector<std::string> tolerated;  ///< planned around; a foreseen touch does not hold the arm
   double speed{1.0};                   ///< scale of the velocity limits

@@ -173,7 +173,13 @@ class Rig {
   void answer(const TrajectoryRequest& request) {
     TrajectoryReply reply;
     reply.id = request.id;
+    if (!request.poses.empty()) {
+      reply.reason = "motions of the tool are not planned here";
+      return planner.on(reply);
+    }
     reply.solved = true;
+    const std::vector<int>& moved = robot->require_group(request.group).axes;
+    reply.axes.assign(moved.begin(), moved.end());
     target = request.nodes.back();
     if (moves) {
       KinematicLimits limits = robot->comfort_limits();
