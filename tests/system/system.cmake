@@ -91,6 +91,8 @@ handsel_test(between_hands SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasps/between_hand
 target_compile_definitions(test_between_hands PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(test_between_hands handsel)
 set_tests_properties(between_hands PROPERTIES PROCESSORS 2 TIMEOUT 300)
+handsel_test(passing SOURCES ${CMAKE_CURRENT_LIST_DIR}/driving/passing_test.cpp LINK handsel_lockstep nlohmann_json::nlohmann_json LABEL system)
+set_tests_properties(passing PROPERTIES TIMEOUT 300)
 handsel_test(robot_drives SOURCES ${CMAKE_CURRENT_LIST_DIR}/driving/robot_drives_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)
 target_compile_definitions(test_robot_drives PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(test_robot_drives handsel)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/cost/human_cost.hpp"
+#include "common/cost/person_frame.hpp"
 #include "common/messages/attention.hpp"
 
 namespace handsel {
@@ -128,6 +129,7 @@ void Criteria::on(const GroundTruth& ground_truth, TimePoint now) {
     }
   }
   watch_handover(ground_truth);
+  watch_passing(ground_truth);
   last_ = ground_truth;
 }
 
@@ -151,6 +153,21 @@ void Criteria::watch_handover(const GroundTruth& ground_truth) {
   legibility_.reset();
   if (before == "robot" && carried_from_ && carried_ > kCarried)
     legibility_ = std::min(1.0, (p - *carried_from_).norm() / carried_);
+}
+
+void Criteria::watch_passing(const GroundTruth& ground_truth) {
+  const bool is_nearer = !nearest_ || ground_truth.separation < *nearest_;
+  if (!ground_truth.robot_moving || !is_nearer || ground_truth.person.size() != kBodyJoints.size())
+    return;
+  nearest_ = ground_truth.separation;
+  Person person;
+  person.joints = ground_truth.person;
+  Vector3 to_robot = status_.nearest_on_robot - find_joint(person, "torso")->position;
+  to_robot.z() = 0;
+  Vector3 front = torso_axes(person).col(0);
+  front.z() = 0;
+  const double lengths = to_robot.norm() * front.norm();
+  if (lengths > 0) nearest_angle_ = std::acos(std::clamp(to_robot.dot(front) / lengths, -1.0, 1.0));
 }
 
 nlohmann::json Criteria::fields() const {
@@ -185,6 +202,7 @@ nlohmann::json Criteria::fields() const {
           {"functional_delay_s", both_idle_},
           {"discomfort", discomfort_ ? Json(*discomfort_) : Json(nullptr)},
           {"legibility", legibility_ ? Json(*legibility_) : Json(nullptr)},
+          {"nearest_angle_rad", nearest_angle_ ? Json(*nearest_angle_) : Json(nullptr)},
           {"max_tilt_rad", max_tilt_ ? Json(*max_tilt_) : Json(nullptr)},
           {"cpu_s", cpu},
           {"cpu_chain_s", chain},

@@ -41,6 +41,8 @@ class Criteria {
   ///   (arm_comfort_cost); null: it did not
   /// - `legibility`: straight distance of the object that the robot carried to a person over the
   ///   length of its path, (0, 1]; null: it carried nothing there
+  /// - `nearest_angle_rad`: level angle between the front of the person and the robot's nearest
+  ///   point at the least separation while the robot moved: 0 in front, pi behind; null: it did not
   /// - `max_tilt_rad`: largest angle between up and the z axis of the object while the robot alone
   ///   carried it; null: it carried nothing
   /// - `cpu_s`: of each component's handlers and jobs, thread CPU time; `cpu_chain_s`: of
@@ -61,6 +63,7 @@ class Criteria {
   };
   void settle(TimePoint now);
   void watch_handover(const GroundTruth& ground_truth);
+  void watch_passing(const GroundTruth& ground_truth);
 
   LocalNetwork& network_;
   double speed_factor_{};
@@ -76,7 +79,9 @@ class Criteria {
   std::optional<Vector3> carried_from_;  // where the robot alone began to carry it
   double carried_{};                     // distance moved since [m]
   std::optional<double> discomfort_, legibility_, max_tilt_;
-  std::array<double, 5> rates_{};  // sums of advised rates [Hz]
+  std::optional<double> nearest_;        // least separation while the robot moved [m]
+  std::optional<double> nearest_angle_;  // at that separation [rad]
+  std::array<double, 5> rates_{};        // sums of advised rates [Hz]
 };
 
 }  // namespace handsel
