@@ -30,6 +30,12 @@ struct NearHand {
 /// Returns the hand of the person that is nearest to `p` (world [m]). The person needs all joints.
 NearHand nearest_hand(const Person& person, const Vector3& p);
 
+/// Returns by how much the exchange point of a give should move so that the person finds the object
+/// at the hand that they hold out, world [m]: the wrist of this hand from the planned one, or,
+/// where none is planned, the hand from `kBeforeHand` beyond the point. nullopt: no hand is held
+/// out, or another one than planned. `p_robot`: where the robot stands, world [m].
+std::optional<Vector3> shift_to_held_out_hand(const ActionStatus& action, const Person& person,
+                                              const Vector3& p_robot, const MotorSettings& motor);
 /// Returns whether the robot hands something to this person, picks up what the person is to get, or
 /// takes something from the person.
 bool in_handover_with(const World& w, const std::string& person);

@@ -312,9 +312,9 @@ class Exchange : public Schema {
   Exchange(Behaviour kind, const Body& body, const MotorSettings& motor)
       : kind_(kind), body_(body), motor_(motor) {}
   Behaviour kind() const override { return kind_; }
-  double perceive(const World& w, TimePoint) override {
+  double perceive(const World& w, TimePoint now) override {
     present_ = false;
-    shift_ = Vector3::Zero();
+    shift_.reset();
     if (!w.action || !robot_known(w, body_)) return kInfinity;
     const Vector3 p = body_.grasp_point(w.active->position, w.active->T_world_base);
     const Person* person = person_of_interest(w, p, motor_.lost_after);
@@ -324,10 +324,9 @@ class Exchange : public Schema {
     present_ = distance_ < motor_.hand_near || attentive(w, person->id);
     const bool at_exchange = distance_ < motor_.hand_near;
     gaze_ = at_exchange ? hand.position : person->joints[body::head].position;
-    if (kind_ == Behaviour::receive) {
-      shift_ = hand.position - w.action->exchange_point;
-      if (shift_.norm() > motor_.shift_limit) shift_ *= motor_.shift_limit / shift_.norm();
-    }
+    shift_ = kind_ == Behaviour::give ? shift_of_give(w, *person, now) : shift_of_receive(w);
+    if (shift_ && shift_->norm() > motor_.shift_limit)
+      *shift_ *= motor_.shift_limit / shift_->norm();
     const double closing =
         distance_ > 1e-6 ? hand.velocity.dot((p - hand.position) / distance_) : 0.0;
     return urgency(distance_, closing);
@@ -346,16 +345,45 @@ class Exchange : public Schema {
     return present_ ? std::optional(gaze_) : std::nullopt;
   }
   std::optional<Vector3> target_shift() const override {
-    return kind_ == Behaviour::receive && present_ ? std::optional(shift_) : std::nullopt;
+    return present_ ? shift_ : std::nullopt;
   }
 
  private:
+  /// To the hand that the receiver has held out for `shift_hold`, unless a hand is at the object.
+  std::optional<Vector3> shift_of_give(const World& w, const Person& person, TimePoint now) {
+    const ActionPhase phase = w.action->phase;
+    const Vector3 p_robot = body_.base_point(*w.active, Vector3::Zero());
+    std::optional<Vector3> shift;
+    if (doing(w, ActionKind::give) && distance_ >= motor_.hand_near &&
+        (phase == ActionPhase::carry || phase == ActionPhase::offer))
+      shift = shift_to_held_out_hand(*w.action, person, p_robot, motor_);
+    if (!shift) held_out_since_.reset();
+    if (shift && !held_out_since_) held_out_since_ = now;
+    const bool held = shift && now - *held_out_since_ >= from_seconds(motor_.shift_hold);
+    return held ? shift : std::nullopt;
+  }
+  /// To where the giver will have moved the object after `shift_lead`.
+  std::optional<Vector3> shift_of_receive(const World& w) const {
+    if (!doing(w, ActionKind::receive) || w.action->phase != ActionPhase::approach || !w.scene)
+      return std::nullopt;
+    for (const SceneObject& object : w.scene->objects) {
+      if (object.id != w.action->object || object.holder != Holder::human) continue;
+      Vector3 p_expected = object.T_world_object.translation();
+      if (object.velocity.norm() > motor_.shift_speed)
+        p_expected += motor_.shift_lead * object.velocity;
+      return p_expected - w.action->exchange_point;
+    }
+    return std::nullopt;
+  }
+
   Behaviour kind_;
   const Body& body_;
   MotorSettings motor_;
   bool present_{};
   double distance_{kInfinity};
-  Vector3 gaze_{Vector3::Zero()}, shift_{Vector3::Zero()};
+  Vector3 gaze_{Vector3::Zero()};
+  std::optional<Vector3> shift_;
+  std::optional<TimePoint> held_out_since_;
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ Parts::Parts(const settings::ManipulationPlannerSettings& s,
       retreat(arm.robot(), arm.group()),
       offers(now, settings),
       area(settings, arm, retreat, now),
+      shift(settings),
       monitor(arm, held, offers, area, now, settings),
       replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost_settings)) {}
 

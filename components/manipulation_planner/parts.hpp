@@ -11,6 +11,7 @@
 #include "components/manipulation_planner/hand/held_object.hpp"
 #include "components/manipulation_planner/handover/offer_area.hpp"
 #include "components/manipulation_planner/handover/offer_detector.hpp"
+#include "components/manipulation_planner/handover/target_shift.hpp"
 #include "components/manipulation_planner/motion/controller_link.hpp"
 #include "components/manipulation_planner/motion/motion_monitor.hpp"
 #include "components/manipulation_planner/motion/online_replanner.hpp"
@@ -46,6 +47,7 @@ struct Parts {
   RetreatPlanner retreat;                          ///< away from people
   OfferDetector offers;                            ///< what people offer
   OfferArea area;                                  ///< where people offer
+  TargetShift shift;                               ///< of the exchange point, as advised
   MotionMonitor monitor;                           ///< what ends a motion early
   OnlineReplanner replanner;                       ///< better paths for the running motion
   Destinations destinations;                       ///< where what is grasped can be put down

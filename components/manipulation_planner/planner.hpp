@@ -31,10 +31,11 @@ class ManipulationPlanner {
   void on(const Facts& facts) { parts_.now.on(facts); }
   /// Takes a cost layer; `sent`: when its writer sent the layer.
   void on(const Costmap& layer, TimePoint sent, TimePoint now) { parts_.now.on(layer, sent, now); }
-  /// Takes the advised period of replanning and the gain of the human-aware cost; both hold for a
-  /// moment only.
+  /// Takes the advised period of replanning, the gain of the human-aware cost and the shift of the
+  /// exchange point; all hold for a moment only.
   void on(const AttentionAdvice& advice, TimePoint now) {
     parts_.replanner.advise(advice.replan_period, advice.cost_gain, now);
+    parts_.shift.advise(advice, now);
   }
   /// Takes the newest report of the controller: what holds the robot back, and the state of its
   /// command.

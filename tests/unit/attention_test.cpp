@@ -8,6 +8,7 @@
 #include "common/base/advised_period.hpp"
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
+#include "common/model/human/body_index.hpp"
 #include "components/attention/settings.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/small_robot.hpp"
@@ -313,6 +314,88 @@ TEST_F(AttentionTest, the_exchanging_hand_does_not_stop_the_robot_once_engaged) 
   EXPECT_FALSE(engaged.advice().has_target_shift);
 }
 
+/// A receiver whose right hand and wrist are held out at a place, and who is to be given something
+/// at another.
+class ShiftTest : public AttentionTest {
+ protected:
+  ShiftTest() {
+    people_.people = {standing(1.6, 0)};
+    action_.kind = ActionKind::give;
+    action_.state = ActionState::running;
+    action_.phase = ActionPhase::carry;
+    action_.holding = true;
+    action_.human = "anna";
+    action_.exchange_point = Vector3(1.0, 0.0, 1.1);
+    action_.has_partner = true;
+    action_.partner_side = Side::right;
+    action_.T_world_partner_wrist = make_pose({1.12, 0.0, 1.1});
+    hold_out(Side::right, planned_ + beside_);
+  }
+  void hold_out(Side side, const Vector3& p_wrist) {
+    auto& joints = people_.people[0].joints;
+    joints[side == Side::left ? body::l_wrist : body::r_wrist].position = p_wrist;
+    joints[side == Side::left ? body::l_hand : body::r_hand].position =
+        p_wrist - Vector3(0.07, 0, 0);
+  }
+  AttentionAdvice after(double seconds, double limit = 0.15) {
+    AttentionSettings given = settings();
+    given.motor.shift_limit = limit;
+    Attention attention(given, body_);
+    run(attention, 0, seconds);
+    return attention.advice();
+  }
+  const Vector3 planned_{1.12, 0.0, 1.1}, beside_{0.05, 0.1, 0.02};
+};
+
+TEST_F(ShiftTest, give_asks_for_the_hand_that_is_held_out) {
+  const AttentionAdvice advice = after(1.5);
+  ASSERT_TRUE(advice.has_target_shift);
+  EXPECT_LT((advice.target_shift - beside_).norm(), 1e-9);
+  EXPECT_FALSE(after(0.2).has_target_shift) << "it has just come";
+  const Vector3 bounded = after(1.5, 0.06).target_shift;
+  EXPECT_NEAR(bounded.norm(), 0.06, 1e-9);
+  EXPECT_LT(bounded.cross(beside_).norm(), 1e-9);
+}
+
+TEST_F(ShiftTest, give_asks_for_nothing_while_no_hand_is_held_out) {
+  people_.people = {standing(1.6, 0)};
+  EXPECT_FALSE(after(1.5).has_target_shift) << "both hands hang";
+  hold_out(Side::left, planned_ + beside_);
+  EXPECT_FALSE(after(1.5).has_target_shift) << "the handover is planned for the other hand";
+  action_.has_partner = false;
+  EXPECT_TRUE(after(1.5).has_target_shift) << "it is planned for none";
+  people_.people[0].joints[body::l_hand].velocity = Vector3(0, 0.4, 0);
+  EXPECT_FALSE(after(1.5).has_target_shift) << "the hand only passes";
+}
+
+TEST_F(ShiftTest, give_asks_for_nothing_before_the_object_is_carried_nor_once_a_hand_is_there) {
+  action_.phase = ActionPhase::choosing_exchange_point;
+  EXPECT_FALSE(after(1.5).has_target_shift);
+  action_.phase = ActionPhase::offer;
+  EXPECT_TRUE(after(1.5).has_target_shift);
+  const Vector3 p_robot_hand = body_.grasp_point(active_.position, active_.T_world_base);
+  hold_out(Side::right, p_robot_hand + Vector3(0.2, 0, 0));
+  EXPECT_FALSE(after(1.5).has_target_shift);
+}
+
+TEST_F(ShiftTest, receive_asks_for_where_the_giver_moves_the_object) {
+  action_.kind = ActionKind::receive;
+  action_.phase = ActionPhase::approach;
+  action_.holding = false;
+  action_.object = "mug";
+  scene_.objects = {{"mug", "mug", make_pose({1.02, 0.03, 1.1}), Holder::human, "anna", 0}};
+  const Vector3 moved = Vector3(1.02, 0.03, 1.1) - action_.exchange_point;
+  AttentionAdvice advice = after(1.5);
+  ASSERT_TRUE(advice.has_target_shift);
+  EXPECT_LT((advice.target_shift - moved).norm(), 1e-9);
+  const Vector3 velocity(0, 0.3, 0);
+  scene_.objects[0].velocity = velocity;
+  advice = after(1.5);
+  EXPECT_LT((advice.target_shift - moved - settings().motor.shift_lead * velocity).norm(), 1e-9);
+  scene_.objects[0].holder = Holder::surface;
+  EXPECT_FALSE(after(1.5).has_target_shift) << "it is no longer in the hand";
+}
+
 TEST_F(AttentionTest, the_person_whom_an_object_is_picked_for_expects_the_robot_near) {
   people_.people = {standing(1.2, 0)};
   action_.kind = ActionKind::pick;
@@ -516,10 +599,10 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   const std::string shipped((std::istreambuf_iterator<char>(in)), {});
   EXPECT_EQ(refusal_of(shipped, "tick", "tick"), "no error");
   const std::string order = refusal_of(shipped, "p_min: 0.04 p_max: 0.8", "p_min: 1.0 p_max: 0.8");
-  EXPECT_THAT(order, HasSubstr("attention.txtpb:31"));
+  EXPECT_THAT(order, HasSubstr("attention.txtpb:35"));
   EXPECT_THAT(order, HasSubstr("behaviour avoid: p_max must not be below p_min"));
   const std::string stranger = refusal_of(shipped, "\"give\"", "\"hug\"");
-  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:34"));
+  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:38"));
   EXPECT_THAT(stranger,
               HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
   EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"),

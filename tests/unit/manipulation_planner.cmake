@@ -5,6 +5,7 @@ handsel_test(manipulation_planner
     ${manipulation_planner_tests}/offer_detector_test.cpp
     ${manipulation_planner_tests}/online_replanner_test.cpp
     ${manipulation_planner_tests}/otp_search_test.cpp
+    ${manipulation_planner_tests}/target_shift_test.cpp
     ${manipulation_planner_tests}/offer_area_test.cpp
     ${manipulation_planner_tests}/receiver_hands_test.cpp
     ${manipulation_planner_tests}/place_search_test.cpp

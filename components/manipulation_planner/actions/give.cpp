@@ -49,15 +49,30 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
     if (person == nullptr) co_return Outcome::out_of_sight("person " + receiver);
     MotionSpec carry = carry_motion(parts, object, choice.search, *person);
     show(choice.search.poses.front(), parts.action);
+    parts.shift.note_choice(parts.action.exchange_point, parts.now.time());
     last = co_await move(parts, carry);
     if (last.end == MotionEnd::taken) co_return Outcome{};
     if (!last.good) continue;
     if (settings.live_period <= 0 || attempt >= settings.motion_attempts) co_return last;
     const Vector here = RobotModel::part(parts.arm.configuration(), parts.arm.group());
+    if (parts.shift.has_led_to(parts.held.T_world_object().translation())) carry.goals = {here};
     const bool has_moved = co_await follow_receiver(parts, carry, here);
     if (!has_moved) co_return last;
   }
   co_return last;
+}
+
+/// Moves what is offered as attention asks for; where that fails it is offered where it is.
+Routine<Outcome> shift_offer(Parts& parts, const std::string& object, const std::string& receiver) {
+  const Person* person = parts.now.person(receiver);
+  if (person == nullptr) co_return Outcome::out_of_sight("person " + receiver);
+  MotionSpec carry = carry_motion(parts, object, {}, *person);
+  const Vector here = RobotModel::part(parts.arm.configuration(), parts.arm.group());
+  carry.goals = {here};
+  const bool is_shifted = co_await follow_shift(parts, carry, here);
+  if (!is_shifted) co_return Outcome{};
+  Outcome moved = co_await move(parts, carry);
+  co_return moved;
 }
 
 /// Returns whether a person has drawn the object out of the hand, as from a hand that could not
@@ -80,23 +95,41 @@ Routine<HandResult> keep(Parts& parts, bool is_open) {
   co_return held;
 }
 
-/// Offers the object until the receiver takes it; else the hand keeps it.
-Routine<Outcome> offer(Parts& parts, const std::string& object, const std::string& receiver) {
+/// What an offer came to.
+struct Offered {
+  Outcome outcome;      ///< whether the receiver has the object, or it is to be offered elsewhere
+  bool is_elsewhere{};  ///< attention wants the offer elsewhere; the hand has closed again
+};
+
+/// Offers the object until the receiver takes it or the offer is wanted elsewhere; else the hand
+/// keeps it.
+Routine<Offered> offer(Parts& parts, const std::string& object, const std::string& receiver,
+                       TimePoint deadline) {
   parts.action.phase = ActionPhase::offer;
   show_offered(parts, receiver);
   parts.action.exchange_engaged = true;
   const Vector open = opening(parts);
-  const double timeout = parts.settings.offer_timeout;
-  const TimePoint deadline = parts.now.time() + from_seconds(timeout);
-  const std::function<bool()> is_over = [&] { return is_drawn_out(parts, object); };
+  const auto is_wanted_elsewhere = [&] {
+    return parts.settings.follow_receiver && !parts.held.is_taken_by(receiver) &&
+           parts.shift.wanted(parts.action.exchange_point, parts.now.time()).has_value();
+  };
+  const std::function<bool()> is_over = [&] {
+    return is_drawn_out(parts, object) || is_wanted_elsewhere();
+  };
   HandResult released;
   for (;;) {
     const double left = to_seconds(deadline - parts.now.time());
     released = co_await parts.hand.release_on_pull(open, left, is_over);
     if (!released.outcome.good) break;
-    if (released.state == HandState::released) co_return Outcome{};
+    if (released.state == HandState::released) co_return Offered{};
     const bool interrupted = released.state == HandState::refused;
-    bool has_person_it = is_over() || (interrupted && !is_held_by_robot(parts, object));
+    if (!interrupted && !is_drawn_out(parts, object) && is_wanted_elsewhere()) {
+      parts.action.exchange_engaged = false;
+      const HandResult held = co_await keep(parts, false);
+      co_return Offered{held.outcome, true};
+    }
+    bool has_person_it =
+        is_drawn_out(parts, object) || (interrupted && !is_held_by_robot(parts, object));
     if (interrupted && !has_person_it) {
       const HandResult held = co_await keep(parts, true);
       // Closed on nothing: the person has drawn the object out, or a finger is caught on it.
@@ -104,16 +137,31 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
     }
     if (has_person_it) {
       released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
-      co_return released.outcome;
+      co_return Offered{released.outcome};
     }
     if (!interrupted || parts.now.time() >= deadline) break;
   }
   parts.action.exchange_engaged = false;
   co_await keep(parts, false);
-  if (!released.outcome.good) co_return released.outcome;
-  co_return Outcome::failure(receiver + " did not take " + object + " within " +
-                                 std::to_string(static_cast<int>(timeout)) + " s",
-                             ActionFailure::not_taken);
+  if (!released.outcome.good) co_return Offered{released.outcome};
+  co_return Offered{
+      Outcome::failure(receiver + " did not take " + object + " within " +
+                           std::to_string(static_cast<int>(parts.settings.offer_timeout)) + " s",
+                       ActionFailure::not_taken)};
+}
+
+/// Offers the object until the receiver takes it, elsewhere as often as attention asks for.
+Routine<Outcome> offer_and_shift(Parts& parts, const std::string& object,
+                                 const std::string& receiver) {
+  const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.offer_timeout);
+  Offered offered;
+  do {
+    offered = co_await offer(parts, object, receiver, deadline);
+    if (!offered.outcome.good || !offered.is_elsewhere) break;
+    const Outcome shifted = co_await shift_offer(parts, object, receiver);
+    if (!shifted.good) parts.refuse("shift of the exchange point", shifted.reason);
+  } while (true);
+  co_return offered.outcome;
 }
 
 /// Returns whether a pull toward the person draws the object out of the opened fingers, not against
@@ -155,8 +203,10 @@ Routine<Outcome> give(Parts& parts, const std::string& object, const std::string
   if (!is_taken) {
     Outcome carried = co_await carry_to(parts, object, receiver);
     if (!carried.good) co_return carried;
+  } else {
+    parts.shift.note_choice(parts.held.T_world_object().translation(), parts.now.time());
   }
-  Outcome offered = co_await offer(parts, object, receiver);
+  Outcome offered = co_await offer_and_shift(parts, object, receiver);
   if (!offered.good) co_return offered;
   parts.held.release();
   parts.action.phase = ActionPhase::retreat;

@@ -12,7 +12,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSameGoal = 0.03;  // max norm: a configuration this near to a goal is that [rad]
+constexpr double kSameGoal = 0.03;   // max norm: a configuration this near to a goal is that [rad]
+constexpr double kSamePoint = 0.01;  // exchange points this near to each other are the same [m]
 
 const Vector3& trunk_of(const Person& person) {
   return person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
@@ -47,8 +48,8 @@ bool is_goal_of(const MotionSpec& motion, const Vector& q) {
 
 }  // namespace
 
-Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
-                              const Pose* T_world_object) {
+Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const Pose* T_world_object,
+                              std::optional<OtpShift> shift) {
   auto choice = std::make_shared<OtpChoice>();
   const Person* person = parts.now.person(receiver);
   if (person == nullptr) {
@@ -59,7 +60,7 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
       T_world_object != nullptr ? std::optional<Pose>(*T_world_object) : std::nullopt;
   const auto& grasp = parts.held.grasp();
   const std::function<void()> job =
-      [choice, T_present, robot = parts.arm.shared_robot(), arm = parts.arm.group(),
+      [choice, T_present, shift, robot = parts.arm.shared_robot(), arm = parts.arm.group(),
        scene = parts.now.scene(), layers = parts.now.layers(), who = *person,
        q = parts.now.set_point(), T_tool_object = parts.held.attachment().T_tool_object,
        T_now = parts.held.T_world_object(),
@@ -70,7 +71,11 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
        p_robot = Vector3(T_world_platform(parts.now).translation())] {
         const OtpQuery query{scene,  who,      layers, T_now, T_tool_object,
                              barred, partners, hands,  back,  p_robot};
-        choice->search = find_otp(*robot, arm, query, q, settings);
+        if (T_present && shift)
+          choice->search = shifted_otp(*robot, arm, query, *T_present, shift->p_wanted,
+                                       RobotModel::with(q, arm, shift->arm_joints), settings);
+        else
+          choice->search = find_otp(*robot, arm, query, q, settings);
         if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
       };
   choice->outcome = co_await parts.worker.run(job);
@@ -94,6 +99,13 @@ std::optional<PartnerPose> partner_at(const Parts& parts, const Person& receiver
   if (!grasp) return std::nullopt;
   return easiest_partner(taking_arms(receiver, parts.receiver_hands, parts.settings),
                          grasp->partners, T_world_object);
+}
+
+/// Returns the pose of what is held where the arm has a configuration.
+Pose T_world_held_at(const Parts& parts, const Vector& arm_joints) {
+  const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), arm_joints);
+  return parts.now.T_world_base() * parts.arm.robot().link_pose(q, parts.arm.palm()) *
+         parts.held.attachment().T_tool_object;
 }
 
 }  // namespace
@@ -129,10 +141,7 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   const ReceiverTarget now = target_of(*person, look_at_hands(parts, *person));
   const bool is_astray = parts.arm.at_rest() && !is_goal_of(motion, goal);
   if (!is_astray && !has_changed(*motion.receiver, now, settings)) co_return false;
-  const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), goal);
-  const Pose T_world_object = parts.now.T_world_base() *
-                              parts.arm.robot().link_pose(q, parts.arm.palm()) *
-                              parts.held.attachment().T_tool_object;
+  const Pose T_world_object = T_world_held_at(parts, goal);
   OtpChoice choice = co_await choose_otp(parts, receiver, &T_world_object);
   person = parts.now.person(receiver);
   if (!choice.outcome.good || person == nullptr) co_return false;
@@ -149,6 +158,38 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   }
   aim_at(choice.search, *person, now.hands, motion);
   show(choice.search.poses.front(), parts.action);
+  parts.shift.note_choice(parts.action.exchange_point, parts.now.time());
+  co_return true;
+}
+
+Routine<bool> follow_shift(Parts& parts, MotionSpec& motion, const Vector& goal) {
+  const std::string receiver = motion.receiver->person;
+  const Person* person = parts.now.person(receiver);
+  if (!parts.settings.follow_receiver || person == nullptr) co_return false;
+  const Pose T_world_object = T_world_held_at(parts, goal);
+  if ((T_world_object.translation() - parts.action.exchange_point).norm() > kSamePoint) {
+    if (!is_goal_of(motion, goal)) co_return false;  // it is still to be led to the shifted one
+    // Of several poses found, the motion leads to another one than was reported.
+    show({T_world_object, goal, 0, partner_at(parts, *person, T_world_object)}, parts.action);
+    if (parts.shift.is_another_choice(T_world_object.translation()))
+      parts.shift.note_choice(T_world_object.translation(), parts.now.time());
+    co_return false;
+  }
+  const std::optional<Vector3> p_wanted =
+      parts.shift.wanted(T_world_object.translation(), parts.now.time());
+  if (!p_wanted) co_return false;
+  const OtpShift shift{*p_wanted, goal};
+  OtpChoice choice = co_await choose_otp(parts, receiver, &T_world_object, shift);
+  person = parts.now.person(receiver);
+  if (!choice.outcome.good || person == nullptr) co_return false;
+  if (choice.search.poses.empty()) {
+    parts.shift.note_refusal(*p_wanted);
+    parts.refuse("shift of the exchange point", choice.search.reason);
+    co_return false;
+  }
+  aim_at(choice.search, *person, parts.receiver_hands, motion);
+  show(choice.search.poses.front(), parts.action);
+  parts.shift.note_change(parts.action.exchange_point, parts.now.time());
   co_return true;
 }
 

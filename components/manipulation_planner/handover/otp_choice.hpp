@@ -19,11 +19,17 @@ struct OtpChoice {
   std::optional<double> present_cost;  ///< of the pose that was asked about; nullopt: it is none
 };
 
+/// A handover that is shifted in place of a search.
+struct OtpShift {
+  Vector3 p_wanted{Vector3::Zero()};  ///< where the object is wanted, world [m]
+  Vector arm_joints;                  ///< axes of the arm at the pose that is shifted [rad]
+};
+
 // References must outlive the routines.
 /// Searches object transfer points with a person for what is held. `T_world_object`: a pose whose
-/// cost is asked, null: none.
-Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
-                              const Pose* T_world_object);
+/// cost is asked, null: none. `shift`: of that pose, in place of a search.
+Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const Pose* T_world_object,
+                              std::optional<OtpShift> shift = std::nullopt);
 /// Reports the pose that a handover is planned for, and the grasp of the person there.
 void show(const OtpPose& pose, ActionStatus& action);
 /// Reports where the object is offered now, and the easiest grasp of the receiver there: of
@@ -37,5 +43,9 @@ void aim_at(const OtpSearch& search, const Person& receiver, const ReceiverHands
 /// `goal`, axes of the arm, is no good handover configuration any more. Near the point more must be
 /// gained (`commit_distance`). Returns whether it is none, even where there is no other.
 Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& goal);
+/// Shifts the handover as attention asks for, see TargetShift: the goals of the motion are then the
+/// shifted configuration. Returns whether they are. `goal`: axes of the arm that the motion leads
+/// to, or that the arm has.
+Routine<bool> follow_shift(Parts& parts, MotionSpec& motion, const Vector& goal);
 
 }  // namespace handsel::manipulation_planner

@@ -225,6 +225,29 @@ bool can_retreat(const RobotModel& robot, const Group& arm, const Vector& q,
   return back && (*back - RobotModel::part(q, arm)).cwiseAbs().maxCoeff() < max_turn;
 }
 
+/// A configuration that puts the object into a pose.
+struct Reached {
+  Vector joints;    ///< axes of the arm [rad]
+  bool retreats{};  ///< the hand can retreat from there, or it is not known how
+};
+
+/// Returns how the arm puts the object into a pose; nullopt: not at all.
+std::optional<Reached> reach(const RobotModel& robot, const Group& arm, const OtpQuery& query,
+                             const Pose& T_world_object, const Vector& q,
+                             const settings::ManipulationPlannerSettings& settings) {
+  IkOptions options;
+  options.restarts = 0;
+  const Pose T_root_tip =
+      query.scene.T_world_base.inverse() * T_world_object * query.T_tool_object.inverse();
+  const auto joints = robot.inverse(arm, T_root_tip, q, options);
+  if (!joints) return std::nullopt;
+  Pose T_root_retreat = T_root_tip;
+  if (query.back)
+    T_root_retreat.translation() += settings.min_retreat * (T_root_tip.linear() * *query.back);
+  return Reached{*joints, !query.back || can_retreat(robot, arm, RobotModel::with(q, arm, *joints),
+                                                     T_root_retreat, settings.max_straight_turn)};
+}
+
 }  // namespace
 
 std::vector<Vector3> barred_directions(const Grasp& grasp) {
@@ -247,8 +270,6 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
   }
   Candidates candidates = find_candidates(query, costs);
   add_partners(costs, settings.partner_poses, candidates.all);
-  IkOptions options;
-  options.restarts = 0;
   int unreachable = 0;
   std::vector<OtpPose> confined;  // the hand could not retreat
   for (const Candidate& candidate : candidates.all) {
@@ -261,21 +282,15 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
     if (std::any_of(out.poses.begin(), out.poses.end(), is_near)) continue;
     if (out.poses.size() >= settings.exchange_goals || out.tried >= settings.handover_tries) break;
     ++out.tried;
-    const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object *
-                            query.T_tool_object.inverse();
-    auto joints = robot.inverse(arm, T_root_tip, q, options);
-    if (!joints) {
+    std::optional<Reached> reached =
+        reach(robot, arm, query, candidate.T_world_object, q, settings);
+    if (!reached) {
       ++unreachable;
       continue;
     }
-    Pose T_root_retreat = T_root_tip;
-    if (query.back)
-      T_root_retreat.translation() += settings.min_retreat * (T_root_tip.linear() * *query.back);
-    const bool retreats = !query.back || can_retreat(robot, arm, RobotModel::with(q, arm, *joints),
-                                                     T_root_retreat, settings.max_straight_turn);
-    (retreats ? out.poses : confined)
-        .push_back(
-            {candidate.T_world_object, std::move(*joints), candidate.cost, candidate.partner});
+    (reached->retreats ? out.poses : confined)
+        .push_back({candidate.T_world_object, std::move(reached->joints), candidate.cost,
+                    candidate.partner});
   }
   if (out.poses.empty() && !confined.empty()) out.poses = {confined.front()};
   if (out.poses.empty())
@@ -316,6 +331,44 @@ std::optional<PartnerPose> easiest_partner(const std::vector<TakingArm>& arms,
     }
   }
   return best;
+}
+
+OtpSearch shifted_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
+                      const Pose& T_world_object, const Vector3& p_wanted, const Vector& q,
+                      const settings::ManipulationPlannerSettings& settings) {
+  constexpr double kRatios[] = {1.0, 0.75, 0.5, 0.25};
+  constexpr int kMaxTurn = 4;  // steps of the headings of a search
+  OtpSearch out;
+  const OtpCosts costs(query, settings);
+  const Vector3 shift = p_wanted - T_world_object.translation();
+  int no_place = 0, no_grasp = 0;
+  for (const double ratio : kRatios) {
+    if (ratio * shift.norm() < settings.min_shift) break;
+    for (int k = 0; k <= 2 * kMaxTurn; ++k) {
+      const double turn = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * 2 * std::numbers::pi / kHeadings;
+      Pose T_shifted = T_world_object;
+      T_shifted.translation() += ratio * shift;
+      T_shifted.linear() = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * T_world_object.linear();
+      const std::optional<double> cost = otp_cost(query, T_shifted, settings);
+      const std::optional<PartnerPose> partner = costs.partner_at(T_shifted);
+      const bool is_of_ready_hand =
+          partner && (!query.hands.ready || partner->side == *query.hands.ready);
+      const bool is_graspable = is_of_ready_hand || !costs.has_partners();
+      no_place += !cost;
+      no_grasp += cost && !is_graspable;
+      if (!cost || !is_graspable) continue;
+      ++out.tried;
+      std::optional<Reached> reached = reach(robot, arm, query, T_shifted, q, settings);
+      if (!reached || !reached->retreats) continue;
+      out.poses.push_back({T_shifted, std::move(reached->joints), *cost, partner});
+      return out;
+    }
+  }
+  out.reason = "no exchange point with " + query.person.id +
+               " where attention wants one: " + std::to_string(no_place) + " poses are none, " +
+               std::to_string(no_grasp) + " fit no grasp of theirs, " + std::to_string(out.tried) +
+               " beyond the robot's reach";
+  return out;
 }
 
 std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object,

@@ -111,6 +111,15 @@ Routine<PlannedPath> plan_path(Parts& parts, const Vector& start, const MotionSp
   co_return planned;
 }
 
+/// Returns where attention expects the object that a motion follows, at most max_shift from where
+/// it is seen, world [m]; nullopt: it expects nothing else.
+static std::optional<Vector3> p_ahead_of(const Parts& parts, const MotionSpec& motion) {
+  const SceneObject* object = parts.now.object(motion.object->object);
+  if (object == nullptr) return std::nullopt;
+  return parts.shift.wanted_around(object->T_world_object.translation(),
+                                   parts.action.exchange_point, parts.now.time());
+}
+
 /// Replans the running motion until it ends by itself or must end.
 static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSpec& motion,
                                   TimePoint began) {
@@ -122,13 +131,18 @@ static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSp
     const double period = is_replanned ? parts.replanner.period(parts.now.time()) : kMaxDuration;
     done = co_await parts.waiting.until(is_over, period);
     if (done || !is_replanned) break;
-    if (motion.receiver) co_await follow_receiver(parts, motion, running.waypoints.back());
+    if (motion.receiver) {
+      const bool has_moved = co_await follow_receiver(parts, motion, running.waypoints.back());
+      if (!has_moved) co_await follow_shift(parts, motion, running.waypoints.back());
+    }
     const bool follows = motion.object && motion.object->grasp;
     const std::optional<Vector3> p_moved =
-        follows ? parts.monitor.follow_object(motion) : std::nullopt;
+        follows ? parts.monitor.follow_object(motion, p_ahead_of(parts, motion)) : std::nullopt;
     co_await parts.replanner.check(running, motion);
-    if (p_moved && (running.waypoints.back() - motion.goals.front()).norm() < kSameGoal)
+    if (p_moved && (running.waypoints.back() - motion.goals.front()).norm() < kSameGoal) {
       motion.object->p_world = parts.action.exchange_point = *p_moved;
+      parts.shift.note_change(*p_moved, parts.now.time());
+    }
   }
   co_return parts.link.has_ended(running.command);
 }

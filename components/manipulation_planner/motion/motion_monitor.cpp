@@ -99,12 +99,15 @@ Outcome MotionMonitor::why_ended(const MotionSpec& motion, TimePoint began) cons
   return why;
 }
 
-std::optional<Vector3> MotionMonitor::follow_object(MotionSpec& motion) const {
+std::optional<Vector3> MotionMonitor::follow_object(MotionSpec& motion,
+                                                    const std::optional<Vector3>& p_ahead) const {
   const SceneObject* object = now_.object(motion.object->object);
   if (object == nullptr) return std::nullopt;
-  const Vector3 p_object = object->T_world_object.translation();
+  Pose T_world_object = object->T_world_object;
+  if (p_ahead) T_world_object.translation() = *p_ahead;
+  const Vector3 p_object = T_world_object.translation();
   if ((p_object - motion.object->p_world).norm() < kMinFollowed) return std::nullopt;
-  const std::optional<Grasp> grasp = arm_.grasp_at(object->T_world_object, *motion.object->grasp);
+  const std::optional<Grasp> grasp = arm_.grasp_at(T_world_object, *motion.object->grasp);
   if (!grasp) return std::nullopt;
   motion.goals = {grasp->approach_joints};
   return p_object;

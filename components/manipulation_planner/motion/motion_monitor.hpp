@@ -39,9 +39,11 @@ class MotionMonitor {
   /// Makes the failure of a motion that must_end() has ended.
   Outcome why_ended(const MotionSpec& motion, TimePoint began) const;
 
-  /// Changes the goals of a motion that follows a moved object; returns where the object is, world
-  /// [m]; nullopt: it was not moved, or the arm does not reach it.
-  std::optional<Vector3> follow_object(MotionSpec& motion) const;
+  /// Changes the goals of a motion that follows a moved object; `p_ahead`: where the object is
+  /// expected, world [m], nullopt: where it is seen. Returns that place; nullopt: it was not moved,
+  /// or the arm does not reach it.
+  std::optional<Vector3> follow_object(MotionSpec& motion,
+                                       const std::optional<Vector3>& p_ahead) const;
 
  private:
   bool is_late(const MotionSpec& motion, TimePoint began) const;

@@ -352,6 +352,49 @@ TEST_F(OtpSearchTest, poses_from_which_the_hand_cannot_retreat_are_left_out) {
   EXPECT_EQ(nowhere.poses.size(), 1u) << "better than no handover";
 }
 
+TEST_F(OtpSearchTest, is_shifted_as_asked_for_but_never_to_where_there_is_no_exchange_point) {
+  const auto settings = rig::settings();
+  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+             T_tool_mug = make_pose({0.08, 0.02, 0.23});
+  const LayersNow layers;
+  const Group& arm = rig_.robot->require_group("arm");
+  const OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, {}};
+  const OtpSearch search = find_otp(*rig_.robot, arm, query, rig_.q, settings);
+  ASSERT_FALSE(search.poses.empty()) << search.reason;
+  const Pose chosen = search.poses.front().T_world_object;
+  const auto shifted_by = [&](const Vector3& shift) {
+    const Vector3 p_wanted = chosen.translation() + shift;
+    return shifted_otp(*rig_.robot, arm, query, chosen, p_wanted, rig_.q, settings);
+  };
+  int followed = 0, refused = 0;
+  for (const Vector3& direction : {Vector3(0, 1, 0), Vector3(0, -1, 0), Vector3(0, 0, -1),
+                                   Vector3(1, 0, 0), Vector3(0, 0, 1)}) {
+    for (const double length : {0.08, 0.3, 1.2}) {
+      const OtpSearch shifted = shifted_by(length * direction);
+      refused += shifted.poses.empty();
+      EXPECT_EQ(shifted.poses.empty(), !shifted.reason.empty());
+      if (shifted.poses.empty()) continue;
+      const OtpPose& pose = shifted.poses.front();
+      EXPECT_TRUE(otp_cost(query, pose.T_world_object, settings));
+      const Vector3 moved = pose.T_world_object.translation() - chosen.translation();
+      EXPECT_NEAR(moved.normalized().dot(direction), 1, 1e-9);
+      EXPECT_LE(moved.norm(), length + 1e-9);
+      EXPECT_GT((chosen.linear().transpose() * pose.T_world_object.linear()).trace(), 2 - 1e-9)
+          << "turned by more than 60 degrees";
+      const Vector q = RobotModel::with(rig_.q, arm, pose.arm_joints);
+      const Pose T_object =
+          rig_.scene.T_world_base * rig_.robot->link_pose(q, rig_.robot->tool_link()) * T_tool_mug;
+      EXPECT_LT((T_object.translation() - pose.T_world_object.translation()).norm(), 1e-3);
+      followed += std::abs(moved.norm() - length) < 1e-9;
+    }
+  }
+  EXPECT_GE(followed, 2) << "asked for places that are good";
+  EXPECT_GE(refused, 1) << "asked for places out of reach";
+  rig_.scene.boxes.push_back(
+      {"screen", make_pose(chosen.translation() + Vector3(0, 0.1, 0)), {0.6, 0.06, 1.5}, false});
+  EXPECT_TRUE(shifted_by({0, 0.1, 0}).poses.empty()) << "into or behind the screen";
+}
+
 TEST_F(OtpSearchTest, only_a_hand_that_pinches_bars_directions) {
   Grasp grasp;
   grasp.contacts.resize(3);
