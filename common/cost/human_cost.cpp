@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/collision/collision_world.hpp"
 
@@ -261,8 +262,11 @@ void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, 
     const int here = std::min(BatchCost::kStates, count - first);
     if (!batch_ ||
         !batch_->run(from, to, at + first, here, layers_.outside.empty() ? 1 : probes_.size())) {
-      for (int i = first; i < first + here; ++i)
-        cost[i] = weighted_cost(parts(from + at[i] * (to - from)), settings_);
+      for (int i = first; i < first + here; ++i) {
+        CostParts now = parts(from + at[i] * (to - from));
+        const double outside = std::exchange(now.outside, 0.0);
+        cost[i] = gain_ * weighted_cost(now, settings_) + outside;
+      }
       continue;
     }
     for (int slot = 0; slot < here; ++slot) {
@@ -277,7 +281,7 @@ void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, 
         most = std::max(most, weighted_cost(now, settings_));
       }
       cost[first + slot] =
-          most + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
+          gain_ * most + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
     }
   }
 }

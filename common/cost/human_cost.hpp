@@ -100,6 +100,11 @@ class HumanCost {
   void set_layers(LayersNow layers);
   /// Sets the pose of the root link of the robot in the world.
   void set_base(const Pose& T_world_base);
+  /// Multiplies what people cost from now on; `gain` >= 0, 1 at the beginning. What outside layers
+  /// add, and parts(), stay as they are.
+  void set_gain(double gain) { gain_ = gain; }
+  /// Returns the factor of what people cost.
+  double gain() const { return gain_; }
   /// From now on states that differ in these axes only are evaluated in batches, in single
   /// precision: costs within 2e-4 of parts(). When another axis differs, the robot is folded anew.
   /// Empty: one by one, as at the beginning.
@@ -108,7 +113,7 @@ class HumanCost {
   bool anyone() const { return !people_.people.empty(); }
   /// Returns whether a person is in the scene or an outside layer adds costs; else every cost is 0.
   bool concerned() const { return anyone() || !layers_.outside.empty(); }
-  double operator()(const Vector& q) const;  ///< all axes; in [0, 1] without outside layers
+  double operator()(const Vector& q) const;  ///< all axes; in [0, gain()] without outside layers
   /// Writes the costs of the states from + at[i] (to - from), i < count.
   void on_line(const Vector& from, const Vector& to, const double* at, int count,
                double* cost) const;
@@ -140,6 +145,7 @@ class HumanCost {
   HumanState people_;
   LayersNow layers_;
   bool forbids_{false};
+  double gain_{1.0};
   std::vector<Someone> someone_;
   std::vector<LinkPoint> probes_;  // at which outside layers are sampled; the tool first
   std::unique_ptr<BatchCost> batch_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/cost/cost_settings.hpp"
+#include "common/messages/attention.hpp"
 #include "components/path_planner/load.hpp"
 #include "components/path_planner/request.hpp"
 
@@ -33,9 +34,11 @@ Node::Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSett
   bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
     layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
   });
+  bus.subscribe<AttentionAdvice>([this](const auto& advice, const Receipt& r) {
+    cost_gain_.advise(advice.cost_gain, r.arrival);
+  });
   bus.every(kLayerWatch, [this](TimePoint now) { bus_.set_degraded(layers_.complaint(now)); });
-  bus.subscribe<PathRequest>(
-      [this](const PathRequest& request, const Receipt&) { on_request(request); });
+  bus.subscribe<PathRequest>([this](const auto& request, const Receipt&) { on_request(request); });
 }
 
 void Node::on_request(const PathRequest& request) {
@@ -94,6 +97,7 @@ void Node::start(const PathRequest& request) {
   const auto task = std::make_shared<PlanningTask>(solver_.make_task(request, scene_));
   task->people = people_;
   task->layers = layers_.at(bus_.now());
+  task->cost_gain = cost_gain_.at(bus_.now()).value_or(1.0);
   const double time = std::clamp(request.time_limit, 0.0, timing_.max_time);
   task->problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
   const auto compute = [&solver = solver_, check_time = timing_.check_time,

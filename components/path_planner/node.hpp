@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/advised_value.hpp"
 #include "common/base/request_queue.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
@@ -50,6 +51,7 @@ class Node {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
+  AdvisedValue<double> cost_gain_;
   RequestQueue<PathReply> requests_{OlderRequests::supersede};
   std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>>
       running_;    ///< By client and number.

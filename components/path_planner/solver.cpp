@@ -112,6 +112,7 @@ void Solver::set_world(const Selected& selected, PlanningTask& task) {
   }
   selected.models.cost.set_people(*task.people);
   selected.models.cost.set_layers(task.layers);
+  selected.models.cost.set_gain(task.cost_gain);
   selected.models.cost.set_base(task.T_world_root);
   if (selected.navigation != nullptr) {
     selected.navigation->set_people(*task.people, task.T_world_root);

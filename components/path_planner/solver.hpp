@@ -33,6 +33,7 @@ struct PlanningTask {
   std::shared_ptr<const Scene> scene;        ///< Never null.
   std::shared_ptr<const HumanState> people;  ///< Never null.
   LayersNow layers;                          ///< Cost layers.
+  double cost_gain{1.0};                     ///< Factor of what people cost, of attention.
   ReplanOutcome outcome{};                   ///< Result: of a request to continue.
   Result result;                             ///< Result.
 };

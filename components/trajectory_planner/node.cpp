@@ -5,6 +5,7 @@
 
 #include "common/config/settings/trajectory_planner.hpp"
 #include "common/cost/cost_settings.hpp"
+#include "common/messages/attention.hpp"
 #include "common/model/platform.hpp"
 
 namespace handsel::trajectory_planner {
@@ -13,6 +14,14 @@ namespace {
 constexpr double kLevel = 0.02;  // a platform that leans more does not stand level [rad]
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 constexpr Duration kLeastModelled = std::chrono::milliseconds(2);
+using settings::read_trajectory_planner_settings;
+
+TrajectoryReply refusal(const RequestId& id, const std::string& reason) {
+  TrajectoryReply reply;
+  reply.id = id;
+  reply.reason = reason;
+  return reply;
+}
 
 }  // namespace
 
@@ -25,8 +34,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       world_(*context.robot, context.objects),
       cost_(*context.robot, weights_) {
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
-  const auto file =
-      settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
+  const auto file = read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
   settings_.blend_step = file.corner_step;
   settings_.speed = {file.cost_step,
                      {file.min_speed_factor, file.min_acceleration_factor, file.min_jerk_factor},
@@ -47,15 +55,17 @@ Node::Node(Bus& bus, const NodeContext& context)
   check_time_ = from_seconds(file.check_time);
   bus.subscribe<Scene>(
       [this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
-  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) {
+  bus.subscribe<HumanState>([this](const auto& people, const Receipt&) {
     people_ = std::make_shared<HumanState>(people);
   });
   bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
     layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
   });
+  bus.subscribe<AttentionAdvice>([this](const auto& advice, const Receipt& r) {
+    cost_gain_.advise(advice.cost_gain, r.arrival);
+  });
   bus.every(kLayerWatch, [this](TimePoint now) { bus_.set_degraded(layers_.complaint(now)); });
-  bus.subscribe<TrajectoryRequest>(
-      [this](const TrajectoryRequest& request, const Receipt&) { on_request(request); });
+  bus.subscribe<TrajectoryRequest>([this](const auto& r, const Receipt&) { on_request(r); });
 }
 
 void Node::on_request(const TrajectoryRequest& request) {
@@ -64,10 +74,7 @@ void Node::on_request(const TrajectoryRequest& request) {
   if (admission == Admission::answered) reply_out_->publish(*requests_.answer(request.id));
   if (admission == Admission::full) {
     bus_.count_left_out("trajectory requests: too many wait", 1);
-    TrajectoryReply reply;
-    reply.id = request.id;
-    reply.reason = requests_.why_full();
-    reply_out_->publish(reply);
+    reply_out_->publish(refusal(request.id, requests_.why_full()));
   }
   if (admission != Admission::fresh) return;
   if (const std::string why = not_ready(); !why.empty()) return refuse(request.id, why);
@@ -76,12 +83,7 @@ void Node::on_request(const TrajectoryRequest& request) {
   start(request);
 }
 
-void Node::refuse(const RequestId& id, const std::string& reason) {
-  TrajectoryReply reply;
-  reply.id = id;
-  reply.reason = reason;
-  answer(reply);
-}
+void Node::refuse(const RequestId& id, const std::string& reason) { answer(refusal(id, reason)); }
 
 bool Node::drives(const TrajectoryRequest& request) const {
   return on_platform_ && !handsel::drives(*robot_) && !request.poses.empty() &&
@@ -93,8 +95,7 @@ std::string Node::not_ready() const {
   if (!scene_ || bus_.lag<Scene>() > max_scene_age_) return "no current scene is known";
   if (!people_ || bus_.lag<HumanState>() > max_scene_age_)
     return "no current state of people is known";
-  if (!scene_->robot_known) return "the robot's place is not known yet";
-  return {};
+  return scene_->robot_known ? "" : "the robot's place is not known yet";
 }
 
 void Node::start(const TrajectoryRequest& request) {
@@ -106,9 +107,10 @@ void Node::start(const TrajectoryRequest& request) {
     bool driving;
     Result result;
   };
+  const double gain = cost_gain_.at(bus_.now()).value_or(1.0);
   auto work = std::make_shared<Work>(Work{request,
                                           *scene_,
-                                          {*people_, scene_->T_world_base},
+                                          {*people_, scene_->T_world_base, gain},
                                           layers_.at(bus_.now()),
                                           drives(request),
                                           {}});
@@ -130,9 +132,10 @@ void Node::start(const TrajectoryRequest& request) {
         world.set_attachment(work->request.attachment, work->request.allowed_contacts);
         cost.set_people(work->around.people);
         cost.set_layers(work->layers);
+        cost.set_gain(work->around.cost_gain);
         cost.set_base(work->around.T_world_base);
-        if (const Group* group = robot.group(work->request.group))
-          cost.set_moving_axes(group->axes);
+        const Group* group = robot.group(work->request.group);
+        if (group != nullptr) cost.set_moving_axes(group->axes);
         work->result = plan(robot, world, cost, work->around, work->request, settings_);
         return kLeastModelled + check_time_ * static_cast<Duration::rep>(work->result.checks);
       },

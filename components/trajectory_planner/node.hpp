@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "common/base/advised_value.hpp"
 #include "common/base/request_queue.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
@@ -44,6 +45,7 @@ class Node {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
+  AdvisedValue<double> cost_gain_;
   RequestQueue<TrajectoryReply> requests_{OlderRequests::keep};
 
   // Used by jobs only, which run one after the other.

@@ -16,6 +16,7 @@ struct Surroundings {
   HumanState people;  ///< joints in the world frame
   /// Pose of the root link of the robot in the world.
   Pose T_world_base{Pose::Identity()};
+  double cost_gain{1.0};  ///< factor of what people cost, of attention
 };
 
 /// Factors of the limits, because of people.
