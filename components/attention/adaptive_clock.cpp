@@ -6,6 +6,11 @@
 
 namespace handsel::attention {
 
+double margin_period(double distance, double delay, const MarginSettings& margin) {
+  return margin.use * (distance - margin.distance) / (margin.person_speed + margin.robot_speed) -
+         margin.data_age - delay;
+}
+
 AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, const std::string& what)
     : settings_(settings), slack_(slack), period_(settings.p_min) {
   if (!(settings.p_min > 0))
@@ -20,6 +25,12 @@ AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, cons
       !(settings.period >= settings.p_min && settings.period <= settings.p_max))
     throw ConfigError("attention: behaviour " + what +
                       ": period must be from p_min to p_max where the law is FIXED");
+  const MarginSettings& margin = settings.margin;
+  if (settings.rule == ClockLaw::margin &&
+      !(margin.use > 0 && margin.use < 1 && margin.person_speed > 0 && margin.robot_speed >= 0))
+    throw ConfigError("attention: behaviour " + what +
+                      ": margin_use must be in (0, 1), person_speed above 0 and robot_speed not "
+                      "below 0 where the law is MARGIN");
 }
 
 void AdaptiveClock::fire(double stimulus, TimePoint now) {
@@ -27,6 +38,8 @@ void AdaptiveClock::fire(double stimulus, TimePoint now) {
       std::isfinite(stimulus) ? std::clamp(stimulus, 0.0, settings_.far) : settings_.far;
   if (settings_.rule == ClockLaw::fixed) {
     period_ = settings_.period;
+  } else if (settings_.rule == ClockLaw::margin) {
+    period_ = margin_period(stimulus, to_seconds(slack_), settings_.margin);
   } else if (settings_.rule == ClockLaw::linear) {
     period_ =
         settings_.p_max * (0.1 + 0.9 * (s - settings_.near) / (settings_.far - settings_.near));

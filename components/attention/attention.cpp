@@ -74,6 +74,7 @@ void Attention::step(const World& world, TimePoint now) {
     Entry& e = entries_[index];
     if (e.clock.due(now)) {
       e.stimulus = e.schema->perceive(world, now);
+      if (e.settings.rule == ClockLaw::margin) e.stimulus = e.schema->person_distance();
       e.clock.fire(e.stimulus, now);
     }
     e.released = e.schema->released(world) && conditions_met(e, world);

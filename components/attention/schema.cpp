@@ -103,12 +103,14 @@ class Avoid : public Schema {
   double perceive(const World& w, TimePoint now) override {
     factor_ = 1.0;
     near_ = leaves_path_ = false;
+    distance_ = w.people && w.people->people.empty() ? kInfinity : 0.0;
     if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
     const SeparationExemption exception = handover_exemption(w);
     const ActiveTrajectory& active = *w.active;
     const Separation s =
         body_.separation_at(active.position, active.T_world_base, *w.people, exception);
     near_ = zone_.update(s.distance, now) <= Zone::interaction;
+    distance_ = std::max(0.0, s.distance);
     double closing = 0.0;
     for (const Person& person : w.people->people)
       if (person.id == s.person)
@@ -146,6 +148,7 @@ class Avoid : public Schema {
     }
     return stimulus;
   }
+  double person_distance() const override { return distance_; }
   bool released(const World&) const override { return near_; }
   double speed_factor() const override { return factor_; }
   bool leaves_path() const override { return leaves_path_; }
@@ -174,7 +177,7 @@ class Avoid : public Schema {
   MotorSettings motor_;
   ZoneTracker zone_;
   bool near_{}, leaves_path_{};
-  double factor_{1.0};
+  double distance_{}, factor_{1.0};
   const char* reason_{""};
   MotionState3 sample_;
   Vector posture_;
@@ -344,9 +347,7 @@ class Exchange : public Schema {
   std::optional<Vector3> gaze() const override {
     return present_ ? std::optional(gaze_) : std::nullopt;
   }
-  std::optional<Vector3> target_shift() const override {
-    return present_ ? shift_ : std::nullopt;
-  }
+  std::optional<Vector3> target_shift() const override { return present_ ? shift_ : std::nullopt; }
 
  private:
   /// To the hand that the receiver has held out for `shift_hold`, unless a hand is at the object.

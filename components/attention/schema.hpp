@@ -98,6 +98,9 @@ class Schema {
   /// Observes the world and returns the stimulus: >= 0, SI units, smaller is more urgent; +inf:
   /// nothing is urgent.
   virtual double perceive(const World& world, TimePoint now) = 0;
+  /// Returns the distance of the nearest person as of perceive() [m], for the clock law margin;
+  /// +inf: nobody is there; 0: it is not known. A behaviour that observes no person returns 0.
+  virtual double person_distance() const { return 0; }
   /// Returns whether the behaviour may act now; conditions of the settings come on top.
   virtual bool released(const World& world) const = 0;
   /// Speed factor asked for, in [-1, 1]; below 0: back along the path.

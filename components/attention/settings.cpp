@@ -40,10 +40,19 @@ BehaviourSettings behaviour_of(const settings::AttentionBehaviour& b, const Text
   s.behaviour = b.kind == settings::AttentionKind::by_name
                     ? one_of<Behaviour>(b.name, kProgrammed, place.of("name"))
                     : static_cast<Behaviour>(static_cast<int>(b.kind) - 1);
-  const ClockLaw law = b.law == settings::AttentionLaw::weber   ? ClockLaw::weber
-                       : b.law == settings::AttentionLaw::fixed ? ClockLaw::fixed
-                                                                : ClockLaw::linear;
-  s.clock = {law, b.p_min, b.p_max, b.near, b.far, b.weber_gain, b.period};
+  const ClockLaw law = b.law == settings::AttentionLaw::weber    ? ClockLaw::weber
+                       : b.law == settings::AttentionLaw::fixed  ? ClockLaw::fixed
+                       : b.law == settings::AttentionLaw::margin ? ClockLaw::margin
+                                                                 : ClockLaw::linear;
+  s.clock = {
+      law,      b.p_min,
+      b.p_max,  b.near,
+      b.far,    b.weber_gain,
+      b.period, {b.margin_use, b.margin_distance, b.person_speed, b.robot_speed, b.data_age}};
+  if (law == ClockLaw::margin && s.behaviour != Behaviour::avoid)
+    throw ConfigError(place.of("law") +
+                      ": MARGIN needs the distance to people, which a behaviour of kind AVOID "
+                      "observes");
   at(place.of("p_max"), [&] { AdaptiveClock(s.clock, {}, b.name); });
   for (int i = 0; i < static_cast<int>(b.released_when.size()); ++i)
     at(place.of("released_when", i), [&] {

@@ -55,6 +55,7 @@ handsel_test(tool_motions SOURCES ${CMAKE_CURRENT_LIST_DIR}/motion/tool_motions_
 add_test(NAME whole_robot_fifty COMMAND test_whole_robot)
 set_tests_properties(whole_robot_fifty PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT HANDSEL_WHOLE_MOTIONS=50)
 handsel_test(cost_gain SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/cost_gain_test.cpp LINK handsel_lockstep LABEL system)
+handsel_test(margin_law SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/margin_law_test.cpp LINK handsel_lockstep LABEL system)
 handsel_test(exchange_shift SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/exchange_shift_test.cpp LINK handsel_lockstep LABEL system)
 handsel_test(gentler SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/gentler_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(recoil PROPERTIES TIMEOUT 300)

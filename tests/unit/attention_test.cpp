@@ -605,6 +605,9 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   EXPECT_THAT(stranger, HasSubstr("attention.txtpb:38"));
   EXPECT_THAT(stranger,
               HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
+  EXPECT_THAT(refusal_of(shipped, "\"pick\"    law: LINEAR", "\"pick\" law: MARGIN"),
+              HasSubstr("attention.txtpb:36:law: MARGIN needs the distance to people"));
+  EXPECT_EQ(refusal_of(shipped, "\"avoid\"   law: LINEAR", "\"avoid\" law: MARGIN"), "no error");
   EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"),
               HasSubstr("behaviour search: period must be from p_min to p_max"));
 }

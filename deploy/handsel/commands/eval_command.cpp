@@ -77,6 +77,16 @@ void set_mode(const std::string& mode, const Periods& mean, config::AttentionSet
   for (auto& work : *settings.mutable_works()) work.set_period(period(work, "work " + work.name()));
 }
 
+/// Sets the law of a clock; the law margin only of behaviours that observe the distance to people.
+void set_law(const std::string& law, config::AttentionBehaviour& behaviour) {
+  const bool observes_people = behaviour.kind() == config::AVOID ||
+                               (behaviour.kind() == config::BY_NAME && behaviour.name() == "avoid");
+  if (law != "margin")
+    behaviour.set_law(law == "weber" ? config::WEBER : config::LINEAR);
+  else if (observes_people)
+    behaviour.set_law(config::MARGIN);
+}
+
 /// The settings with the attention's law and mode replaced: a copy of the folder, removed with this
 /// object.
 class DerivedSettings {
@@ -93,8 +103,7 @@ class DerivedSettings {
     config::AttentionSettings settings;
     load_text_proto(folder_ / "attention.txtpb", settings);
     if (!law.empty())
-      for (auto& behaviour : *settings.mutable_behaviours())
-        behaviour.set_law(law == "weber" ? config::WEBER : config::LINEAR);
+      for (auto& behaviour : *settings.mutable_behaviours()) set_law(law, behaviour);
     set_mode(mode, mean, settings);
     std::string text;
     google::protobuf::TextFormat::PrintToString(settings, &text);
@@ -392,8 +401,9 @@ void add_eval_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--law", options->laws,
-                   "of the attention's clocks (default: as in its settings); both are compared")
-      ->check(CLI::IsMember({"linear", "weber"}));
+                   "of the attention's clocks (default: as in its settings); several are compared. "
+                   "margin: only where the distance to people is observed, the others as set")
+      ->check(CLI::IsMember({"linear", "weber", "margin"}));
   command->add_option(
       "--report", options->report,
       "folder for the comparison (JSON Lines, table), a CSV row a trial, and plots (SVG)");
