@@ -53,7 +53,7 @@ namespace {
 constexpr double kBeforeHand = 0.12;  // from a hand to the middle of what it is about to take [m]
 
 /// Returns whether a hand is extended toward the robot and rests.
-bool is_held_out(const Person& person, Side side, const Vector3& p_robot,
+bool is_extended(const Person& person, Side side, const Vector3& p_robot,
                  const MotorSettings& motor) {
   const bool left = side == Side::left;
   const BodyJoint& hand = person.joints[left ? body::l_hand : body::r_hand];
@@ -65,16 +65,16 @@ bool is_held_out(const Person& person, Side side, const Vector3& p_robot,
 
 }  // namespace
 
-std::optional<Vector3> shift_to_held_out_hand(const ActionStatus& action, const Person& person,
+std::optional<Vector3> shift_to_extended_hand(const ActionStatus& action, const Person& person,
                                               const Vector3& p_robot, const MotorSettings& motor) {
   if (action.has_partner) {
-    if (!is_held_out(person, action.partner_side, p_robot, motor)) return std::nullopt;
+    if (!is_extended(person, action.partner_side, p_robot, motor)) return std::nullopt;
     const auto wrist = action.partner_side == Side::left ? body::l_wrist : body::r_wrist;
     return person.joints[wrist].position - action.T_world_partner_wrist.translation();
   }
   std::optional<Vector3> nearest;
   for (const Side side : {Side::right, Side::left}) {
-    if (!is_held_out(person, side, p_robot, motor)) continue;
+    if (!is_extended(person, side, p_robot, motor)) continue;
     const auto hand = side == Side::left ? body::l_hand : body::r_hand;
     const Vector3 to_hand = person.joints[hand].position - action.exchange_point;
     const double distance = to_hand.norm();

@@ -31,10 +31,10 @@ struct NearHand {
 NearHand nearest_hand(const Person& person, const Vector3& p);
 
 /// Returns by how much the exchange point of a give should move so that the person finds the object
-/// at the hand that they hold out, world [m]: the wrist of this hand from the planned one, or,
-/// where none is planned, the hand from `kBeforeHand` beyond the point. nullopt: no hand is held
-/// out, or another one than planned. `p_robot`: where the robot stands, world [m].
-std::optional<Vector3> shift_to_held_out_hand(const ActionStatus& action, const Person& person,
+/// at the hand that they extend, world [m]: the wrist of this hand from the planned one, or,
+/// where none is planned, the hand from `kBeforeHand` beyond the point. nullopt: no hand is
+/// extended, or another one than planned. `p_robot`: where the robot stands, world [m].
+std::optional<Vector3> shift_to_extended_hand(const ActionStatus& action, const Person& person,
                                               const Vector3& p_robot, const MotorSettings& motor);
 /// Returns whether the robot hands something to this person, picks up what the person is to get, or
 /// takes something from the person.

@@ -350,17 +350,17 @@ class Exchange : public Schema {
   std::optional<Vector3> target_shift() const override { return present_ ? shift_ : std::nullopt; }
 
  private:
-  /// To the hand that the receiver has held out for `shift_hold`, unless a hand is at the object.
+  /// To the hand that the receiver has extended for `shift_hold`, unless a hand is at the object.
   std::optional<Vector3> shift_of_give(const World& w, const Person& person, TimePoint now) {
     const ActionPhase phase = w.action->phase;
     const Vector3 p_robot = body_.base_point(*w.active, Vector3::Zero());
     std::optional<Vector3> shift;
     if (doing(w, ActionKind::give) && distance_ >= motor_.hand_near &&
         (phase == ActionPhase::carry || phase == ActionPhase::offer))
-      shift = shift_to_held_out_hand(*w.action, person, p_robot, motor_);
-    if (!shift) held_out_since_.reset();
-    if (shift && !held_out_since_) held_out_since_ = now;
-    const bool held = shift && now - *held_out_since_ >= from_seconds(motor_.shift_hold);
+      shift = shift_to_extended_hand(*w.action, person, p_robot, motor_);
+    if (!shift) extended_since_.reset();
+    if (shift && !extended_since_) extended_since_ = now;
+    const bool held = shift && now - *extended_since_ >= from_seconds(motor_.shift_hold);
     return held ? shift : std::nullopt;
   }
   /// To where the giver will have moved the object after `shift_lead`.
@@ -384,7 +384,7 @@ class Exchange : public Schema {
   double distance_{kInfinity};
   Vector3 gaze_{Vector3::Zero()};
   std::optional<Vector3> shift_;
-  std::optional<TimePoint> held_out_since_;
+  std::optional<TimePoint> extended_since_;
 };
 
 }  // namespace

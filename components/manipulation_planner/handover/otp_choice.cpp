@@ -72,7 +72,7 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const P
         const OtpQuery query{scene,  who,      layers, T_now, T_tool_object,
                              barred, partners, hands,  back,  p_robot};
         if (T_present && shift)
-          choice->search = shifted_otp(*robot, arm, query, *T_present, shift->p_wanted,
+          choice->search = shifted_otp(*robot, arm, query, {*T_present, shift->p_wanted},
                                        RobotModel::with(q, arm, shift->arm_joints), settings);
         else
           choice->search = find_otp(*robot, arm, query, q, settings);

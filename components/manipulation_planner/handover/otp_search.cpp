@@ -334,13 +334,14 @@ std::optional<PartnerPose> easiest_partner(const std::vector<TakingArm>& arms,
 }
 
 OtpSearch shifted_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
-                      const Pose& T_world_object, const Vector3& p_wanted, const Vector& q,
+                      const PoseShift& wanted, const Vector& q,
                       const settings::ManipulationPlannerSettings& settings) {
   constexpr double kRatios[] = {1.0, 0.75, 0.5, 0.25};
   constexpr int kMaxTurn = 4;  // steps of the headings of a search
   OtpSearch out;
   const OtpCosts costs(query, settings);
-  const Vector3 shift = p_wanted - T_world_object.translation();
+  const Pose& T_world_object = wanted.T_world_object;
+  const Vector3 shift = wanted.p_wanted - T_world_object.translation();
   int no_place = 0, no_grasp = 0;
   for (const double ratio : kRatios) {
     if (ratio * shift.norm() < settings.min_shift) break;

@@ -91,13 +91,19 @@ std::optional<PartnerPose> easiest_partner(const std::vector<TakingArm>& arms,
 OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
                    const Vector& q, const settings::ManipulationPlannerSettings& settings);
 
-/// Shifts a handover from `T_world_object` to `p_wanted`, world [m], with the heading of the object
+/// A handover pose that is to be shifted.
+struct PoseShift {
+  Pose T_world_object{Pose::Identity()};  ///< where and how the object was to be offered
+  Vector3 p_wanted{Vector3::Zero()};      ///< where the object is wanted, world [m]
+};
+
+/// Shifts a handover from the pose to the point wanted, with the heading of the object
 /// as little changed as reach permits, by at most 60 degrees. Where that is no object transfer
 /// point, out of reach, or fits no grasp of the person's ready hand, shifts by three quarters, the
 /// half or a quarter of that. Returns at most one pose; none where the shift would fall below
 /// min_shift.
 OtpSearch shifted_otp(const RobotModel& robot, const Group& arm, const OtpQuery& query,
-                      const Pose& T_world_object, const Vector3& p_wanted, const Vector& q,
+                      const PoseShift& wanted, const Vector& q,
                       const settings::ManipulationPlannerSettings& settings);
 
 /// Returns the cost of a pose of the object as find_otp() counts it, whether the robot reaches the

@@ -31,7 +31,7 @@ class TargetShift {
   /// choice.
   void note_refusal(const Vector3& p_refused) { p_refused_ = p_refused; }
 
-  /// Returns whether a point, world [m], is one that note_change() has told of since the choice.
+  /// Returns whether a point, world [m], was passed to note_change() since the choice.
   bool has_led_to(const Vector3& p) const;
   /// Returns whether a point, world [m], is too far from the chosen one for a shift of it.
   bool is_another_choice(const Vector3& p) const {

@@ -364,7 +364,7 @@ TEST_F(OtpSearchTest, is_shifted_as_asked_for_but_never_to_where_there_is_no_exc
   const Pose chosen = search.poses.front().T_world_object;
   const auto shifted_by = [&](const Vector3& shift) {
     const Vector3 p_wanted = chosen.translation() + shift;
-    return shifted_otp(*rig_.robot, arm, query, chosen, p_wanted, rig_.q, settings);
+    return shifted_otp(*rig_.robot, arm, query, {chosen, p_wanted}, rig_.q, settings);
   };
   int followed = 0, refused = 0;
   for (const Vector3& direction : {Vector3(0, 1, 0), Vector3(0, -1, 0), Vector3(0, 0, -1),
