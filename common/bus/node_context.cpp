@@ -1,14 +1,41 @@
 #include "common/bus/node_context.hpp"
 
 #include <map>
+#include <set>
 
 #include "common/config/resources.hpp"
 #include "common/config/scenario.hpp"
+#include "common/config/search_path.hpp"
 
 namespace handsel {
 
+namespace {
+
+using Models = std::map<std::string, ObjectModel>;
+
+/// Adds the objects of the search path outside resource_root(). A broken one is left out: what else
+/// lies in a working directory prevents nothing, and a scenario that names the object is refused.
+void add_objects_of_user(Models& models) {
+  const std::string root = (resource_root() / "").string();
+  for (const std::filesystem::path& file : all_files(FileKind::object)) {
+    if (file.string().starts_with(root)) continue;
+    try {
+      ObjectModel model = ObjectModel::load(file);
+      const std::string name = model.name;
+      models.emplace(name, std::move(model));
+    } catch (const ConfigError&) {
+    } catch (const MissingError&) {
+    }
+  }
+}
+
+}  // namespace
+
 ObjectLibrary load_object_library() {
-  auto library = std::make_shared<std::map<std::string, ObjectModel>>();
+  auto library = std::make_shared<Models>();
+  add_objects_of_user(*library);
+  std::set<std::string> of_user, known;
+  for (const auto& [name, model] : *library) of_user.insert(name);
   std::map<std::string, std::filesystem::path> files;
   const std::filesystem::path root = resource("objects");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
@@ -16,8 +43,9 @@ ObjectLibrary load_object_library() {
   for (const auto& [text, file] : files) {
     ObjectModel model = ObjectModel::load(file);
     const std::string name = model.name;
-    if (!library->emplace(name, std::move(model)).second)
+    if (!known.insert(name).second)
       throw ConfigError(text + ": another object is called \"" + name + "\" already");
+    if (!of_user.contains(name)) library->emplace(name, std::move(model));
   }
   return [library](const std::string& name) -> const ObjectModel* {
     const auto at = library->find(name);

@@ -14,6 +14,8 @@
 #include "common/bus/dds/dds_bus.hpp"
 #include "common/bus/dds/dds_defaults.hpp"
 #include "common/bus/state_directory.hpp"
+#include "common/config/overlay.hpp"
+#include "common/config/search_path.hpp"
 #include "common/messages/system.hpp"
 #include "common/wire/interface_id.hpp"
 
@@ -38,9 +40,49 @@ int complain(const char* component, const std::exception& error, int code) {
   return code;
 }
 
+/// Where names are searched and which settings are taken.
+struct FileOptions {
+  std::vector<std::string> config;   ///< folders and files of --config
+  std::vector<std::string> folders;  ///< of --path
+  Overlays overlays;                 ///< of --set
+};
+
+void add_file_options(CLI::App& app, FileOptions& files) {
+  app.add_option("--config", files.config,
+                 "folder of the components' settings in place of the shipped one, or a file with "
+                 "settings that go over them; may be repeated")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--set", files.overlays.assignments,
+                 "a setting, component.key=value; may be repeated")
+      ->expected(1)
+      ->take_all();
+  app.add_option(
+         "--path", files.folders,
+         "folder in which names are searched first; may be repeated (then HANDSEL_PATH, the "
+         "working directory, the project's own)")
+      ->expected(1)
+      ->take_all();
+}
+
+/// Applies the options; returns the folder of the settings, empty: the shipped one.
+std::string use_files(FileOptions files) {
+  std::string folder;
+  search_first(files.folders);
+  for (const std::string& path : files.config) {
+    if (std::filesystem::is_regular_file(path))
+      files.overlays.files.push_back(path);
+    else
+      folder = path;
+  }
+  use_overlays(files.overlays);
+  return folder;
+}
+
 int run(int argc, char** argv, const char* component, const NodeFactory& make_node,
         Urgency urgency) {
-  std::string robot, scenario, config, state;
+  std::string robot, scenario, state;
+  FileOptions files;
   std::uint64_t seed = 1;
   bool standby = false, sim_time = false;
   DdsBusSettings settings;
@@ -55,7 +97,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   app.add_option("--domain", settings.domain, "DDS domain")
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
-  app.add_option("--config", config, "folder of the components' settings");
+  add_file_options(app, files);
   app.add_option("--state", state,
                  "folder of what must survive a restart (default: HANDSEL_STATE, else a folder of "
                  "the domain)");
@@ -75,7 +117,8 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
     return code == 0 ? 0 : 2;
   }
 
-  NodeContext context = load_context(robot, scenario, config, seed);
+  const std::string folder = use_files(std::move(files));
+  NodeContext context = load_context(robot, scenario, folder, seed);
   context.sim_time = sim_time;
   settings.sim_time = sim_time && settings.component != "sim";  // which is the one that gives it
   context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain))

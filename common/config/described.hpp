@@ -6,6 +6,9 @@
 
 namespace handsel {
 
+/// Returns whether a text is a path, with "/" or ending in ".txtpb", and not a name.
+bool is_path(const std::string& name);
+
 /// A path as a description writes it: "$NAME/rest" and "${NAME}/rest" begin with an environment
 /// variable's value, the others are relative to the description's folder. Throws MissingError when
 /// the variable is not set.

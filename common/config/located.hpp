@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 
 #include <google/protobuf/message.h>
@@ -12,26 +14,34 @@
 
 namespace handsel {
 
+/// "file:line" or "--set key=value" by the path of a setting: "view.ceiling", "walls[1].offset".
+using SettingSources = std::map<std::string, std::string>;
+
 /// A message in a text, or one inside it; lives as long as the tree it came from.
 class TextPlace {
  public:
   TextPlace() = default;
+  /// `type` is that of the outermost message of a file.
   TextPlace(std::string file, const google::protobuf::TextFormat::ParseInfoTree* tree,
-            const google::protobuf::Descriptor* type)
-      : file_(std::move(file)), tree_(tree), type_(type) {}
+            const google::protobuf::Descriptor* type);
   /// The index-th message of a field of this one.
   TextPlace inside(const std::string& field, int index = 0) const;
   /// "file:line:field", of the index-th value of a repeated one; "file:field" where the line is not
-  /// known.
+  /// known. Of a setting that an overlay gives: the overlay's.
   std::string of(const std::string& field, int index = 0) const;
 
  private:
   std::string file_;
   const google::protobuf::TextFormat::ParseInfoTree* tree_{nullptr};
   const google::protobuf::Descriptor* type_{nullptr};
+  std::shared_ptr<const SettingSources> overlaid_;  ///< of settings that overlays give, by path
+  std::string path_;                                ///< of this message: "behaviours[2]"
 };
 
-/// Strict, as load_text_proto(); `name` stands for the file in errors.
+/// Reads a text as load_text_proto() does, without default values and overlays.
+void parse_strict(const std::string& text, const std::string& name, google::protobuf::Message& out,
+                  google::protobuf::TextFormat::ParseInfoTree& places);
+/// Strict, as load_text_proto(), without overlays; `name` stands for the file in errors.
 void parse_text_proto(const std::string& text, const std::string& name,
                       google::protobuf::Message& out,
                       google::protobuf::TextFormat::ParseInfoTree& places);

@@ -1,10 +1,10 @@
 #include "common/config/parse_error.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <regex>
 #include <vector>
 
+#include "common/config/nearest_name.hpp"
 #include "common/config/text_check.hpp"
 
 namespace handsel {
@@ -14,22 +14,6 @@ constexpr std::size_t kMaxKey = 60;         // [bytes] shown of a key
 constexpr std::size_t kMaxSentence = 300;   // [bytes] the parser quotes a wrong word whole
 constexpr int kMaxLinesBack = 100;          // searched for the key of a wrong value
 constexpr std::size_t kMaxLookBack = 1000;  // [bytes] searched for the key before a wrong value
-
-/// Returns how many letters must be changed, added or left out between two words.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t replaced = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = row[k + 1];
-      row[k + 1] = std::min({replaced, diagonal + 1, row[k] + 1});
-    }
-  }
-  return row.back();
-}
 
 std::string nearest_key(const std::string& key, const google::protobuf::Descriptor& type) {
   std::string nearest;

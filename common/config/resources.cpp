@@ -2,15 +2,15 @@
 
 #include <google/protobuf/text_format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <vector>
 
 #include "common/config/defaults.hpp"
 #include "common/config/described.hpp"
 #include "common/config/located.hpp"
+#include "common/config/overlay.hpp"
 #include "common/config/parse_error.hpp"
+#include "common/config/search_path.hpp"
 #include "common/config/text_check.hpp"
 #include "common/config/text_file.hpp"
 
@@ -34,44 +34,11 @@ fs::path find_root() {
                      "; set HANDSEL_HOME to it");
 }
 
+}  // namespace
+
 bool is_path(const std::string& name) {
   return name.find('/') != std::string::npos || name.ends_with(".txtpb");
 }
-
-std::string alternatives(const fs::path& folder, bool nested) {
-  std::vector<std::string> names;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      const std::string stem = entry.path().stem().string();
-      if (nested ? fs::exists(entry.path() / (stem + ".txtpb"))
-                 : entry.path().extension() == ".txtpb")
-        names.push_back(stem);
-    }
-  std::sort(names.begin(), names.end());
-  std::string list;
-  for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list.empty() ? "none" : list;
-}
-
-constexpr std::size_t kMaxName = 200;  // [bytes] shown of a name that somebody gave
-
-/// A path as it is; a name as <folder>/<name>/<name>.txtpb (nested) or <folder>/<name>.txtpb.
-fs::path description(const std::string& kind, const fs::path& folder, bool nested,
-                     const std::string& name_or_path) {
-  if (is_path(name_or_path)) {
-    if (!is_there(name_or_path))
-      throw MissingError("no " + kind + " description " + printable(name_or_path, kMaxName));
-    return name_or_path;
-  }
-  fs::path file = nested ? folder / name_or_path / (name_or_path + ".txtpb")
-                         : folder / (name_or_path + ".txtpb");
-  if (name_or_path.empty() || !is_there(file))
-    throw MissingError("no " + kind + " \"" + printable(name_or_path, kMaxName) +
-                       "\"; there is: " + alternatives(folder, nested));
-  return file;
-}
-
-}  // namespace
 
 fs::path resource_root() {
   static const fs::path root = find_root();
@@ -84,10 +51,8 @@ fs::path resource(const std::string& relative) {
   return file;
 }
 
-namespace {
-
-void parse(const std::string& text, const std::string& name, google::protobuf::Message& out,
-           google::protobuf::TextFormat::ParseInfoTree* places) {
+void parse_strict(const std::string& text, const std::string& name, google::protobuf::Message& out,
+                  google::protobuf::TextFormat::ParseInfoTree& places) {
   if (const std::size_t first = text.find_first_not_of(" \t\r\n");
       first != std::string::npos && text[first] == '<')
     throw ConfigError(name +
@@ -96,47 +61,58 @@ void parse(const std::string& text, const std::string& name, google::protobuf::M
   constexpr int kMaxDepth = 32;
   FirstError error;
   google::protobuf::TextFormat::Parser parser;
-  google::protobuf::TextFormat::ParseInfoTree own;
   parser.RecordErrorsTo(&error);
   parser.SetRecursionLimit(kMaxDepth);
-  if (places == nullptr) places = &own;
-  parser.WriteLocationsTo(places);
+  parser.WriteLocationsTo(&places);
   if (!parser.ParseFromString(text, &out))
     throw ConfigError(name + ":" + error.explain(text, *out.GetDescriptor()));
-  check_text(out, *places, name);
-  take_defaults(out, *places, name);
+  check_text(out, places, name);
 }
 
-}  // namespace
-
 void load_text_proto(const fs::path& file, google::protobuf::Message& out) {
-  parse(read_text_file(file), file.string(), out, nullptr);
+  google::protobuf::TextFormat::ParseInfoTree places;
+  load_text_proto(file, out, places);
 }
 
 void load_text_proto(const fs::path& file, google::protobuf::Message& out,
                      google::protobuf::TextFormat::ParseInfoTree& places) {
-  parse(read_text_file(file), file.string(), out, &places);
+  parse_text_proto(read_text_file(file), file.string(), out, places);
+  put_overlays_over(out);
 }
 
 void parse_text_proto(const std::string& text, const std::string& name,
                       google::protobuf::Message& out,
                       google::protobuf::TextFormat::ParseInfoTree& places) {
-  parse(text, name, out, &places);
+  parse_strict(text, name, out, places);
+  take_defaults(out, places, name);
 }
 
+TextPlace::TextPlace(std::string file, const google::protobuf::TextFormat::ParseInfoTree* tree,
+                     const google::protobuf::Descriptor* type)
+    : file_(std::move(file)), tree_(tree), type_(type), overlaid_(overlay_sources(type)) {}
+
 TextPlace TextPlace::inside(const std::string& field, int index) const {
+  TextPlace out;
+  out.file_ = file_;
   const auto* descriptor = type_ != nullptr ? type_->FindFieldByName(field) : nullptr;
-  if (descriptor == nullptr) return {file_, nullptr, nullptr};
-  return {file_,
-          tree_ != nullptr
-              ? tree_->GetTreeForNested(descriptor, descriptor->is_repeated() ? index : -1)
-              : nullptr,
-          descriptor->message_type()};
+  if (descriptor == nullptr) return out;
+  const int at = descriptor->is_repeated() ? index : -1;
+  out.tree_ = tree_ != nullptr ? tree_->GetTreeForNested(descriptor, at) : nullptr;
+  out.type_ = descriptor->message_type();
+  out.overlaid_ = overlaid_;
+  out.path_ = setting_path(path_, *descriptor, at);
+  return out;
 }
 
 std::string TextPlace::of(const std::string& field, int index) const {
   const auto* descriptor = type_ != nullptr ? type_->FindFieldByName(field) : nullptr;
   int line = -1;
+  if (overlaid_ != nullptr && descriptor != nullptr) {
+    auto source =
+        overlaid_->find(setting_path(path_, *descriptor, descriptor->is_repeated() ? index : -1));
+    if (source == overlaid_->end()) source = overlaid_->find(path_);
+    if (source != overlaid_->end()) return source->second + ":" + field;
+  }
   if (tree_ != nullptr && descriptor != nullptr) {
     line = tree_->GetLocation(descriptor, descriptor->is_repeated() ? index : -1).line;
     if (line < 0 && descriptor->is_repeated())
@@ -171,20 +147,16 @@ std::string described_name(const fs::path& description, const std::string& name_
 }
 
 fs::path robot_description(const std::string& name_or_path) {
-  return description("robot", resource_root() / "robots", true, name_or_path);
+  return find_file(FileKind::robot, name_or_path);
 }
 fs::path hand_description(const std::string& name_or_path) {
-  return description("hand", resource_root() / "hands", true, name_or_path);
+  return find_file(FileKind::hand, name_or_path);
 }
 fs::path object_description(const std::string& name_or_path) {
-  return description("object", resource_root() / "objects", true, name_or_path);
+  return find_file(FileKind::object, name_or_path);
 }
-
 fs::path scenario_file(const std::string& name_or_path) {
-  if (is_path(name_or_path)) return description("scenario", {}, false, name_or_path);
-  fs::path folder = resource_root() / "scenarios";
-  if (!fs::is_directory(folder)) folder = resource_root().parent_path() / "sim" / "scenarios";
-  return description("scenario", folder, false, name_or_path);
+  return find_file(FileKind::scenario, name_or_path);
 }
 
 }  // namespace handsel

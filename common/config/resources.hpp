@@ -23,16 +23,14 @@ void load_text_proto(const std::filesystem::path& file, google::protobuf::Messag
 /// wrong value stands.
 std::string locate(const std::filesystem::path& file, const std::string& text);
 
-/// "jido" or a path to a .txtpb -> path of the description. MissingError lists what there is.
+/// Returns the description of a robot, from its name ("jido") or a path: find_file() of
+/// search_path.hpp. Throws MissingError.
 std::filesystem::path robot_description(const std::string& name_or_path);
-/// Returns hands/<name>/<name>.txtpb, or a path as given. Throws MissingError, for a name with the
-/// list of those there are.
+/// Returns the description of a hand, as robot_description().
 std::filesystem::path hand_description(const std::string& name_or_path);
-/// Returns objects/<name>/<name>.txtpb, or a path as given. Throws MissingError as
-/// hand_description().
+/// Returns the description of an object, as robot_description().
 std::filesystem::path object_description(const std::string& name_or_path);
-/// Returns scenarios/<name>.txtpb (sim/scenarios of the source tree where resource_root() has no
-/// such folder), or a path as given. Throws MissingError as hand_description().
+/// Returns a scenario, as robot_description().
 std::filesystem::path scenario_file(const std::string& name_or_path);
 
 }  // namespace handsel

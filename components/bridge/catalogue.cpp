@@ -1,11 +1,14 @@
 #include "components/bridge/catalogue.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "common/config/resources.hpp"
+#include "common/config/search_path.hpp"
 #include "common/model/description/robot_text.hpp"
 #include "common/model/platform.hpp"
 #include "common/topics/topics.hpp"
@@ -52,6 +55,16 @@ std::string robot_description(const RobotModel& robot, const Description& descri
                             "filename=\"package://handsel/" + description.folder + "/$1\"");
 }
 
+/// An object of the page: the address of its mesh, none when empty.
+Json drawn(const config::ObjectDescription& object, const std::string& address) {
+  Json one = Json::object();
+  if (!address.empty()) one["mesh"] = address;
+  one["scale"] = {1.0, 1.0, 1.0};
+  if (object.has_scale())
+    one["scale"] = {object.scale().x(), object.scale().y(), object.scale().z()};
+  return one;
+}
+
 Json objects(const fs::path& resources) {
   Json out = Json::object();
   for (const auto& entry : fs::directory_iterator(resources / "objects")) {
@@ -60,16 +73,41 @@ Json objects(const fs::path& resources) {
     if (!fs::exists(file)) continue;
     config::ObjectDescription object;
     load_text_proto(file, object);
-    Json& one = out[object.name()];
-    if (!object.mesh().empty()) one["mesh"] = "/assets/objects/" + folder + "/" + object.mesh();
-    one["scale"] = {1.0, 1.0, 1.0};
-    if (object.has_scale())
-      one["scale"] = {object.scale().x(), object.scale().y(), object.scale().z()};
+    out[object.name()] = drawn(
+        object, object.mesh().empty() ? "" : "/assets/objects/" + folder + "/" + object.mesh());
+  }
+  for (const OwnMesh& own : own_meshes(resources)) {
+    config::ObjectDescription object;
+    load_text_proto(own.description, object);
+    out[object.name()] = drawn(object, own.address);
   }
   return out;
 }
 
 }  // namespace
+
+std::vector<OwnMesh> own_meshes(const fs::path& resources) {
+  std::vector<OwnMesh> out;
+  std::error_code ignored;
+  const std::string root = (fs::canonical(resources, ignored) / "").string();
+  for (const fs::path& file : all_files(FileKind::object)) {
+    if (file.string().starts_with(root)) continue;
+    try {
+      config::ObjectDescription object;
+      load_text_proto(file, object);
+      const fs::path mesh = file.parent_path() / object.mesh();
+      if (object.name().empty() || object.mesh().empty() || !fs::is_regular_file(mesh)) continue;
+      std::string kind = mesh.extension().string();
+      std::transform(kind.begin(), kind.end(), kind.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      const bool is_drawn = kind == ".stl" || kind == ".obj";  // what the page reads
+      out.push_back(
+          {file, mesh, is_drawn ? "/assets/own/" + std::to_string(out.size()) + kind : ""});
+    } catch (const ConfigError&) {  // not loaded by anybody
+    }
+  }
+  return out;
+}
 
 Catalogue make_catalogue(const RobotModel& robot, const fs::path& resources,
                          const SystemFacts& facts) {

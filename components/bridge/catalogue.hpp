@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "common/model/robot_model.hpp"
 #include "components/bridge/foxglove.hpp"
@@ -17,6 +18,17 @@ struct SystemFacts {
   std::string version;     ///< of this build
   std::string session;     ///< changes with every start
 };
+
+/// An object of the search path outside the resources, whose mesh the page draws.
+struct OwnMesh {
+  std::filesystem::path description;  ///< Protobuf text
+  std::filesystem::path mesh;         ///< file
+  std::string address;                ///< of the mesh over HTTP; empty: the page cannot read it
+};
+
+/// Returns the objects of the search path that do not lie below `resources`; broken ones are left
+/// out.
+std::vector<OwnMesh> own_meshes(const std::filesystem::path& resources);
 
 /// A channel for each row of the table, in its order.
 Catalogue make_catalogue(const RobotModel& robot, const std::filesystem::path& resources,

@@ -50,6 +50,7 @@ Node::Node(Bus& bus, const NodeContext& context)
                           .session = std::to_string(bus.stamp_now())};
   catalogue_ = make_catalogue(*context.robot, resource_root(), facts);
   for (Channel& channel : Drawing::channels()) catalogue_.channels.push_back(std::move(channel));
+  for (const OwnMesh& own : own_meshes(resource_root())) site_.serve(own.address, own.mesh);
   config_ = config_json(*context.robot, resource_root(), facts);
 
   bus_.subscribe<ComponentHealth>(

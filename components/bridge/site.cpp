@@ -93,7 +93,15 @@ Site::Site(fs::path page, const fs::path& resources)
     : page_(page.empty() ? page : canonical_or_empty(page)),
       resources_(canonical_or_empty(resources)) {}
 
+void Site::serve(const std::string& address, const fs::path& file) {
+  const std::string kind = extension_of(file);
+  if (address.empty()) return;
+  if (std::find(kAssetKinds.begin(), kAssetKinds.end(), kind) != kAssetKinds.end())
+    own_.emplace(address, file);
+}
+
 std::optional<fs::path> Site::find(std::string_view target) const {
+  if (const auto own = own_.find(target); own != own_.end()) return own->second;
   if (target.starts_with(kAssets)) return asset(resources_, target.substr(kAssets.size()), true);
   if (target == "/") target = "/index.html";
   return target.starts_with('/') ? file_in(page_, target.substr(1)) : std::nullopt;

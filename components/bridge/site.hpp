@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,10 @@ class Site {
   /// robots/, hands/ and objects/.
   Site(std::filesystem::path page, const std::filesystem::path& resources);
 
+  /// Serves a mesh that lies outside the folders under an address of its own; none when the
+  /// address is empty.
+  void serve(const std::string& address, const std::filesystem::path& file);
+
   /// The file a path of HTTP names ("/", "/page.js", "/assets/robots/jido/jido.urdf"); nothing when
   /// there is no such file, the path is not canonical, the kind of file is not served or it lies
   /// (through a link) outside its folder.
@@ -31,6 +36,7 @@ class Site {
 
  private:
   std::filesystem::path page_, resources_;
+  std::map<std::string, std::filesystem::path, std::less<>> own_;  ///< by their address
 };
 
 /// By the file's extension; application/octet-stream when unknown.

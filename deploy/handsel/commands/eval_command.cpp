@@ -26,6 +26,7 @@
 #include "deploy/handsel/eval/study.hpp"
 #include "deploy/handsel/eval/tally.hpp"
 #include "deploy/handsel/eval/trial.hpp"
+#include "deploy/handsel/offline/settings_list.hpp"
 #include "deploy/handsel/system/system_options.hpp"
 
 namespace handsel {
@@ -322,6 +323,7 @@ int evaluate(const EvalOptions& options) {
     throw ConfigError("--replay repeats one trial: name one mode and one law");
   if (!options.record.empty() && !options.replay)
     throw ConfigError("--record is for the one trial of --replay");
+  report_changed_settings();
   const std::vector<Condition> conditions = conditions_of(options);
   const std::vector<Trial> trials =
       plan_trials(options, conditions, options.replay ? options.replay : options.seed,
@@ -367,6 +369,7 @@ void add_eval_command(CLI::App& app, int& exit_code) {
       "eval", "randomised trials in lock-step: one JSON line each, a table at the end");
   command->add_option("--scenario", options->scenarios, "scenarios: names or files")
       ->capture_default_str();
+  add_overlay_options(*command);
   command->add_option("--robot", options->robot, "robot description (default: the scenario's)");
   command->add_option("--trials", options->trials, "of each scenario")
       ->check(kAboveZero)

@@ -12,6 +12,7 @@
 #include "deploy/handsel/commands/commands.hpp"
 #include "deploy/handsel/eval/report.hpp"
 #include "deploy/handsel/offline/scene_check.hpp"
+#include "deploy/handsel/offline/settings_list.hpp"
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
 #include "deploy/handsel/system/system_options.hpp"
@@ -100,6 +101,7 @@ int run(RunOptions& options) {
   if (!options.condition.empty()) options.system.notes["condition"] = options.condition;
   if (!options.participant.empty()) options.system.notes["participant"] = options.participant;
   if (options.trial > 0) options.system.notes["trial"] = std::to_string(options.trial);
+  report_changed_settings();
   check_scene(options.system);
   System system(options.system);
   std::fprintf(

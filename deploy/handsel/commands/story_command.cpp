@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "common/config/search_path.hpp"
 #include "deploy/handsel/commands/commands.hpp"
 #include "deploy/handsel/story/story_runner.hpp"
 #include "deploy/handsel/system/system_options.hpp"
@@ -15,12 +16,14 @@ void add_story_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "story", "runs story files (start, task, disturb, kill, expect) over real processes");
   add_domain_option(*command, options->story.domain);
+  add_overlay_options(*command);
   command->add_option("--seed", options->story.seed, "instead of the story's");
-  command->add_option("files", options->files, "story files")->required();
+  command->add_option("files", options->files, "stories: names or files")->required();
   command->callback([options, &exit_code] {
     catch_interrupts();
     std::vector<Story> stories;
-    for (const std::string& file : options->files) stories.push_back(read_story(file));
+    for (const std::string& file : options->files)
+      stories.push_back(read_story(find_file(FileKind::story, file)));
     for (Story& story : stories) {
       const std::string name = story.name;
       const bool came_true = StoryRunner(std::move(story), options->story).run();

@@ -4,6 +4,7 @@
 #include "common/base/errors.hpp"
 #include "deploy/handsel/commands/commands.hpp"
 #include "deploy/handsel/offline/scene_check.hpp"
+#include "deploy/handsel/offline/settings_list.hpp"
 #include "deploy/handsel/system/system.hpp"
 #include "deploy/handsel/system/system_options.hpp"
 
@@ -24,6 +25,7 @@ void add_up_command(CLI::App& app, int& exit_code) {
   up->add_flag("--headless", *headless, "open no browser");
   up->callback([options, headless, &exit_code] {
     catch_interrupts();
+    report_changed_settings();
     check_scene(*options);
     System system(*options);
     std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s; logs in %s\n",

@@ -8,6 +8,7 @@
 #include "common/bus/executor.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.hpp"
+#include "common/config/search_path.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
@@ -177,9 +178,7 @@ PerceptionGround ground_of(const DoctorOptions& options) {
       options.robot.empty() ? scenario_robot(options.scenario, seed) : options.robot));
   ground.base = sim::pose_of(scenario.base()).translation();
   ground.reach = spark::reach_of(robot, ground.base);
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(resource("objects"), ignored))
-    if (entry.is_directory()) ground.models.insert(entry.path().filename());
+  for (const auto& file : all_files(FileKind::object)) ground.models.insert(file.stem());
   return ground;
 }
 

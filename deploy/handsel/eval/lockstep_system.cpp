@@ -1,5 +1,7 @@
 #include "deploy/handsel/eval/lockstep_system.hpp"
 
+#include "common/config/resources.hpp"
+#include "common/config/scenario.hpp"
 #include "components/attention/node.hpp"
 #include "components/collision_checker/node.hpp"
 #include "components/costmap/node.hpp"
@@ -17,8 +19,13 @@ namespace handsel {
 
 NodeContext system_context(const std::string& scenario, const std::string& robot,
                            std::uint64_t seed, const std::filesystem::path& settings) {
-  return load_context(robot_of({.robot = robot, .scenario = scenario, .seed = seed}), scenario,
-                      settings, seed);
+  NodeContext context = load_context(robot_of({.robot = robot, .scenario = scenario, .seed = seed}),
+                                     scenario, settings, seed);
+  const config::Scenario drawn = read_scenario(context.scenario, seed);
+  for (const config::ObjectPlacement& object : drawn.objects())
+    if (context.objects(object.model()) == nullptr)
+      ObjectModel::load(object_description(object.model()));  // says what is wrong with it
+  return context;
 }
 
 template <class Node>

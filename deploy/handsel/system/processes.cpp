@@ -6,6 +6,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/bus/state_directory.hpp"
+#include "common/config/overlay.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.hpp"
 #include "common/model/object_model.hpp"
@@ -73,6 +74,8 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
       spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
     if (sim_time) spec.arguments.emplace_back("--sim-time");
+    const std::vector<std::string> overlays = overlay_arguments();
+    spec.arguments.insert(spec.arguments.end(), overlays.begin(), overlays.end());
     specs.push_back(std::move(spec));
   }
   if (specs.empty()) throw ConfigError("no process is left to be started");

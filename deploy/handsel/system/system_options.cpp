@@ -5,8 +5,10 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
 #include "common/bus/dds/dds_defaults.hpp"
+#include "common/config/overlay.hpp"
 
 extern char** environ;
 
@@ -33,6 +35,23 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
                      "write everything that is said into this MCAP file");
   command.add_flag("--ros2", options.ros2, "with the connection to ROS 2 (docs/ros2.md)");
   add_help_hold_option(command);
+  add_overlay_options(command);
+}
+
+void add_overlay_options(CLI::App& command) {
+  auto overlays = std::make_shared<Overlays>();
+  command
+      .add_option("--config", overlays->files,
+                  "file with settings of one or more components that go over the shipped ones; may "
+                  "be repeated (docs/settings.md)")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--set", overlays->assignments,
+                  "a setting, component.key=value, e.g. spark.grip_force=2; may be repeated")
+      ->expected(1)
+      ->take_all();
+  command.parse_complete_callback([overlays] { use_overlays(*overlays); });
 }
 
 void add_help_hold_option(CLI::App& command) {

@@ -13,8 +13,11 @@ inline constexpr Duration kReadyTimeout = std::chrono::seconds(15);
 
 /// --domain N (default: $HANDSEL_DOMAIN, else 0).
 void add_domain_option(CLI::App& command, int& domain);
-/// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --help-hold.
+/// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --help-hold, --config, --set.
 void add_system_options(CLI::App& command, SystemOptions& options);
+/// --config FILE and --set component.key=value, both repeatable: overlays of this process and of
+/// those that it starts.
+void add_overlay_options(CLI::App& command);
 /// --help-hold, passed to the simulator through the environment's HANDSEL_HELP_HOLD.
 void add_help_hold_option(CLI::App& command);
 /// Prints the page's address, or why there is no page; opens it in a browser when there is a
