@@ -89,6 +89,7 @@ int main(int argc, char** argv) {
   handsel::add_record_commands(app, exit_code);
   handsel::add_eval_command(app, exit_code);
   handsel::add_config_commands(app, exit_code);
+  handsel::add_object_commands(app, exit_code);
   handsel::add_bench_command(app, exit_code);
   handsel::add_trajectory_commands(app, exit_code);
   handsel::add_model_commands(app, exit_code);

@@ -2,3 +2,7 @@ handsel_test(outside_tree SOURCES ${CMAKE_CURRENT_LIST_DIR}/outside/outside_tree
 target_compile_definitions(test_outside_tree PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(test_outside_tree product)
 set_tests_properties(outside_tree PROPERTIES TIMEOUT 600)
+handsel_test(own_object SOURCES ${CMAKE_CURRENT_LIST_DIR}/outside/own_object_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)
+target_compile_definitions(test_own_object PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_own_object handsel)
+set_tests_properties(own_object PROPERTIES TIMEOUT 600)

@@ -29,6 +29,8 @@ void add_record_commands(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
 /// Adds `config show` and `config diff`: settings and their sources.
 void add_config_commands(CLI::App& app, int& exit_code);
+/// Adds `object new`: an object of a user's mesh.
+void add_object_commands(CLI::App& app, int& exit_code);
 /// Adds `bench`: benchmarks against a peer.
 void add_bench_command(CLI::App& app, int& exit_code);
 
