@@ -438,6 +438,26 @@ TEST_F(CatalogueTest, the_page_learns_where_things_are) {
   EXPECT_TRUE(config["objects"].contains("mug"));
 }
 
+TEST_F(CatalogueTest, an_object_of_the_search_path_has_its_mesh_and_goes_before_the_projects_own) {
+  const test::TemporaryFolder folder;
+  std::filesystem::copy(resource("objects/mug/mug.obj"), folder.path() / "cup.obj");
+  folder.write("mug.txtpb", "name: \"mug\" mesh: \"cup.obj\" mass: 0.2 scale { x: 2 y: 2 z: 2 }");
+  folder.write("broken.txtpb", "name: \"broken\" mesh: \"nothing.obj\" mass: 0.2");
+  setenv("HANDSEL_PATH", folder.path().c_str(), 1);
+  const RobotModel robot = RobotModel::load(robot_description("jido"));
+  Site site({}, resource_root());
+  for (const OwnMesh& own : own_meshes(resource_root())) site.serve(own.address, own.mesh);
+  const Json objects = Json::parse(
+      config_json(robot, resource_root(),
+                  {.scenario = "s", .domain = 3, .version = "1", .session = "x"}))["objects"];
+  unsetenv("HANDSEL_PATH");
+  EXPECT_EQ(objects["mug"]["scale"][0], 2.0);
+  EXPECT_FALSE(objects.contains("broken"));
+  EXPECT_EQ(site.find(objects["mug"]["mesh"].get<std::string>()),
+            std::filesystem::canonical(folder.path() / "cup.obj"));
+  EXPECT_FALSE(site.find("/assets/own/../cup.obj"));
+}
+
 /// For robots put together from several files, or kept elsewhere.
 TEST_F(CatalogueTest, a_drawn_robot_stands_as_its_model) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));

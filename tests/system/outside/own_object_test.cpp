@@ -97,6 +97,20 @@ TEST_F(OwnObject, from_a_mesh_in_millimetres_is_grasped_and_given) {
   EXPECT_EQ(line["ssm_violations"], 0);
 }
 
+TEST_F(OwnObject, is_given_by_the_running_processes) {
+  folder.write("jar.stl", prism(10, 30, 115));
+  ASSERT_EQ(handsel("object new jar.stl --mass 0.25").exit_code, 0);
+  folder.write("my.scenario", scenario_of("jar"));
+  const test::Outcome run =
+      test::shell("cd / && " + std::string(HANDSEL_COMMAND) +
+                  " run --headless --port 0 --domain 74 --json --path " + folder.path().string() +
+                  " --scenario my.scenario --set spark.grip_force=2.5");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("1 value differs from the shipped settings, as spark.grip_force"));
+  EXPECT_THAT(run.err, HasSubstr("thing carried by human"));
+  EXPECT_TRUE(Json::parse(run.out)["success"].get<bool>()) << run.out;
+}
+
 TEST_F(OwnObject, found_by_its_folder_from_anywhere) {
   folder.write("jar.stl", prism(10, 30, 115));
   ASSERT_EQ(handsel("object new jar.stl").exit_code, 0);
