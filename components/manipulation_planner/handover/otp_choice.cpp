@@ -123,7 +123,12 @@ void show_offered(Parts& parts, const std::string& receiver) {
     if (parts.settings.follow_receiver) look_at_hands(parts, *person);
     offered.partner = partner_at(parts, *person, offered.T_world_object);
   }
-  show(offered, parts.action);
+  // A person who has taken hold on the way uses the grasp that the handover is planned for.
+  const bool is_planned = offered.partner || !parts.held.is_taken_by(receiver);
+  if (is_planned)
+    show(offered, parts.action);
+  else
+    parts.action.exchange_point = offered.T_world_object.translation();
 }
 
 void aim_at(const OtpSearch& search, const Person& receiver, const ReceiverHands& hands,
