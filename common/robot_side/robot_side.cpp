@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kReached = 1e-10;  // of a resting set-point [rad]
 constexpr double kAtRest = 1e-6;    // fastest set-point that counts as resting [rad/s]
+// A reference that is no faster [rad/s] and accelerates no more [rad/s^2] may rest at once.
+constexpr double kMaxRestSpeed = 1e-7, kMaxRestAcceleration = 1e-3;
 constexpr const char* kAgain = "; the robot follows again once set-points rest where it is";
 
 Vector bounds(const RobotModel& model, double Axis::*bound) {
@@ -66,7 +68,7 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
     matching_ = same || continues(command, kAtRest) ? matching_ + 1 : 0;
     joined_ = command.position;
     const bool may_end = mode_ != DriveMode::protective_stop || in_mode_ >= settings_.min_stop;
-    if (may_end && matching_ >= settings_.resume_count && reached(command)) enable();
+    if (may_end && matching_ >= settings_.resume_count && rests() && reached(command)) enable();
   }
   if (reference_ != Reference::follows || !accepted(command, arrival)) return false;
   seen_ = fresh_ = true;
@@ -113,6 +115,13 @@ void RobotSide::refuse(const SetpointRefusal& refusal) {
 
 bool RobotSide::reached(const JointCommand& command) const {
   return (command.position - position_).cwiseAbs().maxCoeff() <= kReached;
+}
+
+/// Returns whether the reference may rest from one step to the next: it may just pass where the
+/// set-points rest.
+bool RobotSide::rests() const {
+  return velocity_.lpNorm<Eigen::Infinity>() <= kMaxRestSpeed &&
+         acceleration_.lpNorm<Eigen::Infinity>() <= kMaxRestAcceleration;
 }
 
 /// A loaded arm sags and a closed hand is bent by what it holds: the measured posture counts as

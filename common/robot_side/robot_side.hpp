@@ -96,6 +96,7 @@ class RobotSide {
   void begin_stop(DriveMode);
   bool continues(const JointCommand&, double max_speed) const;
   bool reached(const JointCommand&) const;
+  bool rests() const;
   bool accepted(const JointCommand&, double arrival);
   void refuse(const SetpointRefusal&);
   void step_stop(double dt);

@@ -270,6 +270,28 @@ TEST(RobotSideGate, nothing_but_garbage_moves_nothing_beyond_the_limits) {
   }
 }
 
+/// Set-points rest first at one place, then just where the reference passes on its path to another.
+TEST(RobotSideGate, set_points_that_rest_where_the_reference_passes_stop_it_within_the_limits) {
+  RobotSide side(robot(), Vector::Zero(robot().dof()), checked());
+  side.hold(Vector::Zero(robot().dof()), DriveMode::enabled);
+  Oracle oracle;
+  JointCommand command;
+  command.robot = "small";
+  command.position = Vector::Constant(robot().dof(), 0.01);
+  command.velocity = command.acceleration = Vector::Zero(robot().dof());
+  bool passed = false;
+  for (int k = 0; k < 2000; ++k) {
+    passed = passed || side.position()[0] > 0.004;
+    if (passed) command.position = side.position();
+    ++command.sequence;
+    side.command(command, kStep * k);
+    side.step(kStep * k, kStep);
+    oracle.see(side.position());
+  }
+  EXPECT_TRUE(passed);
+  EXPECT_TRUE(side.follows());
+}
+
 TEST(RobotSideGate, lost_set_points_are_ridden_out_within_the_limits) {
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t seed = std::random_device{}();
