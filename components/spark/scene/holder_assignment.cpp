@@ -134,6 +134,19 @@ bool HolderAssignment::is_in_hand_of_holder(const SceneObject& object) const {
   });
 }
 
+/// Returns whether the hand of the robot that has held the object still has the fingers around it,
+/// though it feels no load: a person carries the object with it.
+bool HolderAssignment::is_in_closed_hand(const ObjectTrack& track) const {
+  if (track.object.holder != Holder::robot || !track.robot_grip) return false;
+  const RobotPlacement::Hand& hand = in_.robot.hands()[track.robot_hand];
+  const RobotGrip& grip = *track.robot_grip;
+  if (hand.fingers.size() == 0 || hand.fingers.size() != grip.fingers.size()) return false;
+  const Vector3 p_palm_object =
+      hand.T_world_palm.inverse() * track.object.T_world_object.translation();
+  return (hand.fingers - grip.fingers).cwiseAbs().maxCoeff() < in_.settings.hand_opened &&
+         (p_palm_object - grip.p_palm_object).norm() < in_.settings.holding_distance;
+}
+
 void HolderAssignment::assign(ObjectTrack& track) const {
   SceneObject& object = track.object;
   if (keep_gripped(object)) return;
@@ -152,10 +165,13 @@ void HolderAssignment::assign(ObjectTrack& track) const {
     return;
   }
   if (robot_may) {
+    const RobotPlacement::Hand& hand = in_.robot.hands()[*by];
     object.holder = Holder::robot;
-    object.holder_id = in_.robot.hands()[*by].name;
+    object.holder_id = hand.name;
+    track.robot_grip = RobotGrip{hand.fingers, hand.T_world_palm.inverse() * where};
     return;
   }
+  if (is_in_closed_hand(track)) return;
   double nearest = in_.settings.near_distance;
   for (const auto& person : in_.people.people) {
     if (!object.grips.empty()) break;  // nobody grips it

@@ -39,6 +39,7 @@ class HolderAssignment {
   std::optional<std::size_t> loaded_hand(const ObjectTrack& track) const;
   bool keep_gripped(SceneObject& object) const;
   bool is_in_hand_of_holder(const SceneObject& object) const;
+  bool is_in_closed_hand(const ObjectTrack& track) const;
   const SceneBox* support_under(const SceneObject& object, double gap) const;
 
   Inputs in_;

@@ -19,11 +19,18 @@ inline constexpr double kVelocityGap = 0.3;
 /// An object that is held and has not been observed for this time is moved with the hand [s].
 inline constexpr double kFollowHandAfter = 0.1;
 
+/// How a hand of the robot had an object when it last felt the load.
+struct RobotGrip {
+  Vector fingers;         ///< RobotPlacement::Hand::fingers
+  Vector3 p_palm_object;  ///< position of the object in the palm frame [m]
+};
+
 /// An object with everything that is remembered of the observations.
 struct ObjectTrack {
   SceneObject object;        ///< estimate; its age is that of the last scene
   std::size_t robot_hand{};  ///< index of the robot hand that holds the object or held it last
   Pose T_palm_object{Pose::Identity()};   ///< in the palm frame of that hand
+  std::optional<RobotGrip> robot_grip;    ///< of that hand; nullopt: it never had the object
   TimePoint seen{};                       ///< capture of the newest sample
   int samples{};                          ///< number that make up the estimate; 0: none
   Vector3 last_seen_at{Vector3::Zero()};  ///< of the newest sample, world [m]

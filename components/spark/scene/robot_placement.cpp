@@ -8,6 +8,8 @@
 namespace handsel::spark {
 namespace {
 
+constexpr double kFingerLength = 0.05;  // that turns what an axis slides into an angle [m]
+
 double arm_length(const RobotModel& robot) {
   double length = 0;
   for (int link = robot.tool_link(); link > 0;) {
@@ -33,6 +35,7 @@ RobotPlacement::RobotPlacement(std::shared_ptr<const RobotModel> robot) : robot_
     Hand out;
     if (!hands_.empty() && hand.fingers != nullptr) out.name = hand.fingers->name;
     out.palm = hand.palm;
+    if (hand.fingers != nullptr) out.axes = hand.fingers->axes;
     hands_.push_back(std::move(out));
   }
   if (hands_.empty()) hands_.emplace_back();
@@ -50,9 +53,19 @@ void RobotPlacement::update(const RobotState& state) {
 void RobotPlacement::locate() {
   if (!known_) return;
   robot_->forward(position_, links_);
-  for (Hand& hand : hands_)
+  for (Hand& hand : hands_) {
     if (hand.palm >= 0)
       hand.T_world_palm = T_world_base_ * links_[static_cast<std::size_t>(hand.palm)];
+    hand.fingers.resize(static_cast<Eigen::Index>(hand.axes.size()));
+    for (std::size_t i = 0; i < hand.axes.size(); ++i)
+      hand.fingers[static_cast<Eigen::Index>(i)] = angle_of(hand.axes[i]);
+  }
+}
+
+double RobotPlacement::angle_of(int axis) const {
+  const auto joint = static_cast<std::size_t>(robot_->axes()[static_cast<std::size_t>(axis)].joint);
+  return robot_->joints()[joint].kind == JointKind::prismatic ? position_[axis] / kFingerLength
+                                                              : position_[axis];
 }
 
 Coverage RobotPlacement::reach() const {

@@ -24,6 +24,10 @@ class RobotPlacement {
     int palm{-1};                         ///< link; -1: none
     double payload{};                     ///< felt [kg]
     Pose T_world_palm{Pose::Identity()};  ///< as of the last locate()
+    /// Positions of its finger axes as of the last locate() [rad]; of one that slides the turn of a
+    /// finger of 5 cm that moves its tip as far. Empty: the hand has none.
+    Vector fingers;
+    std::vector<int> axes;  ///< its finger axes
   };
 
   explicit RobotPlacement(std::shared_ptr<const RobotModel> robot);
@@ -49,6 +53,8 @@ class RobotPlacement {
   Coverage reach() const;
 
  private:
+  double angle_of(int axis) const;
+
   std::shared_ptr<const RobotModel> robot_;
   bool known_{false};
   Vector position_;

@@ -8,6 +8,7 @@
 #include "components/spark/directed.hpp"
 #include "components/spark/scene_model.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/small_robot.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -103,6 +104,48 @@ TEST_F(HeldObjects, a_hand_that_bears_the_end_of_a_long_object_holds_it) {
   bear(mug_.mass);
   EXPECT_NE(holder(0, 0.45), Holder::robot) << "its end leans on the fingertips";
   EXPECT_EQ(holder(0.1, 0.37), Holder::robot);
+}
+
+/// A hand with fingers gives the object to a person whose hand is at the object, too.
+class GivenObjects : public SceneObjects {
+ protected:
+  GivenObjects() : robot_(test::small_robot()) {
+    model_.emplace(
+        settings_, robot_,
+        [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+        std::vector<SceneBox>{});
+    std::vector<Pose> links;
+    robot_->forward(Vector::Zero(robot_->dof()), links);
+    p_object_ = links[static_cast<std::size_t>(robot_->tool_link())] * Vector3(0.05, 0, 0);
+    people_.people = {person_at({2.0, 0, 0})};
+    people_.people[0].joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position =
+        p_object_ + Vector3(0.05, 0, 0);
+  }
+  /// The holder after the robot has felt `mass`, its fingers at `fingers` [rad].
+  Holder holder(double t, double mass, double fingers, double lifted = 0) {
+    RobotState state;
+    state.position = Vector::Zero(robot_->dof());
+    for (const int axis : robot_->require_group("hand").axes) state.position[axis] = fingers;
+    state.payload = mass;
+    model_->update(state);
+    see(t, {mug("mug", p_object_ + Vector3(0, 0, lifted))});
+    return find(wait(t, t), "mug")->holder;
+  }
+  std::shared_ptr<const RobotModel> robot_;
+  Vector3 p_object_;
+};
+
+TEST_F(GivenObjects, are_in_the_hand_of_the_robot_until_that_opens_though_a_person_carries_them) {
+  ASSERT_EQ(holder(0, mug_.mass, 0.5), Holder::robot);
+  EXPECT_EQ(holder(0.1, 0, 0.5), Holder::robot) << "the person bears the load";
+  EXPECT_EQ(holder(0.2, 0, 0.49), Holder::robot) << "and moves the fingers with the object";
+  EXPECT_EQ(holder(0.3, 0, 0.3), Holder::human) << "the fingers have opened";
+}
+
+TEST_F(GivenObjects, pulled_out_of_the_closed_hand_are_in_the_hand_of_the_person) {
+  ASSERT_EQ(holder(0, mug_.mass, 0.5), Holder::robot);
+  EXPECT_EQ(holder(0.1, 0, 0.5, 0.05), Holder::robot);
+  EXPECT_EQ(holder(0.2, 0, 0.5, 0.1), Holder::human);
 }
 
 TEST_F(SceneObjects, out_of_sight_grows_uncertain_and_seen_again_is_sure) {
