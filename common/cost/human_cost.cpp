@@ -200,6 +200,14 @@ double HumanCost::outside_cost(PointAt&& point_at) const {
   return sum;
 }
 
+double HumanCost::outside(const Vector& q) const {
+  if (layers_.outside.empty()) return 0;
+  robot_->forward(q, links_);
+  return outside_cost([this](std::size_t i) {
+    return T_world_base_ * (links_[probes_[i].link] * probes_[i].p_link);
+  });
+}
+
 ForbiddenPlace HumanCost::forbidden(const Vector& q) const {
   if (!forbids_) return {};
   robot_->forward(q, links_);

@@ -118,6 +118,7 @@ class HumanCost {
   void on_line(const Vector& from, const Vector& to, const double* at, int count,
                double* cost) const;
   CostParts parts(const Vector& q) const;    ///< of the person it is worst for
+  double outside(const Vector& q) const;     ///< CostParts::outside alone
   bool forbids() const { return forbids_; }  ///< some outside layer forbids some place
   /// Returns the first layer that forbids a place the robot is at, `q`: all axes; a null layer when
   /// none does.

@@ -41,7 +41,7 @@ void PathCost::fill_costs(const Vector& from, const Vector& to) const {
   for (std::size_t i = 0; i < at_.size(); ++i) {
     const Vector q = begin + at_[i] * (to_ - begin);
     const double driven = cost_.gain() * (*problem_.platform_motion->cost)(q[x], q[y], q[heading]);
-    costs_[i] = only_platform_ ? driven + cost_.parts(q).outside : std::max(costs_[i], driven);
+    costs_[i] = only_platform_ ? driven + cost_.outside(q) : std::max(costs_[i], driven);
   }
 }
 
