@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "components/path_planner/cartesian.hpp"
 #include "components/path_planner/head_room.hpp"
@@ -33,6 +34,16 @@ std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far) {
   return {problem.start, goal};
 }
 
+/// Covers the links with spheres, which takes up to half a second and is remembered in the process,
+/// so that no request waits for that.
+void cover_links(CollisionWorld& world, const RobotModel& robot) {
+  std::vector<int> all(static_cast<std::size_t>(robot.dof()));
+  std::iota(all.begin(), all.end(), 0);
+  world.set_moving_axes(all);
+  world.is_free(robot.rest_configuration());
+  world.set_moving_axes({});
+}
+
 Result plan_in_cartesian_space(const PlanningModels& models, const PathRequest& request,
                                const Problem& problem, const PoseGoal& pose, const Hooks& hooks) {
   CartesianProblem cartesian;
@@ -59,7 +70,14 @@ Solver::Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel
       weights_(weights),
       settings_(settings),
       world_(*robot_, objects),
-      cost_(*robot_, weights) {}
+      cost_(*robot_, weights) {
+  cover_links(world_, *robot_);
+  if (on_platform_ && drives(*robot_)) prepare_mobile();
+}
+
+void Solver::prepare_mobile() {
+  if (!mobile_) mobile_ = std::make_unique<Mobile>(*on_platform_, objects_, weights_);
+}
 
 bool Solver::drives_platform(const PathRequest& request) const {
   return on_platform_ && is_of_platform(request.group);
@@ -90,7 +108,7 @@ PlanningTask Solver::make_task(const PathRequest& request,
 
 Solver::Selected Solver::select(const PathRequest& request) {
   if (!drives_platform(request)) return {{*robot_, world_, cost_}, nullptr};
-  if (!mobile_) mobile_ = std::make_unique<Mobile>(*on_platform_, objects_, weights_);
+  prepare_mobile();
   return {{*on_platform_, mobile_->world, mobile_->cost}, &mobile_->navigation};
 }
 

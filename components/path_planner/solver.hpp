@@ -69,6 +69,7 @@ class Solver {
     PlanningModels models;
     NavigationCost* navigation{};  ///< Null: it stands.
   };
+  void prepare_mobile();
   Selected select(const PathRequest& request);
   void set_world(const Selected& selected, PlanningTask& task);
   void solve_once(const Selected& selected, PlanningTask& task, const Hooks& hooks);
@@ -85,7 +86,8 @@ class Solver {
   SolverSettings settings_;
   CollisionWorld world_;
   HumanCost cost_;
-  std::unique_ptr<Mobile> mobile_;  ///< From the first request that drives.
+  std::unique_ptr<Mobile>
+      mobile_;  ///< From the beginning if the robot drives, else from its first request.
 };
 
 }  // namespace handsel::path_planner
