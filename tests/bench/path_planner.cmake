@@ -4,3 +4,6 @@ target_compile_definitions(bench_planner PRIVATE HANDSEL_SOURCE_DIR="${CMAKE_SOU
 add_executable(bench_feasible ${CMAKE_CURRENT_LIST_DIR}/feasible_bench.cpp)
 target_link_libraries(bench_feasible PRIVATE handsel_path_planner_core)
 target_compile_definitions(bench_feasible PRIVATE HANDSEL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+add_executable(bench_navigation ${CMAKE_CURRENT_LIST_DIR}/navigation_bench.cpp)
+target_link_libraries(bench_navigation PRIVATE handsel_path_planner)
+target_compile_definitions(bench_navigation PRIVATE HANDSEL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
