@@ -150,7 +150,7 @@ void Solver::solve(PlanningTask& task, const Hooks& hooks) {
     if (!task.result.solved) set_world(selected, task);
     spent = task.result.checks;
   }
-  if (!task.result.solved && !hooks.cancelled()) {
+  if (!task.result.solved && !(hooks.cancelled && hooks.cancelled())) {
     task.problem.budget = budget - std::min(spent, budget - 1);
     solve_once(selected, task, hooks);
     task.result.checks += spent;
