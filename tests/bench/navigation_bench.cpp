@@ -1,6 +1,7 @@
 // Paths of a platform past two people in a furnished room, as the path planner's process plans them
-// with its shipped settings, beside OMPL's BiTRRT on the same problems. One process, alternating.
-// Time of the thread. Usage: bench_navigation [rooms]
+// with its shipped settings, beside OMPL's BiTRRT on the same problems; then one of the people
+// steps into the path while it is driven. One process, alternating. Time of the thread. Usage:
+// bench_navigation [rooms]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +23,8 @@ using test::seconds;
 using test::Times;
 
 constexpr unsigned kSeed = 31;
-constexpr double kTimeLimit = 5;  // of a request [s]
+constexpr double kTimeLimit = 5;              // of a request [s]
+constexpr std::uint64_t kLiveBudget = 10000;  // what a live request is given as shipped
 
 struct Room {
   Scene scene;
@@ -68,6 +70,17 @@ Room random_room(std::mt19937_64& random, const RobotModel& robot, int number) {
   return room;
 }
 
+/// Lets the first person step into the middle of a path of which a fifth of the first edge has been
+/// driven; the request continues along it.
+void step_into(const std::vector<Vector>& path, const RobotModel& robot, Room& room) {
+  const std::size_t edge = path.size() / 2;
+  const Vector middle = 0.5 * (path[edge - 1] + path[edge]);
+  room.people.people[0].joints = standing_body({middle.x(), middle.y(), 0}, 0, 1.75);
+  room.request.running = path;
+  const Vector now = path[0] + 0.2 * (path[1] - path[0]);
+  room.request.start = with_platform_at(robot, room.request.start, now.head<3>());
+}
+
 int run(int rooms) {
   const auto description = robot_description("jido_mobile");
   const auto robot = std::make_shared<const RobotModel>(RobotModel::load(description));
@@ -76,7 +89,8 @@ int run(int rooms) {
   Solver solver(robot, mobile_of(*robot, description), objects,
                 load_cost_settings(resource("config")), solver_settings(file));
   std::mt19937_64 random(kSeed);
-  Times ours, peer;
+  Times ours, peer, live;
+  int outcomes[5] = {};
   double cost[2] = {}, length[2] = {};
   int solved[2] = {};
   for (int i = 0; i < rooms; ++i) {
@@ -100,6 +114,14 @@ int run(int rooms) {
       results[stock] = task.result;
       (stock ? peer : ours).add(took);
     }
+    if (results[0].solved) {
+      step_into(results[0].path, *robot, room);
+      PlanningTask task = solver.make_task(room.request, scene);
+      task.people = std::make_shared<HumanState>(room.people);
+      task.problem.budget = kLiveBudget;
+      live.add(seconds([&] { solver.solve(task, {}); }));
+      ++outcomes[static_cast<int>(task.outcome)];
+    }
     for (int k = 0; k < 2 && both; ++k) {
       cost[k] += results[k].cost;
       length[k] += results[k].length;
@@ -111,6 +133,9 @@ int run(int rooms) {
   std::printf("ratio of the medians %.2f\n", ours.at(0.5) / peer.at(0.5));
   std::printf("solved %d and %d; of what both solved: cost %.2f and %.2f, length %.1f and %.1f\n",
               solved[0], solved[1], cost[0], cost[1], length[0], length[1]);
+  live.print("a person in the path");
+  for (int k = 0; k < 5; ++k)
+    std::printf("%s %d%s", name(static_cast<ReplanOutcome>(k)), outcomes[k], k < 4 ? ", " : "\n");
   return 0;
 }
 
