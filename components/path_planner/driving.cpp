@@ -8,9 +8,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr int kTries = 1500;  // places of the platform for each pose
-// Of the distance of start or goal: growing sides of a turned box come nearer by more at corners.
-constexpr double kOfDistance = 0.6;
+constexpr int kTries = 1500;    // places of the platform for each pose
 constexpr double kReach = 1.2;  // places are at most this far from the pose, in the plane [m]
 
 }  // namespace
@@ -42,7 +40,7 @@ void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Pr
   problem.room = {lower, upper};
 }
 
-void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, double room,
+void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, const FurnitureRoom& room,
                              const std::vector<Vector>& ends) {
   Scene wider = scene;
   Scene alone = scene;
@@ -50,9 +48,10 @@ void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, double r
   for (SceneBox& box : wider.boxes) {
     alone.boxes = {box};
     world.set_scene(alone);
-    double clearance = room;
+    double clearance = room.room;
     for (const Vector& q : ends)
-      clearance = std::min(clearance, kOfDistance * world.distance_to_scene(q, room));
+      clearance =
+          std::min(clearance, room.fraction_at_ends * world.distance_to_scene(q, room.room));
     box.size.head<2>() += Eigen::Vector2d::Constant(2 * clearance);
   }
   world.set_scene(wider);

@@ -16,10 +16,17 @@ bool is_of_platform(const std::string& group);
 /// beyond; headings of goals nearest to that of the start.
 void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Problem& problem);
 
+/// Level clearance of a platform from furniture.
+struct FurnitureRoom {
+  double room{};                 ///< [m]
+  double fraction_at_ends{0.6};  ///< of the distance of an end that is nearer; < 1, as growing
+                                 ///< sides of a turned box come nearer by more at corners
+};
+
 /// Replaces the scene of a world whose moving axes and attachment are set: furniture is larger by
-/// `room` [m] on every level side, or by less where a configuration of `ends` (all axes) is nearer
-/// to a box: beside a sideboard the platform must be able to stop, and to leave.
-void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, double room,
+/// `room` on every level side, or by less where a configuration of `ends` (all axes) is nearer to a
+/// box: beside a sideboard the platform must be able to stop, and to leave.
+void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, const FurnitureRoom& room,
                              const std::vector<Vector>& ends);
 
 /// Poses for the whole robot: places of the platform around each, drawn at random and as near to

@@ -31,7 +31,8 @@ SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
   out.live.tries = s.live_tries;
   out.replan_margins = {s.live_margin, s.live_turning_margin};
   out.roam = s.roam;
-  out.furniture_room = s.furniture_room;
+  out.furniture = {s.furniture_room, s.end_room_fraction};
+  out.driven_room_fraction = s.driven_room_fraction;
   out.head_room = s.head_room;
   return out;
 }

@@ -11,9 +11,6 @@
 namespace handsel::path_planner {
 namespace {
 
-// Of furniture_room, by a platform on its path: the localisation of the platform varies.
-constexpr double kKept = 0.5;
-
 /// Start and first goal, all axes; the start alone where goals are not configurations.
 std::vector<Vector> first_ends_of(const Problem& problem) {
   std::vector<Vector> ends = {problem.start};
@@ -123,10 +120,13 @@ void Solver::set_world(const Selected& selected, PlanningTask& task) {
   if (!task.request.running.empty()) {
     world.set_moving_axes(task.problem.axes);
     const std::vector<Vector> ends = ends_of(task.problem, task.request.running.back());
-    if (selected.navigation != nullptr)
-      keep_clear_of_furniture(world, scene, kKept * settings_.furniture_room, ends);
-    else
+    if (selected.navigation != nullptr) {
+      FurnitureRoom kept = settings_.furniture;
+      kept.room *= settings_.driven_room_fraction;
+      keep_clear_of_furniture(world, scene, kept, ends);
+    } else {
       set_scene_with_margins(world, scene, settings_.replan_margins, ends);
+    }
   }
   selected.models.cost.set_people(*task.people);
   selected.models.cost.set_layers(task.layers);
@@ -189,10 +189,10 @@ double Solver::keep_head_clearance(const Selected& selected, const PlanningTask&
 /// furniture. Returns whether that is any.
 bool Solver::keep_clearance(const Selected& selected, const PlanningTask& task) const {
   if (selected.navigation == nullptr) return keep_head_clearance(selected, task) > 0;
-  if (!task.request.running.empty() || settings_.furniture_room == 0) return false;
+  if (!task.request.running.empty() || settings_.furniture.room == 0) return false;
   Scene scene = *task.scene;
   scene.T_world_base = task.T_world_root;
-  keep_clear_of_furniture(selected.models.world, scene, settings_.furniture_room,
+  keep_clear_of_furniture(selected.models.world, scene, settings_.furniture,
                           first_ends_of(task.problem));
   return true;
 }

@@ -17,12 +17,13 @@
 namespace handsel::path_planner {
 
 struct SolverSettings {
-  Settings search;          ///< Of every search.
-  ReplanSettings live;      ///< Of requests to continue along a running path.
-  Margins replan_margins;   ///< Clearance that a running path keeps to obstacles [m].
-  double roam{};            ///< How far the platform may drive around start and goals [m].
-  double furniture_room{};  ///< Level clearance of paths of the platform from furniture [m].
-  double head_room{};       ///< Clearance to heads that paths between configurations keep [m].
+  Settings search;                   ///< Of every search.
+  ReplanSettings live;               ///< Of requests to continue along a running path.
+  Margins replan_margins;            ///< Clearance that a running path keeps to obstacles [m].
+  double roam{};                     ///< How far the platform may drive around start and goals [m].
+  FurnitureRoom furniture;           ///< Level clearance of paths of the platform from furniture.
+  double driven_room_fraction{0.5};  ///< Fraction of that which a platform keeps on its path.
+  double head_room{};  ///< Clearance to heads that paths between configurations keep [m].
 };
 
 /// One request with what was known when it came.

@@ -13,15 +13,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kArrived = 0.02;     // [m], [rad]: the scene shows the platform where it was sent
-constexpr int kMaxDisplacements = 4;  // drives that end because the platform is found elsewhere
-constexpr int kMaxCorrections = 2;    // drives to an object once the platform has stopped at it
-constexpr double kArrivalTimeout = 1.0;  // until the scene shows that [s]
-constexpr double kRetry = 1.0;           // until a drive is tried again that others prevent [s]
-constexpr double kEdge = 0.08;      // points to reach are this far inside the edge of a surface [m]
-constexpr double kPointStep = 0.2;  // between points to reach on a surface [m]
-constexpr double kTaken = 0.15;     // and this far from things that stand there [m]
-
 /// Places to drive to, the best first, or why there are none.
 struct DrivePlaces {
   Outcome outcome;
@@ -55,16 +46,19 @@ Routine<DrivePlaces> places_for_object(Parts& parts, const std::string& object) 
 
 /// Where something could be put down on a surface.
 StandingTarget target_on(const Parts& parts, const SceneBox& box) {
+  const settings::ManipulationPlannerSettings& settings = parts.settings;
   StandingTarget target;
   const Vector3 half = 0.5 * box.size;
-  const double x_end = std::max(0.0, half.x() - kEdge), y_end = std::max(0.0, half.y() - kEdge);
-  for (double x = -x_end; x <= x_end + 1e-9; x += kPointStep)
-    for (double y = -y_end; y <= y_end + 1e-9; y += kPointStep) {
+  const double x_end = std::max(0.0, half.x() - settings.surface_edge),
+               y_end = std::max(0.0, half.y() - settings.surface_edge);
+  for (double x = -x_end; x <= x_end + 1e-9; x += settings.surface_spacing)
+    for (double y = -y_end; y <= y_end + 1e-9; y += settings.surface_spacing) {
       const Vector3 p = box.T_world_box * Vector3(x, y, half.z());
       const bool taken = std::any_of(parts.now.scene().objects.begin(),
                                      parts.now.scene().objects.end(), [&](const SceneObject& o) {
                                        return o.id != parts.held.id() &&
-                                              (o.T_world_object.translation() - p).norm() < kTaken;
+                                              (o.T_world_object.translation() - p).norm() <
+                                                  settings.surface_clearance;
                                      });
       if (!taken) target.points.push_back(p);
     }
@@ -189,9 +183,9 @@ Routine<Outcome> drive_once(Parts& parts, const ActionGoal& goal) {
   const auto has_arrived = [&] {
     const Vector& seen = parts.now.scene().robot_position;
     return (platform_place(robot, seen) - platform_place(robot, parts.now.set_point())).norm() <
-           kArrived;
+           parts.settings.drive_arrived;
   };
-  co_await parts.waiting.until(has_arrived, kArrivalTimeout);
+  co_await parts.waiting.until(has_arrived, parts.settings.arrival_timeout);
   co_return driven;
 }
 
@@ -212,7 +206,7 @@ bool others_than(const Parts& parts, const std::string& served) {
 Routine<Outcome> drive_patiently(Parts& parts, const ActionGoal& goal) {
   Outcome driven;
   const TimePoint begin = parts.now.time();
-  for (int displacements = 0; displacements < kMaxDisplacements;) {
+  for (std::uint32_t displacements = 0; displacements < parts.settings.drive_attempts;) {
     driven = co_await drive_once(parts, goal);
     const bool is_displaced = driven.end == MotionEnd::displaced;
     const bool is_in_the_way = !driven.good && driven.end == MotionEnd::failed &&
@@ -221,7 +215,7 @@ Routine<Outcome> drive_patiently(Parts& parts, const ActionGoal& goal) {
     if (!is_displaced && !is_in_the_way) break;
     parts.refuse(text_of(ActionPhase::moving_platform), driven.reason);
     displacements += is_displaced;
-    if (is_in_the_way) co_await parts.waiting.pause(kRetry);
+    if (is_in_the_way) co_await parts.waiting.pause(parts.settings.drive_pause);
   }
   co_return driven;
 }
@@ -236,7 +230,8 @@ Routine<Outcome> drive(Parts& parts, const ActionGoal& goal) {
   if (driven.good) driven = co_await drive_patiently(parts, goal);
   // The platform stops a little beside its place: the grasps may be out of reach from there. Where
   // one is within reach, there is nothing left to drive.
-  for (int i = 0; driven.good && !goal.object.empty() && i < kMaxCorrections; ++i)
+  const std::uint32_t corrections = goal.object.empty() ? 0 : parts.settings.drive_corrections;
+  for (std::uint32_t i = 0; driven.good && i < corrections; ++i)
     driven = co_await drive_patiently(parts, goal);
   co_return driven;
 }

@@ -201,13 +201,13 @@ TEST_F(DrivingJido, furniture_is_kept_clear_of_as_far_as_start_and_goal_allow) {
     return at(x, 0, 0);
   };
   const Vector far = at(0, -2, 0), near = place_at(0.06), nearer = place_at(0.02);
-  keep_clear_of_furniture(world_, scene, 0.1, {far});
+  keep_clear_of_furniture(world_, scene, {0.1}, {far});
   EXPECT_FALSE(world_.is_free(near));
   EXPECT_TRUE(world_.is_free(far));
-  keep_clear_of_furniture(world_, scene, 0.1, {far, near});
+  keep_clear_of_furniture(world_, scene, {0.1}, {far, near});
   EXPECT_TRUE(world_.is_free(near));
   EXPECT_FALSE(world_.is_free(nearer));
-  keep_clear_of_furniture(world_, scene, 0.0, {far});
+  keep_clear_of_furniture(world_, scene, {0.0}, {far});
   EXPECT_TRUE(world_.is_free(nearer));
 }
 
