@@ -13,6 +13,7 @@
 #include "components/manipulation_planner/handover/otp_search.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
+#include "tests/support/person_grasps.hpp"
 #include "tests/support/processes/thread_times.hpp"
 #include "tests/support/standing_person.hpp"
 
@@ -25,25 +26,6 @@ using test::Times;
 constexpr unsigned kSeed = 21;
 constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
 constexpr double kUnderWay = 0.4;  // share of the time of the carrying motion when it is left
-
-/// Grasps of either hand of a person from four sides of an upright object, the thumb up.
-std::vector<PartnerGrasp> grasps_of_both_hands() {
-  std::vector<PartnerGrasp> grasps;
-  for (const Side side : {Side::right, Side::left}) {
-    for (int k = 0; k < 4; ++k) {
-      const double yaw = 1.5707963 * k, sign = side == Side::right ? 1 : -1;
-      PartnerGrasp grasp;
-      grasp.id = grasps.size();
-      grasp.side = side;
-      const Vector3 fingers(std::cos(yaw), std::sin(yaw), 0);
-      const Vector3 palm = sign * Vector3(-std::sin(yaw), std::cos(yaw), 0);
-      grasp.T_object_wrist.linear() << palm, fingers.cross(palm), fingers;
-      grasp.T_object_wrist.translation() = -0.12 * fingers;
-      grasps.push_back(grasp);
-    }
-  }
-  return grasps;
-}
 
 int run(int cases) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
@@ -83,7 +65,7 @@ int run(int cases) {
   const auto choose = [&](const HumanState& people, const Vector& q) {
     return choose_with(people, q, {});
   };
-  const std::vector<PartnerGrasp> partners = grasps_of_both_hands();
+  const std::vector<PartnerGrasp> partners = test::grasps_of_both_hands();
   const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes,
                           const Vector& start) {
     TrajectoryRequest request;

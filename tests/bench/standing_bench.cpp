@@ -14,6 +14,7 @@
 #include "common/model/platform.hpp"
 #include "components/manipulation_planner/driving/handover_place.hpp"
 #include "components/manipulation_planner/driving/standing_search.hpp"
+#include "tests/support/person_grasps.hpp"
 #include "tests/support/processes/thread_times.hpp"
 
 namespace handsel::manipulation_planner {
@@ -23,25 +24,6 @@ using test::seconds;
 using test::Times;
 
 constexpr unsigned kSeed = 37;
-
-/// Grasps of either hand of a person from four sides of an upright object, the thumb up.
-std::vector<PartnerGrasp> grasps_of_both_hands() {
-  std::vector<PartnerGrasp> grasps;
-  for (const Side side : {Side::right, Side::left}) {
-    for (int k = 0; k < 4; ++k) {
-      const double yaw = M_PI / 2 * k, sign = side == Side::right ? 1 : -1;
-      PartnerGrasp grasp;
-      grasp.id = grasps.size();
-      grasp.side = side;
-      const Vector3 fingers(std::cos(yaw), std::sin(yaw), 0);
-      const Vector3 palm = sign * Vector3(-std::sin(yaw), std::cos(yaw), 0);
-      grasp.T_object_wrist.linear() << palm, fingers.cross(palm), fingers;
-      grasp.T_object_wrist.translation() = -0.12 * fingers;
-      grasps.push_back(grasp);
-    }
-  }
-  return grasps;
-}
 
 int run(int rooms) {
   const RobotModel robot = RobotModel::load(robot_description("jido_mobile"));
@@ -87,7 +69,7 @@ int run(int rooms) {
                               arm.tip,
                               attachment.T_tool_object,
                               {},
-                              grasps_of_both_hands(),
+                              test::grasps_of_both_hands(),
                               Vector3(-Vector3::UnitZ())};
     StandingTarget target;
     for (const Side side : {Side::right, Side::left})
