@@ -119,6 +119,8 @@ std::string HandExecutor::accept(const HandCommand& command) {
   if (command.action == HandAction::release_on_pull) {
     release_to_ = command.position;
     release_.arm(command.pull_force);
+    // What a stop has interrupted does not count against the new command.
+    if (state_ == HandState::refused) state_ = closed_ ? HandState::grasped : HandState::idle;
     return {};
   }
   release_.disarm();

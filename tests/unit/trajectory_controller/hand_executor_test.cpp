@@ -450,6 +450,16 @@ TEST_F(HandTest, an_opening_that_a_stop_interrupts_is_reported_and_presses_no_mo
   EXPECT_EQ(hand_.state(), HandState::released);
 }
 
+TEST_F(HandTest, an_offer_after_an_interrupted_opening_is_accepted) {
+  ASSERT_NO_FATAL_FAILURE(pull_for(0.7));
+  stop_and_rejoin();
+  run(1.0);
+  ASSERT_EQ(hand_.state(), HandState::refused);
+  command(HandAction::release_on_pull, 0.0);
+  run(0.1);
+  EXPECT_EQ(hand_.state(), HandState::idle) << "the stop concerned the command before";
+}
+
 TEST_F(HandTest, does_not_open_for_bumps_tremor_pushes_or_without_a_hand) {
   block_ = {0.5, 0.5, 0.5, 0.5};
   command(HandAction::grasp, 0.7);
