@@ -95,6 +95,15 @@ Routine<HandResult> keep(Parts& parts, bool is_open) {
   co_return held;
 }
 
+/// Opens the hand off what a person holds, again where stops interrupt that.
+Routine<HandResult> let_go(Parts& parts, const Vector& open, TimePoint deadline) {
+  HandResult released;
+  do {
+    released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
+  } while (!released.outcome.good && parts.now.time() < deadline);
+  co_return released;
+}
+
 /// What an offer came to.
 struct Offered {
   Outcome outcome;      ///< whether the receiver has the object, or it is to be offered elsewhere
@@ -132,11 +141,13 @@ Routine<Offered> offer(Parts& parts, const std::string& object, const std::strin
         is_drawn_out(parts, object) || (interrupted && !is_held_by_robot(parts, object));
     if (interrupted && !has_person_it) {
       const HandResult held = co_await keep(parts, true);
-      // Closed on nothing: the person has drawn the object out, or a finger is caught on it.
-      has_person_it = held.outcome.good && held.state != HandState::grasped;
+      // Closed on nothing: the person has drawn the object out, or a finger is caught on it. Not
+      // closed, for stops: the person may have it meanwhile.
+      has_person_it =
+          held.outcome.good ? held.state != HandState::grasped : !is_held_by_robot(parts, object);
     }
     if (has_person_it) {
-      released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout);
+      released = co_await let_go(parts, open, deadline);
       co_return Offered{released.outcome};
     }
     if (!interrupted || parts.now.time() >= deadline) break;
