@@ -75,11 +75,16 @@ Routine<Outcome> shift_offer(Parts& parts, const std::string& object, const std:
   co_return moved;
 }
 
+/// Returns whether a person holds the object; false where it is not seen.
+bool is_held_by_person(const Parts& parts, const std::string& object) {
+  const SceneObject* seen = parts.now.object(object);
+  return seen != nullptr && seen->holder == Holder::human;
+}
+
 /// Returns whether a person has drawn the object out of the hand, as from a hand that could not
 /// feel the pull.
 bool is_drawn_out(const Parts& parts, const std::string& object) {
-  const SceneObject* seen = parts.now.object(object);
-  return seen != nullptr && seen->holder == Holder::human && !parts.held.is_in_hand(*seen);
+  return is_held_by_person(parts, object) && !parts.held.is_in_hand(*parts.now.object(object));
 }
 
 /// Closes the hand on the object that it offers; `is_open`: the fingers have begun to open.
@@ -144,7 +149,7 @@ Routine<Offered> offer(Parts& parts, const std::string& object, const std::strin
       // Closed on nothing: the person has drawn the object out, or a finger is caught on it. Not
       // closed, for stops: the person may have it meanwhile.
       has_person_it =
-          held.outcome.good ? held.state != HandState::grasped : !is_held_by_robot(parts, object);
+          held.outcome.good ? held.state != HandState::grasped : is_held_by_person(parts, object);
     }
     if (has_person_it) {
       released = co_await let_go(parts, open, deadline);
