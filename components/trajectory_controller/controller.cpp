@@ -75,7 +75,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       set_points_(robot_->dof()),
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       stop_space_(settings.view, proof_, *robot_),
-      finger_limit_(proof_, *robot_),
+      finger_limit_(proof_, *robot_, settings.guard),
       arm_({settings.period, settings.start_tolerance, settings.switch_reach}, *robot_,
            groups_.arm()),
       compliance_(compliance_settings(settings), *robot_, groups_.arm_joints().size(), arm_),
@@ -293,8 +293,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   };
   const Vector& sent = set_points_.sent().position;
   if (cycles_ % kFingerInterval == 0)
-    hands_.limit_speed(
-        finger_limit_.factor(sent, robot.T_world_base, age, load(), people.capsules()));
+    hands_.limit(finger_limit_.bounds(sent, robot.T_world_base, age, load(), people.capsules()));
   const bool new_state = inputs_.robot.has_new_state();
   if (new_state && !arm_.running()) lookahead_.place_links(sent);
   const HandsInputs of_hands{robot, people, lookahead_.links(), new_state, arm_.movers().moved(),

@@ -86,6 +86,7 @@ void read_guard(const settings::TrajectoryControllerSettings& in, ControllerSett
   s.guard.handover_speed = g.handover_speed;
   s.guard.handover_range = g.handover_range;
   s.guard.stop_persistence = g.stop_persistence;
+  s.guard.finger_stop_speed = g.finger_stop_speed;
 }
 
 void read_view(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {

@@ -341,10 +341,14 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
     start(Phase::releasing);
   }
   if (phase_ != Phase::releasing) freeing_ = false;
-  if (!in.may_move && !paused_ && !freeing_) {
+  // What a person takes is released in any case.
+  const bool approaches =
+      phase_ == Phase::moving || phase_ == Phase::closing || phase_ == Phase::seeking;
+  const bool waits = in.too_near && approaches;
+  if ((!in.may_move || waits) && !paused_ && !freeing_) {
     paused_ = true;
-    fingers_.stop_all(in.stop);
-  } else if (in.may_move && paused_ && at_rest()) {
+    fingers_.stop_all(in.stop || waits);
+  } else if (in.may_move && !waits && paused_ && at_rest()) {
     // From the middle of a stop the gentle limits might not end inside the bounds.
     paused_ = false;
     for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);

@@ -51,7 +51,8 @@ struct HandInputs {
   double person_distance{};         ///< to the nearest hand of a person [m]; +inf: nobody
   bool may_move{};                  ///< mode below Hold
   bool stop{};                      ///< mode Stop or Fault: use the stop limits
-  bool clamped{};                   ///< the partner of the handover is clamped: open in any mode
+  bool too_near{};  ///< somebody comes toward the hand: fingers that move or close stop
+  bool clamped{};   ///< the partner of the handover is clamped: open in any mode
 };
 
 class HandExecutor {

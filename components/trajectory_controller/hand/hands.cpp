@@ -152,6 +152,7 @@ void Hands::step(std::size_t index, const HandsInputs& all, TimePoint now,
   in.new_state = all.new_state;
   in.may_move = all.mode < Mode::hold;
   in.stop = all.mode >= Mode::stop;
+  in.too_near = too_near_;
   in.person_distance = std::numeric_limits<double>::infinity();
   in.clamped = all.clamped && !all.people.partner().empty();
   in.payload = felt_payload(all.robot, index);
@@ -169,8 +170,9 @@ void Hands::step(std::size_t index, const HandsInputs& all, TimePoint now,
   }
 }
 
-void Hands::limit_speed(double fraction) noexcept {
-  for (Hand& hand : hands_) hand.executor.limit_speed(fraction);
+void Hands::limit(const FingerBounds& bounds) noexcept {
+  too_near_ = bounds.too_near;
+  for (Hand& hand : hands_) hand.executor.limit_speed(bounds.speed);
 }
 
 void Hands::stop_from(const MotionState3& sent, MotionState3& next) noexcept {

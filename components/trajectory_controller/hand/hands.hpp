@@ -10,6 +10,7 @@
 #include "common/model/robot_model.hpp"
 #include "components/trajectory_controller/hand/hand_executor.hpp"
 #include "components/trajectory_controller/input/observed_people.hpp"
+#include "components/trajectory_controller/supervise/finger_limit.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -45,8 +46,8 @@ class Hands {
   /// Writes the axes of the hands of the next set-point. Returns whether the outcome of a command
   /// changed.
   bool step(const HandsInputs& in, TimePoint now, MotionState3& next) noexcept;
-  /// Motions use at most this fraction of the comfort velocity, see HandExecutor.
-  void limit_speed(double fraction) noexcept;
+  /// Motions keep these bounds from now on, see HandExecutor.
+  void limit(const FingerBounds& bounds) noexcept;
   /// Every axis stops from `sent` as fast as it can; writes the next set-point.
   void stop_from(const MotionState3& sent, MotionState3& next) noexcept;
   /// Moves the set-points to the measured positions, see HandExecutor.
@@ -92,6 +93,7 @@ class Hands {
   std::vector<int> axes_;
   Vector other_payloads_;
   Vector effort_;
+  bool too_near_{};  // somebody comes too near for fingers that move or close
   std::uint64_t last_command_{}, accepted_{};
 };
 

@@ -8,8 +8,10 @@
 
 namespace handsel::trajectory_controller {
 
-FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot)
+FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot,
+                         const GuardSettings& guard)
     : proof_(proof),
+      guard_(guard),
       comfort_speeds_(static_cast<std::size_t>(robot.dof()), 0.0),
       all_frames_(proof.chain().frames().size(), 1),
       motions_(all_frames_.size()),
@@ -26,11 +28,23 @@ FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot)
       }
 }
 
-double FingerLimit::factor(const Vector& position, const Pose& T_world_base, double age,
-                           double payload, const PersonCapsules& people) noexcept {
+/// `to_robot`: unit; `speed`: of the fingers [m/s].
+bool FingerLimit::is_too_near(const PersonCapsule& part, const Vector3& to_robot, double distance,
+                              double speed, double age) const noexcept {
+  const double v_h = directed_speed(part, to_robot, guard_);
+  if (part.excepted || v_h < guard_.finger_stop_speed + guard_.speed_uncertainty) return false;
+  const double reaction = guard_.reaction + age;
+  const double needed = v_h * (reaction + part.age + stop_time_) +
+                        speed * (reaction + 0.5 * stop_time_) + guard_.intrusion +
+                        guard_.uncertainty_human + guard_.uncertainty_robot;
+  return distance < needed;
+}
+
+FingerBounds FingerLimit::bounds(const Vector& position, const Pose& T_world_base, double age,
+                                 double payload, const PersonCapsules& people) noexcept {
   const StopProofSettings& s = proof_.settings();
-  double limit = 1.0;
-  if (!s.enabled || people.capsules.empty() || stop_time_ == 0.0) return limit;
+  FingerBounds found;
+  if (people.capsules.empty() || stop_time_ == 0.0) return found;
   proof_.chain().move(position, at_rest_, all_frames_, motions_);
   const double reaction = s.latency + s.robot_side_delay + age;
   for (const ChainCapsule& hand : proof_.chain().capsules()) {
@@ -40,22 +54,25 @@ double FingerLimit::factor(const Vector& position, const Pose& T_world_base, dou
     const Vector3 a = T_world_base * (frame.p + frame.R * hand.a),
                   b = T_world_base * (frame.p + frame.R * hand.b);
     for (const PersonCapsule& part : people.capsules) {
+      Vector3 on_robot, on_person;
+      const double axes_apart =
+          std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));
+      const double distance = axes_apart - hand.radius - part.radius;
+      const Vector3 to_robot = (on_robot - on_person).stableNormalized();
+      found.too_near = found.too_near || is_too_near(part, to_robot, distance, speed, age);
       const double fits = s.finger_ratio *
                           proof_.contact_speeds().max_speed_at(part.region, payload) /
                           (proof_.contact_speeds().finger_ratio_at(part.region, payload) * speed);
-      if (fits >= limit) continue;
-      const RegionMotion& bounds = s.people[static_cast<std::size_t>(part.region)];
+      if (!s.enabled || fits >= found.speed) continue;
+      const RegionMotion& region = s.people[static_cast<std::size_t>(part.region)];
       const double reached = reach_after(reaction + part.age + stop_time_,
-                                         start_speed(part, s.speed_error, bounds), bounds) +
+                                         start_speed(part, s.speed_error, region), region) +
                              speed * (reaction + 0.5 * stop_time_) + s.tracker_error +
                              s.robot_error + s.limit_margin;
-      Vector3 on_robot, on_person;
-      const double distance = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person)) -
-                              hand.radius - part.radius;
-      if (distance <= reached) limit = fits;
+      if (distance <= reached) found.speed = fits;
     }
   }
-  return limit;
+  return found;
 }
 
 }  // namespace handsel::trajectory_controller

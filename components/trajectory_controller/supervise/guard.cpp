@@ -19,15 +19,6 @@ double fastest(const PersonCapsule& c, const GuardSettings& s) noexcept {
                        : std::clamp(c.fastest + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
-double directed_speed(const PersonCapsule& c, const Vector3& toward_robot,
-                      const GuardSettings& s) noexcept {
-  if (c.joints == 0) return s.speed_unknown;
-  double v = -s.speed_max;
-  for (int j = 0; j < c.joints; ++j)
-    v = std::max(v, c.velocities[static_cast<std::size_t>(j)].dot(toward_robot));
-  return std::clamp(v + s.speed_uncertainty, s.speed_floor, s.speed_max);
-}
-
 /// Smallest step of a StopTable whose factor is at least `factor`.
 int step_above(double factor) noexcept {
   return static_cast<int>(std::ceil(factor * kStopGrid - 1e-9));
@@ -219,6 +210,15 @@ class Evaluation {
 };
 
 }  // namespace
+
+double directed_speed(const PersonCapsule& c, const Vector3& toward_robot,
+                      const GuardSettings& s) noexcept {
+  if (c.joints == 0) return s.speed_unknown;
+  double v = -s.speed_max;
+  for (int j = 0; j < c.joints; ++j)
+    v = std::max(v, c.velocities[static_cast<std::size_t>(j)].dot(toward_robot));
+  return std::clamp(v + s.speed_uncertainty, s.speed_floor, s.speed_max);
+}
 
 double reference_speed(double separation, double v_h, double reaction, double deceleration,
                        double margin) noexcept {

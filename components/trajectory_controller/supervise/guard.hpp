@@ -27,6 +27,8 @@ struct GuardSettings {
   double handover_speed{0.25};     ///< largest speed toward an exempt forearm or hand [m/s]
   double handover_range{0.30};     ///< within this distance [m]
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
+  /// Fingers stop for a person only when that person comes toward the hand this fast [m/s].
+  double finger_stop_speed{0.10};
 };
 
 /// A half space the moving links stay in: normal . p >= offset.
@@ -63,6 +65,11 @@ struct GuardQuery {
   double age{};                           ///< of the human data [s]
   double factor{1.0};                     ///< speed factor in force, [-1, 1]
 };
+
+/// Returns the speed v_h at which a part of a person may move along `toward_robot`, a unit vector
+/// [m/s].
+double directed_speed(const PersonCapsule& part, const Vector3& toward_robot,
+                      const GuardSettings& settings) noexcept;
 
 /// Returns the limits of speed and separation monitoring (SSM, ISO 10218-2:2025) and of the walls.
 /// Allocates nothing.

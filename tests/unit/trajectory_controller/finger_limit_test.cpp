@@ -97,6 +97,10 @@ class FingersBesideSomebody {
   void shift_person(double x) {
     for (BodyJoint& joint : people_.people[0].joints) joint.position.x() += x;
   }
+  /// The tracker reports that the person moves along x [m/s].
+  void set_velocity(double x) {
+    for (BodyJoint& joint : people_.people[0].joints) joint.velocity = Vector3(x, 0, 0);
+  }
   const Controller& core() const { return core_; }
 
  private:
@@ -119,6 +123,20 @@ TEST(FingerLimit, opening_beside_a_face_needs_no_stop) {
     EXPECT_EQ(b.core().status().hand, HandState::idle)
         << "the hand has not opened, somebody at " << distance << " m";
   }
+}
+
+TEST(FingerLimit, fingers_wait_while_somebody_rushes_at_the_hand) {
+  FingersBesideSomebody b(0.6);
+  ASSERT_EQ(b.open(), "");
+  b.run(0.2);
+  ASSERT_GT(b.core().set_point().velocity.norm(), 0.05) << "the hand opens";
+  b.set_velocity(-1.6);
+  b.run(0.3);
+  EXPECT_LT(b.core().set_point().velocity.norm(), 1e-9);
+  EXPECT_EQ(b.core().status().hand, HandState::moving);
+  b.set_velocity(0);
+  b.run(4.0);
+  EXPECT_EQ(b.core().status().hand, HandState::idle) << "the hand goes on afterwards";
 }
 
 TEST(FingerLimit, the_arm_leaves_its_path_for_no_finger) {
