@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "common/bus/dds/dds_defaults.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.hpp"
 #include "common/config/search_path.hpp"
@@ -65,6 +66,7 @@ NodeContext load_context(const std::string& robot, const std::string& scenario,
     throw MissingError(context.settings.string() +
                        ": no such folder; it should hold the components' settings");
   context.seed = seed;
+  context.name = system_name().empty() ? context.robot->name() : system_name();
   return context;
 }
 

@@ -22,6 +22,8 @@ struct NodeContext {
   std::filesystem::path scenario;           ///< scenario file; empty: none was named
   std::filesystem::path settings;           ///< directory of <box>.txtpb
   std::uint64_t seed{1};                    ///< of every random choice of the node
+  /// Name of the robot for other robots in the domain: $HANDSEL_NAME, else that of the model.
+  std::string name{};
   bool sim_time{};                          ///< time advances as the simulator grants it
   /// Folder of what must survive a restart of the process; empty: nothing is kept.
   std::filesystem::path state{};

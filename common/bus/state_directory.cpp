@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "common/bus/dds/dds_defaults.hpp"
+
 namespace handsel {
 namespace {
 
@@ -23,7 +25,9 @@ std::filesystem::path state_directory() {
 
 std::filesystem::path domain_state_directory(int domain) {
   if (const char* state = environment("HANDSEL_STATE")) return state;
-  return state_directory() / ("domain-" + std::to_string(domain));
+  const std::string name = system_name();
+  return state_directory() /
+         ("domain-" + std::to_string(domain) + (name.empty() ? "" : "-" + name));
 }
 
 }  // namespace handsel

@@ -2,6 +2,8 @@
 
 #include <netdb.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <vector>
@@ -43,6 +45,17 @@ int default_domain() {
     throw ConfigError("HANDSEL_DOMAIN is \"" + value + "\"; it must be a number from 0 to 230");
   }
   return domain;
+}
+
+std::string system_name() {
+  constexpr std::size_t kMaxLength = 32;
+  const char* text = std::getenv("HANDSEL_NAME");
+  const std::string name = text != nullptr ? text : "";
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+  if (name.size() > kMaxLength || !std::all_of(name.begin(), name.end(), allowed))
+    throw ConfigError("HANDSEL_NAME is \"" + name +
+                      "\"; it must have at most 32 letters, digits, \"_\" or \"-\"");
+  return name;
 }
 
 void use_dds_configuration(const std::filesystem::path& folder) {

@@ -10,6 +10,11 @@ namespace handsel {
 /// Returns $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number from 0 to 230.
 int default_domain();
 
+/// Returns $HANDSEL_NAME: the name of this system, which keeps its topics apart from those of other
+/// systems in the domain (a DDS partition); empty: none. Throws ConfigError when the name has other
+/// characters than letters, digits, "_" and "-", or more than 32.
+std::string system_name();
+
 /// Sets CYCLONEDDS_URI when the environment has none. Without $HANDSEL_PEERS: loopback.xml of
 /// `folder`, this machine only. With it: network.xml of `folder`, which discovers by multicast, and
 /// the hosts it names (names or addresses, separated by commas or spaces) as peers; the word

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/bus/dds/dds_defaults.hpp"
 #include "common/bus/foreign.hpp"
 
 namespace handsel {
@@ -59,6 +60,9 @@ Qos common(const TopicRow& row) {
   if (row.deadline > 0)
     dds_qset_deadline(qos.get(), static_cast<dds_duration_t>(std::llround(row.deadline * 1e9)));
   dds_qset_destination_order(qos.get(), DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP);
+  const bool apart = in_table(row) && !is_of_all_systems(row);
+  if (const std::string system = system_name(); !system.empty() && apart)
+    dds_qset_partition1(qos.get(), system.c_str());
   if (row.profile == Profile::health)
     dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, kHealthLease);
   return qos;
@@ -70,6 +74,8 @@ std::string in_seconds(dds_duration_t d) {
   std::snprintf(text, sizeof text, "%g s", static_cast<double>(d) * 1e-9);
   return text;
 }
+
+}  // namespace
 
 std::vector<std::string> partitions(const dds_qos_t* qos) {
   std::vector<std::string> out;
@@ -83,8 +89,6 @@ std::vector<std::string> partitions(const dds_qos_t* qos) {
   dds_free(names);
   return out;
 }
-
-}  // namespace
 
 std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested) {
   std::vector<std::string> out;

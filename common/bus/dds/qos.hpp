@@ -31,6 +31,8 @@ Qos recorder_qos(const TopicRow& row);
 Qos writer_qos(const TopicRow& row);
 /// Returns the QoS of a topic entity: reliability only, the rest stands at readers and writers.
 Qos topic_qos(const TopicRow& row);
+/// Returns the partitions that a QoS names.
+std::vector<std::string> partitions(const dds_qos_t* qos);
 /// Returns each policy for which a writer that offers this is not matched with a reader that
 /// requests that: "DEADLINE is none, asked for is 0.2 s or shorter".
 std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested);

@@ -16,6 +16,7 @@
 #include <fstream>
 
 #include "common/base/errors.hpp"
+#include "common/bus/dds/dds_defaults.hpp"
 
 namespace handsel {
 namespace {
@@ -262,8 +263,9 @@ std::filesystem::path new_run_directory(int domain) {
 namespace {
 
 std::filesystem::path lock_file(int domain) {
+  const std::string name = system_name();
   return std::filesystem::temp_directory_path() /
-         ("handsel-domain-" + std::to_string(domain) + ".lock");
+         ("handsel-domain-" + std::to_string(domain) + (name.empty() ? "" : "-" + name) + ".lock");
 }
 
 }  // namespace
@@ -284,7 +286,8 @@ DomainLock::DomainLock(int domain) {
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     close(fd_);
     throw ConfigError("DDS domain " + std::to_string(domain) +
-                      " is in use by another system on this machine; choose another with --domain");
+                      " is in use by another system on this machine; choose another with --domain, "
+                      "or let both robots work in it with --name");
   }
 }
 

@@ -18,6 +18,13 @@ void add_domain_option(CLI::App& command, int& domain) {
   domain = default_domain();
   command.add_option("--domain", domain, "DDS domain (default: HANDSEL_DOMAIN, else 0)")
       ->check(CLI::Range(0, 230));
+  command.add_option_function<std::string>(
+      "--name",
+      [](const std::string& name) {
+        setenv("HANDSEL_NAME", name.c_str(), 1);
+        system_name();
+      },
+      "of this system, where several work in one domain (default: HANDSEL_NAME, else none)");
 }
 
 void add_system_options(CLI::App& command, SystemOptions& options) {

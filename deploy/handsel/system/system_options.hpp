@@ -11,7 +11,7 @@ namespace handsel {
 
 inline constexpr Duration kReadyTimeout = std::chrono::seconds(15);
 
-/// --domain N (default: $HANDSEL_DOMAIN, else 0).
+/// --domain N (default: $HANDSEL_DOMAIN, else 0), --name NAME (through $HANDSEL_NAME).
 void add_domain_option(CLI::App& command, int& domain);
 /// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --help-hold, --config, --set.
 void add_system_options(CLI::App& command, SystemOptions& options);
