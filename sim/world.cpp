@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/physics/contacts.hpp"
+#include "sim/scene/other_robots.hpp"
 #include "sim/world_parts.hpp"
 
 namespace handsel::sim {
@@ -45,6 +46,9 @@ SimWorld::Impl::Impl(const RobotModel& robot_model, const ObjectLibrary& library
   for (const StartObject& start : setup.objects)
     objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
   people = std::make_unique<People>(setup, settings, objects, shapes, dynamics);
+  for (OtherRobotMotion& motion : read_other_robots(scenario))
+    other_robots.emplace_back(std::move(motion));
+  if (!other_robots.empty()) robot_hull = robot_capsules(model);
   prepare_sight();
   if (people->mind_fingers()) finger_capsules = robot_capsules(model);
   std::uint64_t salt = seed;
@@ -149,6 +153,12 @@ SimWorld::SimWorld(SimWorld&&) noexcept = default;
 
 void SimWorld::step() { impl_->step(); }
 double SimWorld::time() const { return impl_->now(); }
+
+void SimWorld::robot_reports(std::vector<RobotReport>& out) {
+  out.clear();
+  for (OtherRobotBody& robot : impl_->other_robots)
+    if (robot.reports()) out.push_back(robot.report(impl_->now()));
+}
 
 void SimWorld::command(const JointCommand& command, std::uint64_t writer, double arrival) {
   Impl& w = *impl_;

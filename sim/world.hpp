@@ -51,6 +51,8 @@ class SimWorld {
   void human_observations(std::vector<Delivery<HumanObservation>>& out);
   /// Appends what the sensors of objects hand over since the last call.
   void object_observations(std::vector<Delivery<ObjectObservation>>& out);
+  /// Writes what the other robots report about themselves; stamps left to the publisher.
+  void robot_reports(std::vector<RobotReport>& out);
   /// Writes all fields but stamp and real_time_factor.
   void ground_truth(GroundTruth& out) const;
 

@@ -58,7 +58,20 @@ void SimWorld::Impl::evaluate() {
     handover->observe(situation(), settings.step);
     taking.observe(grips(watched), taker());
   }
+  if (steps % ssm_every == 0) measure_other_robots();
   add_to_hash();
+}
+
+void SimWorld::Impl::measure_other_robots() {
+  if (other_robots.empty()) return;
+  for (OtherRobotBody& other : other_robots) {
+    other.place(now());
+    const double distance = other.distance(robot_hull, robot->T_world_links());
+    min_robot_distance = std::min(min_robot_distance, distance);
+    if (distance >= 0) continue;
+    collisions += static_cast<std::uint64_t>(ssm_every);
+    last_collision = "the robot meets robot " + other.id();
+  }
 }
 
 /// A person pushes the robot, or has just done so, and it does not press against them: from the
@@ -132,6 +145,7 @@ void SimWorld::ground_truth(GroundTruth& out) const {
   }
   out.separation = w.near.distance;
   out.min_separation = w.min_separation;
+  out.min_robot_distance = w.min_robot_distance;
   out.ssm_violations = w.ssm_violations;
   out.peak_closing_speed = w.closing.peak();
   out.contact_force = w.hands.front().measured.largest_contact();

@@ -17,8 +17,10 @@ WorldOutput::WorldOutput(Bus& bus, const SimSettings& settings)
     : state_out_(bus.advertise<RobotState>()),
       human_out_(bus.advertise<HumanObservation>()),
       object_out_(bus.advertise<ObjectObservation>()),
+      report_out_(bus.advertise<RobotReport>()),
       ground_truth_out_(bus.advertise<GroundTruth>()),
       steps_per_state_(steps_per(settings.state_rate, settings.step)),
+      steps_per_report_(steps_per(TopicOf<RobotReport>::row.rate, settings.step)),
       steps_per_ground_truth_(steps_per(settings.ground_truth_rate, settings.step)) {}
 
 void WorldOutput::publish(SimWorld& world, std::uint64_t steps,
@@ -28,6 +30,13 @@ void WorldOutput::publish(SimWorld& world, std::uint64_t steps,
     state_out_->publish(state_);
   }
   publish_observations(world, stamp_now);
+  if (steps % steps_per_report_ == 0) {
+    world.robot_reports(reports_);
+    for (RobotReport& report : reports_) {
+      report.stamp = stamp_now();
+      report_out_->publish(report);
+    }
+  }
   if (steps % steps_per_ground_truth_ == 0) publish_ground_truth(world, stamp_now, factor);
 }
 
@@ -55,10 +64,14 @@ void WorldOutput::publish_observations(SimWorld& world, const std::function<Stam
 void WorldOutput::publish_ground_truth(SimWorld& world, const std::function<Stamp()>& stamp_now,
                                        double factor) {
   const std::uint64_t before = ground_truth_.limit_violations;
+  const std::uint64_t collisions_before = ground_truth_.self_or_scene_collisions;
   world.ground_truth(ground_truth_);
   if (before == 0 && ground_truth_.limit_violations > 0)
     std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world.time(),
                  world.last_limit_violation().c_str());
+  if (collisions_before == 0 && ground_truth_.self_or_scene_collisions > 0)
+    std::fprintf(stderr, "sim: at %.3f s the first collision, %s\n", world.time(),
+                 world.last_collision().c_str());
   ground_truth_.stamp = stamp_now();
   ground_truth_.real_time_factor = factor;
   ground_truth_out_->publish(ground_truth_);

@@ -40,12 +40,14 @@ class WorldOutput {
   std::unique_ptr<Publisher<RobotState>> state_out_;
   std::unique_ptr<Publisher<HumanObservation>> human_out_;
   std::unique_ptr<Publisher<ObjectObservation>> object_out_;
+  std::unique_ptr<Publisher<RobotReport>> report_out_;
   std::unique_ptr<Publisher<GroundTruth>> ground_truth_out_;
-  std::uint64_t steps_per_state_, steps_per_ground_truth_;
+  std::uint64_t steps_per_state_, steps_per_report_, steps_per_ground_truth_;
   RobotState state_;
   GroundTruth ground_truth_;
   std::vector<Delivery<HumanObservation>> human_due_;
   std::vector<Delivery<ObjectObservation>> object_due_;
+  std::vector<RobotReport> reports_;        // of other robots
   std::map<std::string, Stamped> stamped_;  ///< By source: the newest picture.
 };
 

@@ -19,6 +19,7 @@
 #include "sim/oracle/taking_oracle.hpp"
 #include "sim/people/people.hpp"
 #include "sim/robot/hand_measure.hpp"
+#include "sim/robot/other_robot.hpp"
 #include "sim/robot/platform_odometry.hpp"
 #include "sim/robot/robot_grasp.hpp"
 #include "sim/robot/stuck_hand.hpp"
@@ -98,6 +99,7 @@ struct SimWorld::Impl {
   bool is_pushed();                    ///< by a person, without the robot pressing against them
   ObjectSituation situation() const;   ///< of the watched object
   std::optional<Taker> taker() const;  ///< who has a hand at the watched object
+  void measure_other_robots();         ///< distance to other robots, and contacts with them
   void add_to_hash();                  ///< positions and velocities of the step
 
   // world_sensing.cpp: what sensors of people and objects see
@@ -152,6 +154,10 @@ struct SimWorld::Impl {
   std::vector<LinkCapsule> finger_capsules;  // of all links, while any person minds the fingers
   std::vector<HumanSensor> human_sensors;
   std::vector<ObjectSensor> object_sensors;
+
+  std::vector<OtherRobotBody> other_robots;
+  std::vector<LinkCapsule> robot_hull;  // of all links, while there are other robots
+  double min_robot_distance{std::numeric_limits<double>::infinity()};
 
   LimitsOracle limits;
   SeparationOracle separations;

@@ -72,22 +72,34 @@ void CollisionWorld::set_obstacles(const std::vector<Obstacle>& obstacles) {
 
 void CollisionWorld::set_people(const HumanState& state, PeopleParts parts) {
   impl_->people.clear();
+  impl_->other_robots.clear();
   impl_->solids_stale = true;
+  const auto moving_body = [](const Vector3& a, const Vector3& b, double radius) {
+    Impl::MovingBody body;
+    body.shape = CollisionShape::make(Capsule{radius, (b - a).norm()});
+    body.T_world_shape = along(a, b);
+    body.a = a;
+    body.b = b;
+    body.radius = radius;
+    body.middle = 0.5 * (a + b);
+    body.reach = 0.5 * (b - a).norm() + radius;
+    return body;
+  };
   for (const Person& person : state.people)
     for (const BodyCapsule& capsule : body_capsules(person)) {
-      Impl::PersonBody body;
+      Impl::MovingBody body = moving_body(capsule.a, capsule.b, capsule.radius);
       body.id = person.id;
       body.arm = exchanging_part(capsule.part);
       body.obstacle = parts == PeopleParts::all || !body.arm;
-      body.shape = CollisionShape::make(Capsule{capsule.radius, (capsule.b - capsule.a).norm()});
-      body.T_world_shape = along(capsule.a, capsule.b);
-      body.a = capsule.a;
-      body.b = capsule.b;
-      body.radius = capsule.radius;
-      body.middle = 0.5 * (capsule.a + capsule.b);
-      body.reach = 0.5 * (capsule.b - capsule.a).norm() + capsule.radius;
       body.allowed = impl_->allowed.count(person.id) > 0;
       impl_->people.push_back(std::move(body));
+    }
+  for (const OtherRobot& robot : state.robots)
+    for (const MovingPart& part : robot.parts) {
+      Impl::MovingBody body = moving_body(part.a, part.b, part.radius);
+      body.id = robot.name;
+      body.is_robot = true;
+      impl_->other_robots.push_back(std::move(body));
     }
 }
 
@@ -95,7 +107,7 @@ void CollisionWorld::set_attachment(const Attachment& attachment,
                                     const std::vector<std::string>& allowed_contacts) {
   impl_->attachment = attachment;
   impl_->allowed = {allowed_contacts.begin(), allowed_contacts.end()};
-  for (Impl::PersonBody& person : impl_->people)
+  for (Impl::MovingBody& person : impl_->people)
     person.allowed = impl_->allowed.count(person.id) > 0;
   impl_->rebuild_scene();
   impl_->rebuild_held();

@@ -23,7 +23,8 @@ using ObjectLibrary = std::function<const ObjectModel*(const std::string&)>;
 
 struct CollisionVerdict {
   bool free{true};  ///< nothing touches
-  /// What touches what, when not free: "link forearm", "object mug", "box table", "person anna".
+  /// What touches what, when not free: "link forearm", "object mug", "box table", "person anna",
+  /// "robot left".
   std::string first, second;
   std::string id;  ///< of the object, box or person touched; empty when the robot touches itself
 };
@@ -53,7 +54,8 @@ class CollisionWorld {
   void set_base(const Pose& T_world_base);  ///< pose of the robot's root link
   /// Boxes, and objects the robot does not hold; takes T_world_base when robot_known.
   void set_scene(const Scene&);
-  void set_people(const HumanState&, PeopleParts parts = PeopleParts::all);  ///< capsules, inflated
+  /// People as capsules, inflated, and other robots as they are now.
+  void set_people(const HumanState&, PeopleParts parts = PeopleParts::all);
   /// Further fixed obstacles, besides the scene; named "box <id>".
   void set_obstacles(const std::vector<Obstacle>&);
   /// The object moves with the palm of the hand that holds it. Links of that hand may touch it,
@@ -76,8 +78,8 @@ class CollisionWorld {
 
   CollisionVerdict check(const Vector& q);  ///< all axes
   bool is_free(const Vector& q);            ///< the same without the names
-  /// Contact with people and what they hold, as set_people and the allowed contacts make them
-  /// obstacles; cheap when they are far.
+  /// Contact with people, what they hold, and other robots, as set_people and the allowed contacts
+  /// make them obstacles; cheap when they are far.
   CollisionVerdict check_people(const Vector& q);
   /// Contact with scene, obstacles and itself only.
   CollisionVerdict check_scene(const Vector& q);

@@ -43,6 +43,22 @@ struct HumanObservation {
   std::vector<ObservedPerson> people;  ///< everybody seen, at most 256
 };
 
+/// A part of a robot that moves: the capsule about the segment from `a` to `b`.
+struct MovingPart {
+  Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends, world [m]
+  double radius{};                                 ///< [m]
+  /// Velocities of the two ends, world [m/s].
+  Vector3 velocity_a{Vector3::Zero()}, velocity_b{Vector3::Zero()};
+};
+
+/// Topic RobotReport, profile sensor, keyed by robot: the volume of a robot, for the other robots
+/// around.
+struct RobotReport {
+  Stamp stamp{};                  ///< time of measurement, UTC [ns]; 0: filled in by the bus
+  std::string robot;              ///< name of the robot, unique in the domain
+  std::vector<MovingPart> parts;  ///< at most 128; together they contain the robot
+};
+
 /// Measurement of a force sensor in an object where a hand grips it.
 struct ObservedGrip {
   Vector3 position{Vector3::Zero()};  ///< of the sensor, world [m]

@@ -154,7 +154,8 @@ struct GroundTruth {
   double taking_arm_strain{};  ///< fraction of its range that the upper arm used then, [0, 1]
   /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
-  double min_separation{};         ///< smallest `separation` so far [m]; infinity: nobody was there
+  double min_separation{};      ///< smallest `separation` so far [m]; infinity: nobody was there
+  double min_robot_distance{};  ///< smallest distance to other robots [m]; infinity: no other robot
   std::uint64_t ssm_violations{};  ///< steps with a higher speed toward a person than SSM allows
   double peak_closing_speed{};     ///< of robot and person within 0.5 m [m/s]
   double contact_force{};          ///< largest robot-person contact force so far [N]

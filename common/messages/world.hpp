@@ -101,6 +101,13 @@ struct SourceView {
   std::string reason;  ///< why it is not live, one sentence
 };
 
+/// Another robot: a moving obstacle that is no person.
+struct OtherRobot {
+  std::string name;               ///< as in RobotReport
+  std::vector<MovingPart> parts;  ///< its volume, where it is now; at most 128
+  double age{};                   ///< since the robot was reported last [s]
+};
+
 /// Topic HumanState, profile state. Published at its rate even when nobody is there.
 struct HumanState {
   Stamp stamp{};               ///< time of sending, UTC [ns]; 0: filled in by the bus
@@ -108,6 +115,7 @@ struct HumanState {
   bool covered{};  ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
   std::vector<SourceView> views{};  ///< of every source
   std::uint32_t left_out{};  ///< people known but left out: farther from the robot than those named
+  std::vector<OtherRobot> robots{};  ///< other robots around, at most 4
 };
 
 enum class FactKind : std::uint8_t {

@@ -29,6 +29,8 @@ bool has_one_writer(const TopicRow& row) {
   return std::find(std::begin(kSafety), std::end(kSafety), row.topic) != std::end(kSafety);
 }
 
+bool is_of_all_systems(const TopicRow& row) { return &row == &TopicOf<RobotReport>::row; }
+
 bool named_in(const char* list, std::string_view component) {
   std::string_view rest = list;
   while (!rest.empty()) {

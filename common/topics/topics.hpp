@@ -48,10 +48,11 @@ struct TopicRow {
     "sim driver") \
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 1310720, "sim ros2_lane", "spark sim") \
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 655360, "sim ros2_lane", "spark") \
+  X(RobotReport, "robot_report", sensor, 20, 0, 16384, "spark sim driver", "spark") \
   X(Scene, "scene", state, 10, 0.3, 81928, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention supervisor ros2_lane") \
-  X(HumanState, "human_state", state, 30, 0.1, 163840, "spark", \
+  X(HumanState, "human_state", state, 30, 0.1, 221184, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller supervisor") \
   X(Facts, "facts", state, 20, 0.3, 98312, "spark", "supervisor attention manipulation_planner") \
@@ -143,6 +144,8 @@ const TopicRow* find_topic(std::string_view type_or_topic);
 /// Has this topic one writer, pinned by identity, whose samples alone are accepted
 /// (docs/architecture.md)?
 bool has_one_writer(const TopicRow& row);
+/// Do all systems of a domain use this topic together, whatever their names?
+bool is_of_all_systems(const TopicRow& row);
 /// Is `component` one of the names in `list`?
 bool named_in(const char* list, std::string_view component);
 

@@ -39,6 +39,14 @@ void describe(WireIo& io, Attachment& m, handsel_Attachment& w) {
   io.text("hand", m.hand, w.hand, Text::maybe_empty);
 }
 
+void describe(WireIo& io, MovingPart& m, handsel_MovingPart& w) {
+  io.point("a", m.a, w.a);
+  io.point("b", m.b, w.b);
+  io.number("radius", m.radius, w.radius, {0, 100});
+  io.point("velocity_a", m.velocity_a, w.velocity_a);
+  io.point("velocity_b", m.velocity_b, w.velocity_b);
+}
+
 void describe(WireIo& io, Primitive& m, handsel_Primitive& w) {
   io.choice("kind", m.kind, w.kind, kPrimitiveNames);
   io.point("size", m.size, w.size, {0, 1e4});

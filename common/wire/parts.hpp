@@ -25,6 +25,7 @@ void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w);
 void describe(WireIo& io, Attachment& m, handsel_Attachment& w);  ///< object and hand may be empty
 void describe(WireIo& io, RequestId& m, handsel_RequestId& w);    ///< any numbers
 void describe(WireIo& io, Primitive& m, handsel_Primitive& w);    ///< extents [0, 1e4] m
+void describe(WireIo& io, MovingPart& m, handsel_MovingPart& w);  ///< radius [0, 100] m
 void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);    ///< needs a name; age [0, 1e9] s
 /// Needs an id; at most 64 joints; stature [0.3, 3] m.
 void describe(WireIo& io, Person& m, handsel_Person& w);

@@ -35,6 +35,12 @@ void describe(WireIo& io, Coverage& m, handsel_Coverage& w) {
   io.check((m.low.array() <= m.high.array()).all(), "high", "lies below low");
 }
 
+void describe(WireIo& io, RobotReport& m, handsel_RobotReport& w) {
+  io.text("robot", m.robot, w.robot, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.list("parts", m.parts, w.parts, 128);
+}
+
 void describe(WireIo& io, ObservedGrip& m, handsel_ObservedGrip& w) {
   io.point("position", m.position, w.position);
   io.number("force", m.force, w.force, kPush);
@@ -65,5 +71,6 @@ void describe(WireIo& io, ObjectObservation& m, handsel_ObjectObservation& w) {
 
 HANDSEL_WIRE_KEYED(HumanObservation, source)
 HANDSEL_WIRE_KEYED(ObjectObservation, source)
+HANDSEL_WIRE_KEYED(RobotReport, robot)
 
 }  // namespace handsel

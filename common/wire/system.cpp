@@ -106,6 +106,7 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.number("taking_arm_strain", m.taking_arm_strain, w.taking_arm_strain, kFraction);
   io.horizon("separation", m.separation, w.separation, -1e4);
   io.horizon("min_separation", m.min_separation, w.min_separation, -1e4);
+  io.horizon("min_robot_distance", m.min_robot_distance, w.min_robot_distance, -1e4);
   io.integer("ssm_violations", m.ssm_violations, w.ssm_violations);
   io.number("peak_closing_speed", m.peak_closing_speed, w.peak_closing_speed, kCoordinate);
   io.number("contact_force", m.contact_force, w.contact_force, {0, 1e9});

@@ -87,12 +87,19 @@ void describe(WireIo& io, SourceView& m, handsel_SourceView& w) {
   io.text("reason", m.reason, w.reason, Text::sentence);
 }
 
+void describe(WireIo& io, OtherRobot& m, handsel_OtherRobot& w) {
+  io.text("name", m.name, w.name, Text::name);
+  io.list("parts", m.parts, w.parts, 128);
+  io.number("age", m.age, w.age, kTime);
+}
+
 void describe(WireIo& io, HumanState& m, handsel_HumanState& w) {
   io.stamp(m.stamp, w.stamp);
   io.list("people", m.people, w.people, 16);
   io.flag("covered", m.covered, w.covered);
   io.list("views", m.views, w.views, 16);
   io.integer("left_out", m.left_out, w.left_out);
+  io.list("robots", m.robots, w.robots, 4);
 }
 
 void describe(WireIo& io, Facts& m, handsel_Facts& w) {

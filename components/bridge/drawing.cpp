@@ -205,6 +205,11 @@ std::string Drawing::scene(Stamp now) const {
       add_capsule(entity, between(part.a, part.b), part.radius, (part.b - part.a).norm(),
                   person.inflation > 0 ? kLost : kPerson);
   }
+  for (const OtherRobot& robot : people_.robots) {
+    foxglove::SceneEntity& entity = add_entity(out, now, "other_robot/" + robot.name, "world");
+    for (const MovingPart& part : robot.parts)
+      add_capsule(entity, between(part.a, part.b), part.radius, (part.b - part.a).norm(), kRobot);
+  }
   for (const SceneObject& object : scene_.objects) {
     const ObjectModel* model = objects_(object.model);
     const std::optional<Shape> unknown = primitive_shape(object.primitive);

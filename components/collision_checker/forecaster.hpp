@@ -19,6 +19,8 @@ struct ForecastSettings {
   double horizon{1.5};     ///< time ahead that is checked, at present speed [s]
   double min_speed{0.25};  ///< speed factor assumed for a slower or held trajectory
   double spacing{0.05};    ///< of states, in time of the trajectory [s]
+  /// Other robots are expected to keep their velocity for at most this long [s].
+  double robot_ahead{0.5};
 };
 
 /// The fingers of all hands as last measured. Pure.
@@ -38,7 +40,8 @@ class MeasuredFingers {
 
 /// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower
 /// the clearance, the controller's guard answers for them. A hand counts where it is and where
-/// SPARK expects it when the robot gets there. Fingers count where they are measured: the set-point
+/// SPARK expects it when the robot gets there. Another robot counts where it is and where its
+/// velocity leads meanwhile. Fingers count where they are measured: the set-point
 /// of a finger that presses on an object lies inside the object. What scene and robot themselves
 /// say about a state of a trajectory is remembered until one of them changes.
 class Forecaster {
@@ -66,6 +69,13 @@ class Forecaster {
   void remember_for(const ActiveTrajectory& active, const Vector& now);
   void sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast);
   double distance_to_ball(const Vector3& centre, double radius) const;
+  /// A link and another robot, where they are nearest to each other.
+  struct RobotApproach {
+    double distance{};          // [m], +inf without other robots
+    const LinkCapsule* link{};  // nullptr without other robots
+    const OtherRobot* other{};
+  };
+  RobotApproach other_robot_at(const Vector& q, double ahead);
   CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
 
   const RobotModel& robot_;
@@ -89,7 +99,8 @@ class Forecaster {
     std::vector<HandAhead> motion;  // from now on
   };
   std::vector<Hand> hands_;
-  std::vector<LinkCapsule> capsules_;
+  std::vector<OtherRobot> other_robots_;
+  std::vector<LinkCapsule> capsules_, moving_capsules_;  // all; on links that an axis moves
   std::vector<Pose> links_;
 
   Vector rest_position_;                    // where `rest_` was computed

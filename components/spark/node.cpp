@@ -26,6 +26,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()),
+      robots_(bus, settings_, context.robot, context.name),
       left_out_(
           [&bus](const std::string& what, std::uint64_t count) { bus.count_left_out(what, count); },
           quotas_of(settings_)),
@@ -43,10 +44,9 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       });
   bus.subscribe<RobotState>(
       [this, robot = context.robot->name()](const RobotState& state, const Receipt&) {
-        if (state.robot == robot)
-          scene_.update(state);
-        else
-          bus_.count_left_out("robot_state: of another robot", 1);
+        if (state.robot != robot) return bus_.count_left_out("robot_state: of another robot", 1);
+        scene_.update(state);
+        robots_.update(state);
       },
       {.wakes = false});
   bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
@@ -98,6 +98,7 @@ void Node::observe(const HumanObservation& observation, const Receipt& receipt) 
 HumanState Node::people(TimePoint now, LeftOut* left_out) const {
   HumanState state = tracker_.state(now, scene_.reach(), left_out);
   state.covered = state.covered && knows_lost_;
+  robots_.add_to(state, now, scene_.reach());
   return state;
 }
 
@@ -125,8 +126,8 @@ void Node::publish_news(TimePoint now) {
 
 std::string Node::trouble(TimePoint now) const {
   std::string out;
-  for (const std::string& one :
-       {tracker_.trouble(now), left_out_.people_in_reach(scene_.reach()), scene_.trouble(now)})
+  for (const std::string& one : {tracker_.trouble(now), left_out_.people_in_reach(scene_.reach()),
+                                 scene_.trouble(now), robots_.trouble(now)})
     if (!one.empty()) out += (out.empty() ? "" : "; ") + one;
   return out;
 }

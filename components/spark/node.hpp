@@ -14,6 +14,7 @@
 #include "components/spark/facts/fact_finder.hpp"
 #include "components/spark/left_out_report.hpp"
 #include "components/spark/people/people_tracker.hpp"
+#include "components/spark/robots/robots_link.hpp"
 #include "components/spark/scene/scene_news.hpp"
 #include "components/spark/scene_model.hpp"
 
@@ -44,6 +45,7 @@ class Node {
   std::unique_ptr<Publisher<HumanState>> human_out_;
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<Facts>> facts_out_;
+  RobotsLink robots_;
   LeftOutReport left_out_;
   TimePoint started_, people_published_{};
   // the safety state was received: the people lost before the start are known

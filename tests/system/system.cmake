@@ -59,6 +59,11 @@ handsel_test(margin_law SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/margin_law_test
 handsel_test(exchange_shift SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/exchange_shift_test.cpp LINK handsel_lockstep LABEL system)
 handsel_test(gentler SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/gentler_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(recoil PROPERTIES TIMEOUT 300)
+
+handsel_test(several_robots SOURCES ${CMAKE_CURRENT_LIST_DIR}/robots/several_robots_test.cpp LINK handsel_lockstep LABEL system)
+target_compile_definitions(test_several_robots PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_several_robots product)
+set_tests_properties(several_robots PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
 handsel_test(place_reached SOURCES ${CMAKE_CURRENT_LIST_DIR}/place_reached_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(place_reached PROPERTIES TIMEOUT 1800)
 

@@ -32,7 +32,7 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
     detail::SimdCapsules capsules = no_capsules();
     const std::size_t count = std::min<std::size_t>(16, w.people.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
-      const Impl::PersonBody& body = w.people[first + i];
+      const Impl::MovingBody& body = w.people[first + i];
       put_capsule(simd_capsule(body.a - origin, body.b - origin, body.radius), static_cast<int>(i),
                   capsules);
     }
@@ -41,7 +41,7 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
     for (std::size_t c = 0; c < ends.size(); ++c)
       for (std::size_t i = 0; i < count; ++i) {
         if (!(distances[16 * c + i] <= nearest + kSlack)) continue;
-        const Impl::PersonBody& body = w.people[first + i];
+        const Impl::MovingBody& body = w.people[first + i];
         Vector3 a, b;
         const double axes = segment_distance(ends[c].first, ends[c].second, body.a, body.b, &a, &b),
                      d = axes - w.capsules[c].radius - body.radius;

@@ -40,8 +40,10 @@ struct CollisionWorld::Impl {
     std::vector<int> axes;
   };
 
-  struct PersonBody {
+  /// A part of a person or of another robot.
+  struct MovingBody {
     std::string id;
+    bool is_robot{};
     bool arm{};  ///< forearm or hand
     CollisionShapePtr shape;
     Pose T_world_shape;
@@ -62,7 +64,7 @@ struct CollisionWorld::Impl {
   std::vector<SceneBody> scene, obstacles;
   std::vector<SceneBody>
       in_peoples_hands;  // by their solid parts: nobody reaches into an offered cup
-  std::vector<PersonBody> people;
+  std::vector<MovingBody> people, other_robots;
   Scene last_scene;
   Attachment attachment;
   std::set<std::string> allowed;
@@ -253,42 +255,35 @@ struct CollisionWorld::Impl {
     return false;
   }
 
-  bool person_touch(std::size_t i, CollisionVerdict* verdict) const {
-    for (const PersonBody& person : people) {
-      if (!person.obstacle || (person.allowed && person.arm)) continue;
-      if (!touch(*bodies[i].shape, T_world_body[i], *person.shape, person.T_world_shape)) continue;
-      if (verdict) *verdict = {false, name_of(i), "person " + person.id, person.id};
-      return true;
-    }
+  bool moving_touch(std::size_t i, CollisionVerdict* verdict) const {
+    for (const auto* list : {&people, &other_robots})
+      for (const MovingBody& body : *list) {
+        if (!body.obstacle || (body.allowed && body.arm)) continue;
+        if (!touch(*bodies[i].shape, T_world_body[i], *body.shape, body.T_world_shape)) continue;
+        const char* kind = body.is_robot ? "robot " : "person ";
+        if (verdict) *verdict = {false, name_of(i), kind + body.id, body.id};
+        return true;
+      }
     return false;
   }
 
-  /// Distance of capsules around the robot to those of people, found by `counts`; stops below
-  /// `enough`. At most `cap`.
-  template <class F>
-  double people_distance(F&& counts, double cap, double enough) const {
-    double nearest = cap;
+  /// Whether a capsule around the robot touches one of a person or another robot that is an
+  /// obstacle: the capsules hold the links.
+  bool near_moving_bodies() const {
     for (const LinkCapsule& capsule : capsules) {
       const Pose& T_root = T_root_link[capsule.link];
       const Vector3 a = T_world_base * (T_root * capsule.a),
                     b = T_world_base * (T_root * capsule.b), middle = 0.5 * (a + b);
       const double reach = 0.5 * (b - a).norm() + capsule.radius;
-      for (const PersonBody& person : people) {
-        if (!counts(person)) continue;
-        const double bound = nearest + reach + person.reach;
-        if (bound > 0 && (middle - person.middle).squaredNorm() >= bound * bound) continue;
-        nearest = std::min(
-            nearest, segment_distance(a, b, person.a, person.b) - capsule.radius - person.radius);
-        if (nearest <= enough) return nearest;
-      }
+      for (const auto* list : {&people, &other_robots})
+        for (const MovingBody& body : *list) {
+          if (!body.obstacle || (body.allowed && body.arm)) continue;
+          const double bound = reach + body.reach;
+          if ((middle - body.middle).squaredNorm() > bound * bound) continue;
+          if (segment_distance(a, b, body.a, body.b) <= capsule.radius + body.radius) return true;
+        }
     }
-    return nearest;
-  }
-
-  /// Whether any robot capsule comes near a person who is an obstacle: the capsules hold the links.
-  bool near_people() const {
-    return people_distance([](const PersonBody& p) { return p.obstacle && !(p.allowed && p.arm); },
-                           1e-6, 0.0) <= 0.0;
+    return false;
   }
 
   bool things_touch(const std::vector<SceneBody>& things, CollisionVerdict* verdict) const {
@@ -300,9 +295,9 @@ struct CollisionWorld::Impl {
   /// What they hold belongs to them: it moves as they do.
   bool people_touch(CollisionVerdict* verdict) const {
     if (things_touch(in_peoples_hands, verdict)) return true;
-    if (people.empty() || !near_people()) return false;
+    if (!near_moving_bodies()) return false;
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (bodies[i].moves && person_touch(i, verdict)) return true;
+      if (bodies[i].moves && moving_touch(i, verdict)) return true;
     return false;
   }
 
@@ -326,14 +321,15 @@ struct CollisionWorld::Impl {
         if (thing.lowered)
           add_solid(*thing.lowered, thing.T_world_lowered, all & kHeldPart, solids);
       }
-    for (const PersonBody& person : people)
-      if (person.obstacle && !(person.allowed && person.arm))
-        add_solid(*person.shape, person.T_world_shape, kArmPart | kHandPart | kHeldPart, solids);
+    for (const auto* list : {&people, &other_robots})
+      for (const MovingBody& body : *list)
+        if (body.obstacle && !(body.allowed && body.arm))
+          add_solid(*body.shape, body.T_world_shape, kArmPart | kHandPart | kHeldPart, solids);
     batch->set_solids(solids, T_world_base);
     for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
       rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
                      (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) ||
-                      scene_touch(i, in_peoples_hands, nullptr) || person_touch(i, nullptr));
+                      scene_touch(i, in_peoples_hands, nullptr) || moving_touch(i, nullptr));
     solids_stale = false;
     return !rest_touches;
   }

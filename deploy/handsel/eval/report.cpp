@@ -123,6 +123,8 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"duration_s", performer.duration()},
           {"tasks", std::move(tasks)},
           {"oracle", oracle_json(ground_truth)},
+          {"min_robot_distance_m",
+           seen.ground_truth.ever ? finite(ground_truth.min_robot_distance) : Json(nullptr)},
           {"min_separation_m",
            seen.ground_truth.ever ? finite(ground_truth.min_separation) : Json(nullptr)},
           {"ssm_violations", ground_truth.ssm_violations},

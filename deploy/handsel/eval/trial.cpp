@@ -201,6 +201,7 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                               : report["failure"]},
                {"duration_s", report["duration_s"]},
                {"min_separation_m", report["min_separation_m"]},
+               {"min_robot_distance_m", report["min_robot_distance_m"]},
                {"ssm_violations", report["ssm_violations"]},
                {"limit_ratio", report["limit_ratio"]},
                {"limit_violations", ground_truth.limit_violations},

@@ -183,6 +183,37 @@ TEST_F(Forecast, a_torso_in_the_way_is_a_collision_a_hand_only_lowers_the_cleara
   EXPECT_LE(hand.cost, 1.0);
 }
 
+TEST_F(Forecast, another_robot_counts_where_it_is_when_the_arm_gets_there) {
+  const ActiveTrajectory active = sweep(1.7, 1.0);  // the arm points along x 0.3 s later
+  const auto forecast_with = [&](const Vector3& place, const Vector3& velocity) {
+    HumanState around;
+    around.robots.push_back(
+        {"left",
+         {{place - Vector3(0, 0, 0.3), place + Vector3(0, 0, 0.3), 0.03, velocity, velocity}},
+         0});
+    forecaster_.set_people(around);
+    return forecaster_.forecast(active);
+  };
+  EXPECT_FALSE(forecast_with({1.0, 2, 0}, {0, 0, 0}).collides);
+  const TrajectoryForecast coming = forecast_with({2.0, 0, 0}, {-3, 0, 0});
+  EXPECT_TRUE(coming.collides) << "it comes 1 m nearer meanwhile";
+  EXPECT_THAT(coming.reason, HasSubstr("robot left"));
+  EXPECT_GT(coming.time_to_collision, 0.15);
+  EXPECT_LT(coming.time_to_collision, 0.45);
+  EXPECT_FALSE(forecast_with({1.0, 0, 0}, {3, 3, 0}).collides) << "it is gone by then";
+}
+
+TEST_F(Forecast, an_arm_that_is_too_near_to_another_robot_may_move_away) {
+  const ActiveTrajectory active = sweep(1.0, 1.0);  // turns away from what lies on the right
+  HumanState around;
+  const double angle = -0.5 - 0.06;
+  const Vector3 beside(std::cos(angle), std::sin(angle), 0);
+  around.robots.push_back(
+      {"left", {{beside - Vector3(0, 0, 0.3), beside + Vector3(0, 0, 0.3), 0.05, {}, {}}}, 0});
+  forecaster_.set_people(around);
+  EXPECT_FALSE(forecaster_.forecast(active).collides);
+}
+
 TEST_F(Forecast, at_rest_reports_clearance_and_no_collision) {
   Scene scene = wall(0.0);
   forecaster_.set_scene(scene);

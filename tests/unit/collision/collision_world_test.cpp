@@ -34,6 +34,25 @@ TEST_F(World, names_what_touches_what) {
   EXPECT_EQ(verdict.second, "box table");
 }
 
+TEST_F(World, other_robots_are_obstacles_that_no_distance_to_people_counts) {
+  HumanState around;
+  around.robots.push_back({"left", {{{1.0, 0, -0.5}, {1.0, 0, 0.5}, 0.05, {}, {}}}, 0});
+  world_.set_people(around);
+  const CollisionVerdict verdict = world_.check(q_);
+  EXPECT_FALSE(verdict.free);
+  EXPECT_EQ(verdict.second, "robot left");
+  EXPECT_EQ(verdict.id, "left");
+  EXPECT_TRUE(world_.check_scene(q_).free);
+  EXPECT_TRUE(std::isinf(world_.distance_to_people(q_)));
+  const Vector away = Vector3(1.5, 0, 0);
+  EXPECT_TRUE(world_.check(away).free);
+  world_.set_moving_axes({0, 1, 2});
+  EXPECT_FALSE(world_.is_free(q_)) << "seen by the wide check too";
+  EXPECT_TRUE(world_.is_free(away));
+  world_.set_people({});
+  EXPECT_TRUE(world_.check(q_).free);
+}
+
 TEST_F(World, finds_a_folded_arm_in_self_collision_also_when_asked_again) {
   q_ << 0, 2.9, 2.9;
   EXPECT_FALSE(world_.check(q_).free);

@@ -29,7 +29,8 @@ export interface Person {
   age: number;
   inflation: number;
 }
-export interface HumanState { people: Person[]; covered: boolean }
+export interface OtherRobot { name: string; parts: { a: Vector3; b: Vector3; radius: number }[]; age: number }
+export interface HumanState { people: Person[]; covered: boolean; robots: OtherRobot[] }
 
 export interface AxisTrajectory {
   start_position: number;

@@ -5,6 +5,7 @@ import { Config } from "./config";
 import { Labels } from "./labels";
 import { Link } from "./link";
 import { nearness } from "./nearness";
+import { OtherRobots } from "./other_robots";
 import { People } from "./people";
 import { Robot } from "./robot";
 import { kSphere, Rod, vector } from "./shapes";
@@ -26,6 +27,7 @@ export class World {
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.05, 40);
   private readonly controls: OrbitControls;
   private readonly people = new People();
+  private readonly others = new OtherRobots();
   private readonly things: Things;
   private readonly separation = new Rod(0.005, kCalm);
   private readonly exchange = new THREE.Mesh(kSphere, new THREE.MeshBasicMaterial({ color: 0x8a5cf6, transparent: true, opacity: 0.45 }));
@@ -55,7 +57,7 @@ export class World {
     this.exchange.scale.setScalar(0.03);
     this.exchange.visible = false;
     this.camera.up.set(0, 0, 1);
-    this.scene.add(this.robot.group, this.robot.path, this.people.group, this.things.group, this.separation.mesh, this.exchange);
+    this.scene.add(this.robot.group, this.robot.path, this.people.group, this.others.group, this.things.group, this.separation.mesh, this.exchange);
     this.light();
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI * 0.495;
@@ -75,6 +77,7 @@ export class World {
     let changed = state ? this.robot.show(state) : false;
     if (scene) changed = this.things.show(scene) || changed;
     if (humans) changed = this.people.show(humans.people) || changed;
+    if (humans) changed = this.others.show(humans.robots ?? []) || changed;
     changed = this.robot.showPath(link.newest("handsel/active_trajectory")) || changed;
     if (changed) this.showDistance(link);
     this.showExchange(link);
@@ -167,6 +170,7 @@ export class World {
     if (legend) legend.hidden = !known;
     this.labels.clear();
     for (const [id, at] of this.people.labels()) this.labels.add(id, at, "person");
+    for (const [name, at] of this.others.labels()) this.labels.add(name, at, "robot");
     for (const [id, at] of this.things.labels()) this.labels.add(id, at, "object");
     if (!known || !execution) return;
     const a = vector(execution.nearest_on_robot), b = vector(execution.nearest_on_person);
