@@ -1,4 +1,4 @@
-// Processes of this machine that take part in simulated time: which of them run.
+// Tells which processes of this machine that take part in simulated time are running.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace handsel::sim {
 
-/// Processes by number, and whether the kernel shows them here: those of another container may be
+/// Processes by number, and whether the kernel shows them: processes of another container may be
 /// invisible.
 class KnownProcesses {
  public:
-  /// Adds a process that is not known yet.
+  /// Adds a process unless already added.
   void add(std::uint64_t process) {
     if (!visible_.contains(process)) visible_[process] = state(process) != 'X';
   }

@@ -9,13 +9,13 @@ namespace handsel::sim {
 
 namespace {
 
-// Max steps in one tick, well below the gap that stops the robot. Time that is then missing is
-// slip, shown in real_time_factor.
-constexpr std::uint64_t kCatchUp = 5;
+// Max steps in one tick, well below the gap that stops the robot; further delay slows the
+// simulation.
+constexpr std::uint64_t kMaxStepsPerTick = 5;
 
-constexpr Duration kTurn = std::chrono::milliseconds(2);     // with simulated time
-constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, while time stands still
-// Set-points are applied in order, one a step; one older than this with a successor as old is not.
+constexpr Duration kTickPeriod = std::chrono::milliseconds(2);          // with simulated time
+constexpr Duration kGrantRepeatPeriod = std::chrono::milliseconds(20);  // while no step is made
+// One set-point is applied per step; it is skipped if its successor is older than this.
 constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
 
 }  // namespace
@@ -54,7 +54,8 @@ Node::Node(Bus& bus, const NodeContext& context)
     bus.subscribe<ActionStatus>(
         [this](const ActionStatus& m, const Receipt&) { world_->announce(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
-  bus.every(keeper_ ? kTurn : from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
+  bus.every(keeper_ ? kTickPeriod : from_seconds(settings_.step),
+            [this](TimePoint now) { tick(now); });
 }
 
 void Node::restart() {
@@ -88,7 +89,7 @@ Stamp Node::stamp_now() const {
 }
 
 void Node::announce(TimePoint now) {
-  if (clock_.sequence == keeper_->grant_number() && now - announced_ < kRepeat) return;
+  if (clock_.sequence == keeper_->grant_number() && now - announced_ < kGrantRepeatPeriod) return;
   const TimeGrant grant = keeper_->grant();
   clock_.stamp = bus_.stamp_now();
   clock_.sequence = keeper_->grant_number();
@@ -128,7 +129,7 @@ void Node::tick(TimePoint now) {
     factor_.restart(now, world_->time());
   }
   const auto due = static_cast<std::uint64_t>(to_seconds(now - start_) / settings_.step + 0.5) + 1;
-  if (due > since_start_ + kCatchUp) {  // slip: time that was lost is not made up for
+  if (due > since_start_ + kMaxStepsPerTick) {  // the delay is not made up for
     start_ = now - from_seconds(static_cast<double>(since_start_) * settings_.step);
     return;
   }

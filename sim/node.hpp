@@ -1,5 +1,5 @@
-// Binds the emulated world to a bus. It speaks the hardware's messages: no component knows that it
-// is simulated.
+// Binds the emulated world to a bus. The node publishes and receives the messages of real hardware,
+// so no component depends on the simulation.
 #pragma once
 
 #include <deque>
@@ -23,7 +23,7 @@ class Node {
 
  private:
   void tick(TimePoint now);
-  /// With simulated time: makes the steps that are due and have what they need.
+  /// With simulated time: makes the due steps whose inputs have arrived.
   void step_when_granted(TimePoint now);
   void announce(TimePoint now);
   Stamp stamp_now() const;
@@ -44,8 +44,8 @@ class Node {
     JointCommand message;
     std::uint64_t writer{};
   };
-  KnownProcesses processes_;         // those that answered
-  std::deque<SetPoint> set_points_;  // not taken by a step yet
+  KnownProcesses processes_;         // processes that answered a grant
+  std::deque<SetPoint> set_points_;  // waiting for a step
   SimClock clock_;
   TimePoint announced_{};
   std::uint64_t steps_{0}, since_start_{0};

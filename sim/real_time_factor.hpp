@@ -1,11 +1,11 @@
-// How fast simulated time passes.
+// Measures the ratio of simulated time to real time.
 #pragma once
 
 #include "common/base/time.hpp"
 
 namespace handsel::sim {
 
-/// Simulated time over real time, measured over about a second.
+/// Ratio of simulated time to real time, measured over about one second.
 class RealTimeFactor {
  public:
   /// Begins a measurement at `now`, when the simulated time is `simulated` [s].

@@ -6,12 +6,13 @@
 namespace handsel::sim {
 namespace {
 
-constexpr std::int64_t kGrantsAhead = 2;
-constexpr Duration kStopped = std::chrono::milliseconds(
-    50);  // the ticks that a process then misses are too many to be made up for
-constexpr Duration kLook = std::chrono::milliseconds(10);
-constexpr Duration kOwnTurn =
-    std::chrono::milliseconds(10);  // between two turns, when the simulator gets its processor
+constexpr std::int64_t kGrantsAhead = 2;  // clock periods granted in advance
+// Delay of a step after which stopped processes are searched for.
+constexpr Duration kMaxDelay = std::chrono::milliseconds(50);
+// Period of the search for stopped processes.
+constexpr Duration kCheckPeriod = std::chrono::milliseconds(10);
+// Max time between two ticks that is attributed to the components rather than to the simulator.
+constexpr Duration kMaxTickPeriod = std::chrono::milliseconds(10);
 
 }  // namespace
 
@@ -29,7 +30,7 @@ void TimeKeeper::answered(const std::string& component, std::uint64_t process,
 }
 
 void TimeKeeper::leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs) {
-  if (blocked_ < std::max(kStopped, checked_ + kLook)) return;
+  if (blocked_ < std::max(kMaxDelay, checked_ + kCheckPeriod)) return;
   checked_ = blocked_;
   stop_waiting([&](const Answer& answer) { return !runs(answer.process); });
 }
@@ -40,13 +41,13 @@ void TimeKeeper::turn(TimePoint wall) {
     start_ = wall;
     grant_ = 1;
   } else {
-    blocked_ += std::min(wall - wall_, kOwnTurn);
+    blocked_ += std::min(wall - wall_, kMaxTickPeriod);
   }
   wall_ = wall;
   if (const Duration lag = wall - waited_ - time(); lag > max_lag_) waited_ += lag - max_lag_;
 }
 
-bool TimeKeeper::everybody_answered() const {
+bool TimeKeeper::all_answered() const {
   return std::all_of(answers_.begin(), answers_.end(),
                      [&](const auto& answer) { return answer.second.grant >= grant_; });
 }
@@ -67,8 +68,7 @@ bool TimeKeeper::may_step(bool has_setpoint) {
   }
   if (takes_setpoint()) setpoints_flow_ = setpoints_flow_ || has_setpoint;
   const bool at_boundary = time() >= start_ + clock_period_ * static_cast<std::int64_t>(grant_);
-  if ((takes_setpoint() && setpoints_flow_ && !has_setpoint) ||
-      (at_boundary && !everybody_answered()))
+  if ((takes_setpoint() && setpoints_flow_ && !has_setpoint) || (at_boundary && !all_answered()))
     return false;
   if (at_boundary) ++grant_;
   blocked_ = checked_ = Duration::zero();

@@ -50,7 +50,7 @@ SimWorld::Impl::Impl(const RobotModel& robot_model, const ObjectLibrary& library
     other_robots.emplace_back(std::move(motion));
   if (!other_robots.empty()) robot_hull = robot_capsules(model);
   prepare_sight();
-  if (people->mind_fingers()) finger_capsules = robot_capsules(model);
+  if (people->any_needs_finger_distance()) finger_capsules = robot_capsules(model);
   std::uint64_t salt = seed;
   for (const SensorSettings& sensor : setup.human_sensors)
     human_sensors.emplace_back(sensor, salt += 0x1000193);
@@ -175,8 +175,8 @@ void SimWorld::announce(const ActionStatus& action) {
     announcement = Announcement::asks;
   impl_->people->announce(announcement, action.human, action.object);
 }
-bool SimWorld::listens() const { return impl_->people->listen(); }
-bool SimWorld::follows() const { return impl_->people->follow_somebody(); }
+bool SimWorld::listens() const { return impl_->people->any_reacts_to_announcements(); }
+bool SimWorld::follows() const { return impl_->people->any_follows_source(); }
 
 std::string SimWorld::control(const SimControl& c) { return impl_->control(c); }
 

@@ -1,5 +1,5 @@
-// The emulated world: robot, objects, people, sensors, and the oracle that watches them. Pure: time
-// advances by step() only, chance comes from the seed; same seed and inputs, same bits.
+// The emulated world: robot, objects, people, sensors, and oracles. Pure: time advances only by
+// step(), random numbers come from the seed; the same seed and inputs give the same bits.
 #pragma once
 
 #include <memory>
@@ -17,39 +17,39 @@ namespace handsel::sim {
 
 class SimWorld {
  public:
-  /// Keeps references to robot and library. Throws ConfigError or MissingError naming what is
-  /// wrong.
+  /// Keeps references to robot and library. Throws ConfigError or MissingError naming the wrong or
+  /// missing entry.
   SimWorld(const RobotModel&, const ObjectLibrary&, const config::Scenario&, const SimSettings&,
            std::uint64_t seed);
   ~SimWorld();
   SimWorld(SimWorld&&) noexcept;
 
-  /// One physics step.
+  /// Advances by one physics step.
   void step();
-  double time() const;  ///< [s] since the start
+  double time() const;  ///< Returns the time since the start [s].
 
-  /// Takes a set-point as received; `writer` tells its writers apart. `arrival`: when it arrived,
-  /// by a clock that never stops [s]; negative: the world's own time.
+  /// Takes a set-point as received; `writer` distinguishes writers. `arrival`: time of arrival by a
+  /// clock that never stops [s]; negative: the world's own time.
   void command(const JointCommand&, std::uint64_t writer = 1, double arrival = -1);
-  /// Takes what a source outside says of people; moves those that follow this source.
+  /// Takes observations of people from outside; moves the people that follow this source.
   void observe(const HumanObservation&);
-  /// Whether any person follows a source outside.
+  /// Returns whether any person follows observations from outside.
   bool follows() const;
-  /// Tells the people what the robot does: a give action offers the object, a receive action asks
-  /// for it.
+  /// Announces the robot's action to the people: a give action offers the object, a receive action
+  /// asks for the object.
   void announce(const ActionStatus&);
-  /// Whether any person listens to the robot.
+  /// Returns whether any person reacts to announcements of the robot.
   bool listens() const;
-  /// Carries out every action but pause, resume and reset, which are the caller's. Returns an empty
-  /// text, or one sentence when the subject does not exist.
+  /// Executes every action except pause, resume and reset, which the caller executes. Returns an
+  /// empty text, or one sentence if the subject does not exist.
   std::string control(const SimControl&);
 
-  /// What the robot's driver reports now; false while it is silenced.
+  /// Writes the present report of the robot's driver; returns false while the driver is silenced.
   bool robot_state(RobotState& out);
-  /// Appends what the sensors of people hand over since the last call; clears `out` while they are
-  /// silenced.
+  /// Appends what the sensors of people have delivered since the last call; clears `out` while the
+  /// sensors are silenced.
   void human_observations(std::vector<Delivery<HumanObservation>>& out);
-  /// Appends what the sensors of objects hand over since the last call.
+  /// Appends what the sensors of objects have delivered since the last call.
   void object_observations(std::vector<Delivery<ObjectObservation>>& out);
   /// Writes what the other robots report about themselves; stamps left to the publisher.
   void robot_reports(std::vector<RobotReport>& out);
@@ -58,19 +58,19 @@ class SimWorld {
 
   const std::string& last_limit_violation() const;  ///< one sentence; empty: none
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
-  DriveMode mode() const;                           ///< as the emulated robot reports it
-  bool robot_grips() const;                       ///< whether any hand of the robot holds an object
+  DriveMode mode() const;                           ///< as reported by the emulated robot
+  bool robot_grips() const;                       ///< Returns whether a robot hand holds an object.
   const std::vector<Touch>& touches() const;      ///< of the last step; robot bodies by number
   const std::string& robot_body(int body) const;  ///< name of its link
-  double robot_pressure() const;  ///< normal force of its hands on the watched object [N]
-  /// Returns the fraction of the time the robot held something in which the grasp constraints
-  /// carried more than the contacts; 0 if nothing was held yet.
+  double robot_pressure() const;  ///< Returns the hands' normal force on the watched object [N].
+  /// Returns the fraction of the robot's holding time in which the grasp constraints carried more
+  /// than the contacts; 0 if the robot has not held an object.
   double constraint_fraction() const;
   const Pose& T_world_object(const std::string& id) const;  ///< throws std::out_of_range
-  /// Returns the ground truth of a person, numbered as in the scenario without those that are
-  /// absent. Throws std::out_of_range.
+  /// Returns the ground truth of a person; the index counts the scenario's people without absent
+  /// ones. Throws std::out_of_range.
   const Person& person(std::size_t index) const;
-  /// Returns what that person does now. Throws std::out_of_range.
+  /// Returns the present phase of that person. Throws std::out_of_range.
   PersonPhase person_phase(std::size_t index) const;
 
  private:

@@ -1,4 +1,4 @@
-// What is done to the emulated world from outside.
+// Disturbances of the emulated world from outside.
 #include <limits>
 
 #include "common/messages/names.hpp"
@@ -8,13 +8,13 @@ namespace handsel::sim {
 
 namespace {
 
-/// Where a source looks that looks elsewhere, from where it looked [m].
-const Vector3 kElsewhere(100.0, 100.0, 0.0);
+/// Displacement of the coverage of a source that observes another place, world [m].
+const Vector3 kCoverageShift(100.0, 100.0, 0.0);
 
 }  // namespace
 
-/// `how`: empty: by a person; "protective": by the robot's own protection, which ends by itself;
-/// "unannounced": without saying so.
+/// Stops the robot. `how`: empty: stop by a person; "protective": protective stop of the robot,
+/// which ends by itself; "unannounced": stop without a report.
 std::string SimWorld::Impl::stop_robot(const std::string& how) {
   if (how.empty())
     side.user_stop();
@@ -28,7 +28,7 @@ std::string SimWorld::Impl::stop_robot(const std::string& how) {
   return "";
 }
 
-/// Of the source, or of all sources of people.
+/// Applies a fault to the source, or to all sources of people if the name is empty.
 std::string SimWorld::Impl::disturb(const std::string& source, const SensorFault& fault) {
   bool any = false;
   for (HumanSensor& sensor : human_sensors) {
@@ -39,7 +39,7 @@ std::string SimWorld::Impl::disturb(const std::string& source, const SensorFault
   return any ? "" : "there is no source of people " + source;
 }
 
-/// `until`: end of a loss [s].
+/// Disturbs localisation or wheels. `until`: end of a loss of localisation [s].
 std::string SimWorld::Impl::disturb_platform(const SimControl& c, double until) {
   if (!odometry)
     return std::string("the robot does not drive: ") +
@@ -54,7 +54,7 @@ std::string SimWorld::Impl::disturb_platform(const SimControl& c, double until) 
 }
 
 std::string SimWorld::Impl::control(const SimControl& c) {
-  const auto everyone = [&](auto&& act) -> std::string {
+  const auto for_each_subject = [&](auto&& act) -> std::string {
     bool any = false;
     for (std::size_t p = 0; p < people->size(); ++p) {
       if (!c.subject.empty() && people->model(p).id() != c.subject) continue;
@@ -69,15 +69,15 @@ std::string SimWorld::Impl::control(const SimControl& c) {
   const double until = c.value > 0 ? now() + c.value : std::numeric_limits<double>::infinity();
   switch (c.action) {
     case SimAction::person_freeze:
-      return everyone([](PersonModel& p) { p.freeze(true); });
+      return for_each_subject([](PersonModel& p) { p.freeze(true); });
     case SimAction::person_unfreeze:
-      return everyone([](PersonModel& p) { p.freeze(false); });
+      return for_each_subject([](PersonModel& p) { p.freeze(false); });
     case SimAction::person_dart:
-      return everyone([&](PersonModel& p) { p.dart(c.value > 0 ? c.value : 1.0); });
+      return for_each_subject([&](PersonModel& p) { p.dart(c.value > 0 ? c.value : 1.0); });
     case SimAction::person_leave:
-      return everyone([](PersonModel& p) { p.leave(); });
+      return for_each_subject([](PersonModel& p) { p.leave(); });
     case SimAction::person_refuse:
-      return everyone([](PersonModel& p) { p.refuse(); });
+      return for_each_subject([](PersonModel& p) { p.refuse(); });
     case SimAction::robot_stop:
       return stop_robot(c.subject);
     case SimAction::emergency_stop:
@@ -101,7 +101,7 @@ std::string SimWorld::Impl::control(const SimControl& c) {
                      {SensorFaultKind::late, now(), std::numeric_limits<double>::infinity(),
                       Vector3::Zero(), c.value});
     case SimAction::human_elsewhere:
-      return disturb(c.subject, {SensorFaultKind::elsewhere, now(), until - now(), kElsewhere});
+      return disturb(c.subject, {SensorFaultKind::elsewhere, now(), until - now(), kCoverageShift});
     case SimAction::localisation_lost:
     case SimAction::localisation_jump:
     case SimAction::wheel_slip:

@@ -1,4 +1,4 @@
-// The robot's hands in the emulated world: what they hold, and what they and the robot report.
+// The robot's hands in the emulated world: grasps, and the reports of hands and robot.
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +8,8 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kGravity = 9.81;   // [m/s^2]
-constexpr double kMaxHelped = 1.0;  // [kg] the constraint helps to hold no more than this
+constexpr double kGravity = 9.81;           // acceleration of gravity [m/s^2]
+constexpr double kMaxConstraintMass = 1.0;  // max mass that a grasp constraint helps to hold [kg]
 
 }  // namespace
 
@@ -57,13 +57,13 @@ void SimWorld::Impl::release(Hand& hand) {
   hand.gripped = -1;
 }
 
-/// What is heavy is held by contact alone: a spring in proportion to it is stiffer than hand and
-/// wrist can answer within a step.
+/// Returns whether the grasp constraint acts on the object. Contacts alone hold heavy objects: a
+/// spring in proportion to their mass is too stiff for hand and wrist at the physics step.
 bool SimWorld::Impl::helped(int object) const {
-  return settings.constraint && objects[object].model().mass <= kMaxHelped;
+  return settings.constraint && objects[object].model().mass <= kMaxConstraintMass;
 }
 
-/// Returns whether friction of all hands that grip the object of this one bears its weight.
+/// Returns whether the friction of all hands on this hand's object bears its weight.
 bool SimWorld::Impl::holds_firmly(const Hand& hand) const {
   if (hand.gripped < 0 || hand.grip.holding()) return hand.gripped >= 0;
   const ObjectModel& object = objects[hand.gripped].model();
@@ -91,10 +91,10 @@ bool SimWorld::Impl::of_hand(int body) const {
 void SimWorld::Impl::update_grasp(Hand& hand) {
   int candidate = hand.gripped;
   if (candidate < 0) {
-    double most = 0;
+    double max_pressure = 0;
     for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
       const double pressure = hand.grasp.pressure(touches, i);
-      if (pressure > most) most = pressure, candidate = i;
+      if (pressure > max_pressure) max_pressure = pressure, candidate = i;
     }
   }
   const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero())
@@ -157,14 +157,15 @@ bool SimWorld::robot_state(RobotState& out) {
   for (std::size_t i = 0; i < w.hands.size(); ++i) {
     const Impl::Hand& hand = w.hands[i];
     if (!(w.side.payload(i) > 0) || hand.palm < 0)
-      continue;  // what it was told to hold is part of the robot's own model
+      continue;  // the commanded payload is part of the robot's own model
     const Wrench weight{Vector3(0, 0, kGravity * w.side.payload(i)), Vector3::Zero()};
     w.robot->project(w.robot->body_of(hand.palm), w.tool_state(hand).T_world_body.translation(),
                      weight, out.external_torque);
   }
   for (Eigen::Index i = 0; i < out.external_torque.size(); ++i)
     out.external_torque[i] += w.noise(0.1 * w.settings.force_noise);
-  const auto feel = [&w](const Impl::Hand& hand, Wrench& wrench, double& effort, double& payload) {
+  const auto write_measurement = [&w](const Impl::Hand& hand, Wrench& wrench, double& effort,
+                                      double& payload) {
     wrench = hand.measured.wrist_wrench();
     for (int i = 0; i < 3; ++i) {
       wrench.force[i] += w.noise(w.settings.force_noise);
@@ -175,12 +176,12 @@ bool SimWorld::robot_state(RobotState& out) {
       for (int axis : hand.fingers->axes) effort += std::abs(w.robot->effort()[axis]);
     payload = std::max(0.0, hand.measured.payload());
   };
-  feel(w.hands.front(), out.wrist_wrench, out.hand_effort, out.payload);
+  write_measurement(w.hands.front(), out.wrist_wrench, out.hand_effort, out.payload);
   out.other_hands.resize(w.hands.size() - 1);
   for (std::size_t i = 1; i < w.hands.size(); ++i) {
     OtherHand& other = out.other_hands[i - 1];
     other.group = w.hands[i].fingers != nullptr ? w.hands[i].fingers->name : "";
-    feel(w.hands[i], other.wrist_wrench, other.hand_effort, other.payload);
+    write_measurement(w.hands[i], other.wrist_wrench, other.hand_effort, other.payload);
   }
   out.mode = w.side.mode();
   out.refusal = w.side.refusal();

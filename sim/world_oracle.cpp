@@ -1,4 +1,4 @@
-// What happened in the emulated world: collisions, separation, the handover, ground truth.
+// Evaluation of the emulated world: collisions, separation, the handover, ground truth.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -11,10 +11,10 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kCollisionForce = 0.5;  // [N]
-// The person's hand and the robot's overlap by more, before both have the object [m].
-constexpr double kFingersMeet = 0.002;
-constexpr double kFloorHeight = 0.02;  // an object's origin lower than this lies on the floor [m]
+constexpr double kMinCollisionForce = 0.5;  // min normal force of a collision [N]
+// Max overlap of a person's and a robot's hand before both hold the object [m].
+constexpr double kMaxHandOverlap = 0.002;
+constexpr double kMaxFloorHeight = 0.02;  // max height of the origin of an object on the floor [m]
 
 }  // namespace
 
@@ -24,10 +24,10 @@ void SimWorld::Impl::evaluate() {
     if (t.a != Owner::robot) continue;
     const bool by_hand = of_hand(t.index_a);
     if (t.b == Owner::object && by_hand) continue;
-    const bool yields = t.b == Owner::person && people->yields(t.index_b);
-    const bool fingers_meet =
-        yields && by_hand && t.distance < -kFingersMeet && handover && !handover->shared();
-    if (!fingers_meet && (yields || t.normal_force < kCollisionForce)) continue;
+    const bool complies = t.b == Owner::person && people->complies(t.index_b);
+    const bool hands_overlap =
+        complies && by_hand && t.distance < -kMaxHandOverlap && handover && !handover->shared();
+    if (!hands_overlap && (complies || t.normal_force < kMinCollisionForce)) continue;
     if (!collided) {
       last_collision = robot->name_of(t.index_a) + " hits " +
                        (t.b == Owner::fixed    ? setup.boxes[t.index_b].id
@@ -49,8 +49,8 @@ void SimWorld::Impl::evaluate() {
         robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
     closing.add(v.dot(n));
   }
-  const bool given_way = is_pushed();
-  if (steps % ssm_every == 0 && !given_way &&
+  const bool is_person_pushing = is_pushed();
+  if (steps % ssm_every == 0 && !is_person_pushing &&
       separations.violates(near, *robot, reference.velocity, reference.acceleration))
     ssm_violations += ssm_every;
 
@@ -74,9 +74,9 @@ void SimWorld::Impl::measure_other_robots() {
   }
 }
 
-/// A person pushes the robot, or has just done so, and it does not press against them: from the
-/// touch on it is the push that says where it goes, and the volumes that stand for hand and arm
-/// overlap.
+/// Returns whether a person pushes the robot, or did so within kPushDuration, and the robot does
+/// not press against the person. During a push the person moves the arm, and the volumes of hand
+/// and arm overlap.
 bool SimWorld::Impl::is_pushed() {
   const auto person = [](const Touch& t) {
     return t.a == Owner::robot && t.b == Owner::person && t.normal_force > 0;
@@ -86,7 +86,8 @@ bool SimWorld::Impl::is_pushed() {
     pushes.clear();
     std::copy_if(touches.begin(), touches.end(), std::back_inserter(pushes), person);
   }
-  return now() < pushed_at + kPush && !separations.presses(*robot, pushes, reference.velocity);
+  return now() < pushed_at + kPushDuration &&
+         !separations.presses(*robot, pushes, reference.velocity);
 }
 
 ObjectSituation SimWorld::Impl::situation() const {
@@ -94,7 +95,7 @@ ObjectSituation SimWorld::Impl::situation() const {
   const ObjectBody& object = objects[watched];
   s.height = object.state().T_world_body.translation().z();
   s.robot_grips = grips(watched);
-  s.on_floor = object.T_world_object().translation().z() < kFloorHeight;
+  s.on_floor = object.T_world_object().translation().z() < kMaxFloorHeight;
   for (const Touch& t : touches) {
     if (t.a == Owner::robot && t.b == Owner::object && t.index_b == watched && t.normal_force > 0)
       s.robot_touches = true;
@@ -108,7 +109,7 @@ ObjectSituation SimWorld::Impl::situation() const {
 }
 
 std::optional<Taker> SimWorld::Impl::taker() const {
-  const int number = people->toucher(watched);
+  const int number = people->touching_person(watched);
   if (number < 0) return std::nullopt;
   const auto holds_it = [this](const RobotHandState& hand) { return hand.gripped == watched; };
   const auto held = std::find_if(robot_hands.begin(), robot_hands.end(), holds_it);
@@ -169,19 +170,19 @@ void SimWorld::ground_truth(GroundTruth& out) const {
            std::find(hand.arm->axes.begin(), hand.arm->axes.end(), axis) != hand.arm->axes.end();
   };
   for (Eigen::Index i = 0; i < w.robot->velocity().size(); ++i) {
-    const bool counts =
+    const bool is_monitored =
         of_platform(i) || std::any_of(w.hands.begin(), w.hands.end(),
                                       [&](const Impl::Hand& hand) { return of_arm(hand, i); });
-    if (counts && std::abs(w.robot->velocity()[i]) > 1e-3) out.robot_moving = true;
+    if (is_monitored && std::abs(w.robot->velocity()[i]) > 1e-3) out.robot_moving = true;
   }
   out.person.clear();
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   const Vector3 p_world_robot =
       T_world_platform(w.model, w.robot->position(), w.setup.T_world_base).translation();
   for (std::size_t p = 0; p < w.people->size(); ++p) {
     const Person& person = w.people->model(p).body();
     const double d = (person.joints.front().position - p_world_robot).norm();
-    if (d < least) least = d, out.person = person.joints;
+    if (d < min_distance) min_distance = d, out.person = person.joints;
   }
 }
 

@@ -1,4 +1,4 @@
-// Publishes what sensors observe in the emulated world, and its ground truth.
+// Publishes the observations of the emulated world's sensors and the ground truth.
 #pragma once
 
 #include <functional>
@@ -18,18 +18,17 @@ class WorldOutput {
   /// Advertises on `bus`, which must outlive this, as must the settings.
   WorldOutput(Bus& bus, const SimSettings& settings);
 
-  /// Forgets what was published of a world that is replaced.
+  /// Forgets the published stamps; to be called when the world is replaced.
   void reset() { stamped_.clear(); }
-  /// Publishes what is due after step number `steps` of the world. `stamp_now` returns the system
-  /// clock of the step [ns]; `factor`: simulated time over real time.
+  /// Publishes the messages due after step number `steps` of the world. `stamp_now` returns the
+  /// system clock of the step [ns]; `factor`: simulated time over real time.
   void publish(SimWorld& world, std::uint64_t steps, const std::function<Stamp()>& stamp_now,
                double factor);
 
  private:
-  /// A picture's stamp is the system clock of its capture; the same picture, published again, keeps
-  /// it.
+  /// A sample's stamp is the system clock at capture; a sample published again keeps its stamp.
   struct Stamped {
-    double seen{};  ///< [s of simulated time]
+    double seen{};  ///< instant of capture [s of simulated time]
     Stamp stamp{};
   };
 
@@ -48,7 +47,7 @@ class WorldOutput {
   std::vector<Delivery<HumanObservation>> human_due_;
   std::vector<Delivery<ObjectObservation>> object_due_;
   std::vector<RobotReport> reports_;        // of other robots
-  std::map<std::string, Stamped> stamped_;  ///< By source: the newest picture.
+  std::map<std::string, Stamped> stamped_;  ///< by source: the newest sample
 };
 
 }  // namespace handsel::sim

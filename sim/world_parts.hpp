@@ -1,4 +1,4 @@
-// For the sources of SimWorld: what a world consists of.
+// For the sources of SimWorld: the members of a world.
 #pragma once
 
 #include <bit>
@@ -27,9 +27,9 @@
 
 namespace handsel::sim {
 
-/// Combines numbers into one that tells two runs apart.
+/// Hashes numbers; different runs give different hashes.
 struct StateHash {
-  std::uint64_t value{0xcbf29ce484222325ULL};  ///< of the numbers so far
+  std::uint64_t value{0xcbf29ce484222325ULL};  ///< hash of the numbers so far
   /// Adds one number.
   void add(double x) {
     value ^= std::bit_cast<std::uint64_t>(x);
@@ -43,18 +43,18 @@ struct StateHash {
   }
 };
 
-inline constexpr double kContactDistance = 0.001;  ///< closer than this is a contact [m]
-/// A push still moves the arm this long after the last contact [s].
-inline constexpr double kPush = 0.2;
+inline constexpr double kContactDistance = 0.001;  ///< max distance of a contact [m]
+/// Time after the last contact for which a push still moves the arm [s].
+inline constexpr double kPushDuration = 0.2;
 
 struct SimWorld::Impl {
   struct Hand {
     const Group *arm{}, *fingers{};  ///< nullptr: none
     int palm{-1};                    ///< link; -1: none
     RobotGrasp grasp;                ///< from the contacts of the fingers
-    Grip grip;                       ///< constraint that helps to hold an object
+    Grip grip;                       ///< grasp constraint
     HandMeasure measured;            ///< wrist wrench, payload and external torque
-    int gripped{-1};                 ///< object; -1: none
+    int gripped{-1};                 ///< index of the held object; -1: none
   };
 
   Impl(const RobotModel& robot_model, const ObjectLibrary& library,
@@ -64,11 +64,11 @@ struct SimWorld::Impl {
   double now() const { return static_cast<double>(steps) * settings.step; }
   /// Advances by one physics step.
   void step();
-  /// Returns a normally distributed number; 0 without a deviation, which leaves the generator.
+  /// Returns a normally distributed number; for sigma 0 returns 0 and does not use the generator.
   double noise(double sigma) { return sigma > 0 ? sigma * normal(random) : 0; }
 
   // world.cpp: construction
-  void add_hand(const Manipulator& hand);  ///< `hand` may be empty: the robot has none
+  void add_hand(const Manipulator& hand);  ///< Adds a hand; empty: the robot has none.
   /// Returns the axes of the fingers of all hands.
   std::vector<int> finger_axes() const;
   /// Adds the boxes of the scene and the floor.
@@ -76,40 +76,42 @@ struct SimWorld::Impl {
   /// Adds one body that does not move; `shape` must outlive the world.
   void add_fixed(btCollisionShape* shape, const Pose& T, Owner owner, int index);
 
-  /// Returns all axes as the robot side measures them.
+  /// Returns the positions of all axes as measured by the robot side.
   Vector measured_position() const;
 
   // world_hands.cpp: grasps of the robot's hands
-  BodyState tool_state(const Hand& hand) const;  ///< of its palm, world
-  void update_robot_hands();                     ///< writes what people see of all hands
-  void hold_with(Hand& hand);       ///< applies the grasp constraint for the coming step
-  static void release(Hand& hand);  ///< ends grasp and constraint
+  BodyState tool_state(const Hand& hand) const;  ///< Returns the palm's state, world.
+  void update_robot_hands();                     ///< Writes the hands' state as observed by people.
+  void hold_with(Hand& hand);       ///< Applies the grasp constraint for the next step.
+  static void release(Hand& hand);  ///< Ends grasp and constraint.
   /// Returns whether the grasp constraint helps to hold the object.
   bool helped(int object) const;
-  bool grips(int object) const;  ///< whether any hand holds the object
+  bool grips(int object) const;  ///< Returns whether any hand holds the object.
   bool holds_firmly(const Hand&) const;
-  bool grips_something() const;   ///< whether any hand holds an object
-  bool of_hand(int body) const;   ///< whether the robot's body is part of a hand
-  void update_grasp(Hand& hand);  ///< from the contacts of the step
-  void update_grasps();           ///< the same for all hands, and which part holds
-  void measure(Hand& hand);       ///< what its sensors report
+  bool grips_something() const;   ///< Returns whether any hand holds an object.
+  bool of_hand(int body) const;   ///< Returns whether the body belongs to a hand.
+  void update_grasp(Hand& hand);  ///< Updates a grasp from the contacts of the step.
+  /// Updates the grasps of all hands, and whether contacts or constraints bear the load.
+  void update_grasps();
+  void measure(Hand& hand);  ///< Updates the measurements of a hand.
 
-  // world_oracle.cpp: what happened
-  void evaluate();                     ///< counts violations and collisions of the step
-  bool is_pushed();                    ///< by a person, without the robot pressing against them
-  ObjectSituation situation() const;   ///< of the watched object
-  std::optional<Taker> taker() const;  ///< who has a hand at the watched object
-  void measure_other_robots();         ///< distance to other robots, and contacts with them
-  void add_to_hash();                  ///< positions and velocities of the step
+  // world_oracle.cpp: evaluation
+  void evaluate();                     ///< Counts violations and collisions of the step.
+  bool is_pushed();                    ///< Returns whether a person pushes the robot.
+  ObjectSituation situation() const;   ///< Returns the situation of the watched object.
+  std::optional<Taker> taker() const;  ///< Returns the person with a hand on that object.
+  void measure_other_robots();         ///< Measures the distance to other robots.
+  void add_to_hash();                  ///< Hashes positions and velocities of the step.
 
-  // world_sensing.cpp: what sensors of people and objects see
-  void prepare_sight();  ///< which bodies can hide what is behind them
-  void update_sight();   ///< where everything is now
-  void sense();          ///< observes with each sensor that is due
+  // world_sensing.cpp: sensors of people and objects
+  void prepare_sight();  ///< Collects the bodies that can occlude others.
+  void update_sight();   ///< Updates the positions of all bodies.
+  void sense();          ///< Observes with each sensor that is due.
 
-  // world_control.cpp: what is done to the world from outside
-  std::string control(const SimControl& c);        ///< as of SimWorld::control()
-  std::string stop_robot(const std::string& how);  ///< empty, or one sentence: why not
+  // world_control.cpp: disturbances from outside
+  std::string control(const SimControl& c);  ///< Implements SimWorld::control().
+  /// Stops the robot; empty, or one sentence: why not.
+  std::string stop_robot(const std::string& how);
   /// Applies a fault to the source of people, or to all sources; empty, or one sentence: why not.
   std::string disturb(const std::string& source, const SensorFault& fault);
   /// Disturbs localisation or wheels; empty, or one sentence: why not.
@@ -133,12 +135,12 @@ struct SimWorld::Impl {
   ObjectBodies objects;
   std::unique_ptr<People> people;
 
-  std::optional<PlatformOdometry> odometry;  // of a robot that drives
+  std::optional<PlatformOdometry> odometry;  // nullopt: the robot has no platform
   RobotSide side;
   Reference reference;
   std::optional<StuckHand> stuck_hand;
-  std::vector<Hand> hands;  // never empty; the first is that of the tool
-  /// The force of the constraints on what is held is larger than that of the hands' contacts.
+  std::vector<Hand> hands;  // never empty; the first hand is that of the tool
+  /// Whether the constraints bear more of the held objects' load than the contacts.
   bool constraint_carries{false};
   double held_time{0}, constraint_time{0};
   int watched{-1}, ssm_every{10};
@@ -146,12 +148,12 @@ struct SimWorld::Impl {
   std::size_t next_disturbance{0};
   double human_silent_until{0}, state_silent_until{0};
   std::vector<Touch> touches, pushes;
-  double pushed_at{-kPush};
+  double pushed_at{-kPushDuration};
   std::vector<PersonVolume> person_volumes;
-  std::vector<RobotHandState> robot_hands;  // as people see them, in the order of `hands`
+  std::vector<RobotHandState> robot_hands;  // as observed by people, in the order of `hands`
   Sight sight;
   std::vector<LinkCapsule> hiding_links;
-  std::vector<LinkCapsule> finger_capsules;  // of all links, while any person minds the fingers
+  std::vector<LinkCapsule> finger_capsules;  // of all links; empty if nobody needs them
   std::vector<HumanSensor> human_sensors;
   std::vector<ObjectSensor> object_sensors;
 

@@ -1,4 +1,4 @@
-// What the sensors of people and objects see in the emulated world.
+// The observations of people and objects by sensors in the emulated world.
 #include <algorithm>
 
 #include "sim/world_parts.hpp"
@@ -6,11 +6,11 @@
 namespace handsel::sim {
 
 void SimWorld::Impl::sense() {
-  bool looked = false;
+  bool is_updated = false;
   const auto observe = [&](auto& sensor) {
     if (!sensor.due(now())) return;
-    if (!looked) update_sight();
-    looked = true;
+    if (!is_updated) update_sight();
+    is_updated = true;
     if (const SensorSettings& s = sensor.settings(); !s.link.empty())
       sensor.carry_to(robot->T_world_link(model.link_index(s.link)) * s.T_link_sensor);
     sensor.observe(now(), sight);

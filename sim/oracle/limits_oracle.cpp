@@ -7,28 +7,31 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kTolerance = 1e-6;    // relative
-constexpr double kRounding = 1e-12;    // of positions [rad]
-constexpr double kRestartJump = 0.05;  // from the robot's posture [rad]
-constexpr std::size_t kLearn = 100, kLearnAtMost = 3200;
-constexpr std::array kUsual{0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020};
+constexpr double kTolerance = 1e-6;  // relative tolerance of a bound
+constexpr double kRounding = 1e-12;  // rounding error of positions [rad]
+// Max distance of a first set-point from the robot's configuration [rad].
+constexpr double kMaxRestartJump = 0.05;
+// Numbers of set-points after which the period is estimated, and after which any estimate is used.
+constexpr std::size_t kEstimateAfter = 100, kMaxEstimateAfter = 3200;
+// Standard control periods [s].
+constexpr std::array kPeriods{0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020};
 
-/// The usual period that most intervals are near, if more than half are, or `any`; 0: none. A busy
-/// machine leaves out cycles and delays others, which moves a mean but not where most intervals
-/// are.
+/// Returns the standard period with the largest number of nearby intervals, if these are more than
+/// half of all or `any` is set; 0: none. A busy machine omits and delays cycles, which changes the
+/// mean but not the majority of the intervals.
 double period_of(const std::vector<LimitsOracle::Held>& stream, bool any) {
-  std::array<std::size_t, kUsual.size()> votes{};
+  std::array<std::size_t, kPeriods.size()> votes{};
   for (std::size_t i = 1; i < stream.size(); ++i) {
     if (!stream[i].continues) continue;
     const double interval =
         (stream[i].time - stream[i - 1].time) /
         static_cast<double>(stream[i].command.sequence - stream[i - 1].command.sequence);
-    for (std::size_t k = 0; k < kUsual.size(); ++k)
-      votes[k] += std::abs(interval - kUsual[k]) < 0.1 * kUsual[k];
+    for (std::size_t k = 0; k < kPeriods.size(); ++k)
+      votes[k] += std::abs(interval - kPeriods[k]) < 0.1 * kPeriods[k];
   }
-  const auto most = std::max_element(votes.begin(), votes.end());
-  if (*most == 0 || (!any && 2 * *most < stream.size())) return 0;
-  return kUsual[static_cast<std::size_t>(most - votes.begin())];
+  const auto best = std::max_element(votes.begin(), votes.end());
+  if (*best == 0 || (!any && 2 * *best < stream.size())) return 0;
+  return kPeriods[static_cast<std::size_t>(best - votes.begin())];
 }
 
 }  // namespace
@@ -72,11 +75,11 @@ void LimitsOracle::check_step(const JointCommand& from, const JointCommand& to, 
     const double dv = std::abs(to.velocity[i] - from.velocity[i] - from.acceleration[i] * t);
     const double dp = std::abs(to.position[i] - from.position[i] - from.velocity[i] * t -
                                from.acceleration[i] * t * t / 2);
-    const double share = std::max(da / (J * t), dv / (J * t * t / 2));
-    ratios_[2] = std::max(ratios_[2], share);
-    if (share > 1 + kTolerance) violated("jerk", i, share * J, J);
-    const double room = J * t * t * t / 6 * (1 + kTolerance) + kRounding;
-    if (dp > room) violated("position step", i, dp, room);
+    const double ratio = std::max(da / (J * t), dv / (J * t * t / 2));
+    ratios_[2] = std::max(ratios_[2], ratio);
+    if (ratio > 1 + kTolerance) violated("jerk", i, ratio * J, J);
+    const double max_step = J * t * t * t / 6 * (1 + kTolerance) + kRounding;
+    if (dp > max_step) violated("position step", i, dp, max_step);
   }
 }
 
@@ -85,16 +88,16 @@ void LimitsOracle::check_change(const JointCommand& from, const JointCommand& to
     const double J = limits_.jerk[i], v0 = from.velocity[i], a0 = from.acceleration[i];
     const double da = std::abs(to.acceleration[i] - a0);
     if (da > J * T * (1 + kTolerance)) violated("jerk at a change", i, da / T, J);
-    const double dv = to.velocity[i] - v0, dv_room = J * T * T / 2 * (1 + kTolerance);
-    if (dv < std::min(0.0, a0 * T) - dv_room || dv > std::max(0.0, a0 * T) + dv_room)
-      violated("velocity step at a change", i, dv, std::abs(a0) * T + dv_room);
+    const double dv = to.velocity[i] - v0, dv_tolerance = J * T * T / 2 * (1 + kTolerance);
+    if (dv < std::min(0.0, a0 * T) - dv_tolerance || dv > std::max(0.0, a0 * T) + dv_tolerance)
+      violated("velocity step at a change", i, dv, std::abs(a0) * T + dv_tolerance);
     const auto moved = [&](double t) { return v0 * t + a0 * t * t / 2; };
     const double turn = a0 != 0 ? std::clamp(-v0 / a0, 0.0, T) : 0.0;
-    const auto [least, greatest] = std::minmax({0.0, moved(turn), moved(T)});
+    const auto [min_moved, max_moved] = std::minmax({0.0, moved(turn), moved(T)});
     const double dp = to.position[i] - from.position[i],
-                 dp_room = J * T * T * T / 6 * (1 + kTolerance) + kRounding;
-    if (dp < least - dp_room || dp > greatest + dp_room)
-      violated("position step at a change", i, dp, greatest + dp_room);
+                 dp_tolerance = J * T * T * T / 6 * (1 + kTolerance) + kRounding;
+    if (dp < min_moved - dp_tolerance || dp > max_moved + dp_tolerance)
+      violated("position step at a change", i, dp, max_moved + dp_tolerance);
   }
 }
 
@@ -106,9 +109,9 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
   }
   bad_ = false;
   const bool first = count_ == 0;
-  const double silence = now - last_time_;
-  if (!first) max_gap_ = std::max(max_gap_, silence);
-  const bool starts = first || silence > restart_after_;
+  const double gap = now - last_time_;
+  if (!first) max_gap_ = std::max(max_gap_, gap);
+  const bool starts = first || gap > restart_after_;
   const bool continues = !starts && writer == last_writer_ && command.sequence > previous_.sequence;
   writers_.insert(writer);
   ++count_;
@@ -117,11 +120,11 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
     for (Eigen::Index i = 0; i < actual.size(); ++i) {
       const double at = command.position[i];
       const double jump = std::min(std::abs(at - actual[i]), std::abs(at - held[i]));
-      if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
+      if (jump > kMaxRestartJump) violated("jump at a new start", i, jump, kMaxRestartJump);
     }
   } else if (!continues) {
     check_change(previous_, command,
-                 std::max(0.0, silence) + (period_ > 0 ? period_ : kUsual.back()));
+                 std::max(0.0, gap) + (period_ > 0 ? period_ : kPeriods.back()));
   }
   if (period_ > 0) {
     if (continues) check_step(previous_, command, between(previous_, command));
@@ -129,8 +132,8 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
     if (starts) waiting_.clear();
     waiting_.push_back(
         {command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now, continues});
-    if (waiting_.size() % kLearn == 0)
-      period_ = period_of(waiting_, waiting_.size() >= kLearnAtMost);
+    if (waiting_.size() % kEstimateAfter == 0)
+      period_ = period_of(waiting_, waiting_.size() >= kMaxEstimateAfter);
     if (period_ > 0) {
       for (std::size_t i = 1; i < waiting_.size(); ++i)
         if (waiting_[i].continues)

@@ -38,17 +38,17 @@ double closest(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Ve
   return (w + s * u - t * v).norm();
 }
 
-bool exchanging_part(BodyPart part, Side side) {
+bool is_exempt_part(BodyPart part, Side side) {
   return side == Side::left ? part == BodyPart::forearm_left || part == BodyPart::hand_left
                             : part == BodyPart::forearm_right || part == BodyPart::hand_right;
 }
 
 Vector3 velocity_near(const Person& person, const Vector3& point) {
   const BodyJoint* nearest = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+  double min_squared = std::numeric_limits<double>::infinity();
   for (const BodyJoint& joint : person.joints) {
     const double d = (joint.position - point).squaredNorm();
-    if (d < least) least = d, nearest = &joint;
+    if (d < min_squared) min_squared = d, nearest = &joint;
   }
   return nearest != nullptr ? nearest->velocity : Vector3(Vector3::Zero());
 }
@@ -105,7 +105,7 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot,
   best.distance = std::numeric_limits<double>::infinity();
   for (const PersonVolume& volume : people) {
     const std::vector<BodyCapsule> body = body_capsules(*volume.person);
-    // What a sphere about each part leaves no hope for is passed over.
+    // Skips parts whose bounding sphere is farther away than the best distance so far.
     std::vector<std::pair<Vector3, double>> spheres;
     for (const BodyCapsule& part : body)
       spheres.emplace_back((part.a + part.b) / 2, (part.b - part.a).norm() / 2 + part.radius);
@@ -114,9 +114,10 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot,
       const Vector3 a = T * link.a, b = T * link.b, middle = (a + b) / 2;
       for (std::size_t i = 0; i < body.size(); ++i) {
         const BodyCapsule& part = body[i];
-        if (volume.exception && exchanging_part(part.part, volume.side)) continue;
-        const double hopeless = best.distance + link.bound + spheres[i].second;
-        if (hopeless < 0 || (middle - spheres[i].first).squaredNorm() >= hopeless * hopeless)
+        if (volume.exception && is_exempt_part(part.part, volume.side)) continue;
+        const double max_centre_distance = best.distance + link.bound + spheres[i].second;
+        if (max_centre_distance < 0 ||
+            (middle - spheres[i].first).squaredNorm() >= max_centre_distance * max_centre_distance)
           continue;
         double s = 0, t = 0;
         const double d = closest(a, b, part.a, part.b, s, t) - link.radius - part.radius;
@@ -137,25 +138,25 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot,
 void SeparationOracle::stop_measure(double v, double a, double A, double J, double& time,
                                     double& distance) {
   time = distance = 0;
-  const auto go = [&](double duration, double jerk) {
+  const auto advance = [&](double duration, double jerk) {
     distance += duration * (v + duration * (a / 2 + duration * jerk / 6));
     v += duration * (a + duration * jerk / 2);
     a += duration * jerk;
     time += duration;
   };
-  if (std::abs(a) > A) go((std::abs(a) - A) / J, a > 0 ? -J : J);
+  if (std::abs(a) > A) advance((std::abs(a) - A) / J, a > 0 ? -J : J);
   const double v_left =
-      v + a * std::abs(a) / (2 * J);        // speed once the acceleration is taken away at once
+      v + a * std::abs(a) / (2 * J);        // speed once the acceleration has been reduced to 0
   const double sign = v_left > 0 ? -1 : 1;  // direction of the braking lobe
   // In mirrored coordinates (braking upward): from a to a1, hold, back to zero, gaining -v.
   const double a_m = sign * a, need = -sign * v;
   const double peak = std::sqrt(std::max(0.0, J * need + a_m * a_m / 2));
   const double a1 = std::min(peak, A);
-  if (a1 > a_m) go((a1 - a_m) / J, sign * J);
+  if (a1 > a_m) advance((a1 - a_m) / J, sign * J);
   const double gained = (2 * a1 * a1 - a_m * a_m) / (2 * J);
   const double hold = a1 > 0 ? (need - gained) / a1 : 0;
-  if (peak > A && hold > 0) go(hold, 0);
-  if (std::abs(a) > 0) go(std::abs(a) / J, a > 0 ? -J : J);
+  if (peak > A && hold > 0) advance(hold, 0);
+  if (std::abs(a) > 0) advance(std::abs(a) / J, a > 0 ? -J : J);
 }
 
 bool SeparationOracle::violates(const TrueSeparation& near, const RobotBody& robot,

@@ -13,13 +13,13 @@
 namespace handsel::sim {
 namespace {
 
-constexpr int kAround = 12;                 // directions of the fingers on each cone
+constexpr int kDirectionsPerCone = 12;      // finger directions on each cone
 constexpr double kCones[] = {0, 0.4, 0.8};  // half angles of these cones [rad]
-constexpr int kRolls = 24;                  // turns of the hand about its fingers
-constexpr double kClearance = 0.06;         // of the hand from the middle of the robot's palm [m]
-constexpr double kStep = 1e-4;              // for the normal of the surface [m]
-constexpr double kElongated = 1.25;         // ratio of the longest extent to the next
-constexpr double kMaxAcross = 0.8;  // of the thumb side from the long axis of the object [rad]
+constexpr int kRolls = 24;                  // rotations of the hand about its finger direction
+constexpr double kMinPalmClearance = 0.06;  // min distance of the hand from the robot's palm [m]
+constexpr double kDifferenceStep = 1e-4;    // step of the finite differences for the normal [m]
+constexpr double kMinElongation = 1.25;     // min ratio of the two largest extents if elongated
+constexpr double kMaxThumbAngle = 0.8;      // max angle of the thumb side and the long axis [rad]
 
 /// Returns the outward normal of the surface of the object near a point; world.
 Vector3 surface_normal(const Taker& taker, const Vector3& p_world) {
@@ -29,7 +29,8 @@ Vector3 surface_normal(const Taker& taker, const Vector3& p_world) {
   };
   Vector3 slope;
   for (int i = 0; i < 3; ++i)
-    slope[i] = distance(kStep * Vector3::Unit(i)) - distance(-kStep * Vector3::Unit(i));
+    slope[i] = distance(kDifferenceStep * Vector3::Unit(i)) -
+               distance(-kDifferenceStep * Vector3::Unit(i));
   return slope.stableNormalized();
 }
 
@@ -60,7 +61,7 @@ std::optional<Vector3> long_axis(const Taker& taker) {
   Eigen::Index longest = 0;
   const double length = size.maxCoeff(&longest);
   size[longest] = 0;
-  if (length < kElongated * size.maxCoeff()) return std::nullopt;
+  if (length < kMinElongation * size.maxCoeff()) return std::nullopt;
   return Vector3(taker.T_world_object.linear().col(longest));
 }
 
@@ -69,8 +70,8 @@ std::vector<Vector3> directions_about(const Vector3& axis) {
   const Vector3 first = axis.unitOrthogonal(), second = axis.cross(first);
   std::vector<Vector3> out;
   for (const double angle : kCones) {
-    for (int k = 0; k < (angle > 0 ? kAround : 1); ++k) {
-      const double turn = 2 * std::numbers::pi * k / kAround;
+    for (int k = 0; k < (angle > 0 ? kDirectionsPerCone : 1); ++k) {
+      const double turn = 2 * std::numbers::pi * k / kDirectionsPerCone;
       out.push_back(std::cos(angle) * axis +
                     std::sin(angle) * (std::cos(turn) * first + std::sin(turn) * second));
     }
@@ -91,23 +92,23 @@ TakingStrain taking_strain(const Taker& taker) {
   const Vector3 hand = joint("l_hand", "r_hand");
   const double length = (hand - joint("l_wrist", "r_wrist")).norm();
   const std::optional<Vector3> axis = long_axis(taker);
-  double least = std::numeric_limits<double>::infinity();
+  double min_strain = std::numeric_limits<double>::infinity();
   for (const Vector3& fingers : directions_about(-surface_normal(taker, hand))) {
     const Vector3 wrist = hand - length * fingers;
-    if (distance_to_segment(wrist, hand + length * fingers, taker.p_robot_palm) < kClearance)
+    if (distance_to_segment(wrist, hand + length * fingers, taker.p_robot_palm) < kMinPalmClearance)
       continue;
     const Vector3 first = fingers.unitOrthogonal(), second = fingers.cross(first);
     for (int k = 0; k < kRolls; ++k) {
       const double roll = 2 * std::numbers::pi * k / kRolls;
       const Vector3 palm = std::cos(roll) * first + std::sin(roll) * second,
                     thumb_side = fingers.cross(palm);
-      if (axis && std::abs(thumb_side.dot(*axis)) < std::cos(kMaxAcross)) continue;
+      if (axis && std::abs(thumb_side.dot(*axis)) < std::cos(kMaxThumbAngle)) continue;
       Pose T_world_wrist = Pose::Identity();
       T_world_wrist.linear() << palm, thumb_side, fingers;
       T_world_wrist.translation() = wrist;
       const auto posture = wrist_posture(*arm, T_world_wrist);
-      if (!posture || posture->strain >= least) continue;
-      least = posture->strain;
+      if (!posture || posture->strain >= min_strain) continue;
+      min_strain = posture->strain;
       strain = strain_of(*posture);
     }
   }

@@ -10,8 +10,10 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr std::size_t kMostJoints = 512, kMostDepth = 128, kMostValues = 40'000'000;
-constexpr double kLargest = 1e6;
+constexpr std::size_t kMaxJoints = 512;         // max number of joints
+constexpr std::size_t kMaxDepth = 128;          // max depth of the hierarchy
+constexpr std::size_t kMaxValues = 40'000'000;  // max number of motion values
+constexpr double kMaxMagnitude = 1e6;           // max magnitude of a number, file units
 constexpr std::string_view kChannelNames[] = {"Xposition", "Yposition", "Zposition",
                                               "Xrotation", "Yrotation", "Zrotation"};
 
@@ -30,8 +32,8 @@ class Parser {
     const double frames = number("the number of frames");
     if (!(frames >= 1) || frames != std::floor(frames))
       fail("Frames: must be a whole number of at least 1");
-    if (frames * bvh_.channels > static_cast<double>(kMostValues))
-      fail("more than " + std::to_string(kMostValues) + " values");
+    if (frames * bvh_.channels > static_cast<double>(kMaxValues))
+      fail("more than " + std::to_string(kMaxValues) + " values");
     expect("Frame");
     expect("Time:");
     bvh_.frame_time = number("the frame time");
@@ -84,7 +86,7 @@ class Parser {
     double value{};
     const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
     if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value) ||
-        std::abs(value) > kLargest)
+        std::abs(value) > kMaxMagnitude)
       fail(std::string(what) + " is " + shown(whole) + ", must be a number within 1e6");
     return value;
   }
@@ -99,8 +101,8 @@ class Parser {
   }
 
   int add_joint(std::string name, int parent) {
-    if (bvh_.joints.size() >= kMostJoints)
-      fail("more than " + std::to_string(kMostJoints) + " joints");
+    if (bvh_.joints.size() >= kMaxJoints)
+      fail("more than " + std::to_string(kMaxJoints) + " joints");
     if (bvh_.find(name) >= 0) fail("joint " + shown(name) + " is there twice");
     bvh_.joints.push_back({std::move(name), parent, Vector3::Zero(), {}, bvh_.channels});
     return static_cast<int>(bvh_.joints.size()) - 1;
@@ -134,7 +136,7 @@ class Parser {
   }
 
   void read_joint(int parent, std::size_t depth) {
-    if (depth > kMostDepth) fail("the hierarchy is deeper than " + std::to_string(kMostDepth));
+    if (depth > kMaxDepth) fail("the hierarchy is deeper than " + std::to_string(kMaxDepth));
     const int joint = add_joint(joint_name(), parent);
     expect("{");
     read_offset(joint);
@@ -192,7 +194,7 @@ int Bvh::find(std::string_view joint) const {
 
 void Bvh::positions(std::size_t frame, std::vector<Vector3>& out) const {
   out.resize(joints.size());
-  std::vector<Eigen::Matrix3d> turned(joints.size());
+  std::vector<Eigen::Matrix3d> R_world_joint(joints.size());
   const double* row = values.data() + frame * static_cast<std::size_t>(channels);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const BvhJoint& joint = joints[i];
@@ -203,7 +205,7 @@ void Bvh::positions(std::size_t frame, std::vector<Vector3>& out) const {
       const double value = row[static_cast<std::size_t>(joint.first_channel) + c];
       const int axis = static_cast<int>(joint.channels[c]) % 3;
       if (joint.channels[c] < BvhChannel::x_rotation) {
-        if (!moved) at.setZero();  // position channels stand for the offset
+        if (!moved) at.setZero();  // position channels replace the offset
         moved = true;
         at[axis] = value;
       } else {
@@ -212,11 +214,11 @@ void Bvh::positions(std::size_t frame, std::vector<Vector3>& out) const {
     }
     if (joint.parent < 0) {
       out[i] = at;
-      turned[i] = R;
+      R_world_joint[i] = R;
     } else {
       const auto p = static_cast<std::size_t>(joint.parent);
-      out[i] = out[p] + turned[p] * at;
-      turned[i] = turned[p] * R;
+      out[i] = out[p] + R_world_joint[p] * at;
+      R_world_joint[i] = R_world_joint[p] * R;
     }
   }
 }

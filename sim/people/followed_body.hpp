@@ -1,4 +1,4 @@
-// A body that is where samples from outside say. Pure: time comes in.
+// A body that follows observations from outside. Pure: time is an argument.
 #pragma once
 
 #include "common/messages/perception.hpp"
@@ -7,25 +7,25 @@
 
 namespace handsel::sim {
 
-/// Between samples it moves evenly from where it is to the newest one, within the time the last two
-/// were apart: one period late, as any tracker's picture of a person is. The first sample places
-/// it, and so does one that nobody could have moved to since the last: a tracker started anew. What
-/// was not seen is fitted to what was (`fit_body`). Own method: needs neither period nor delay of
-/// the tracker.
+/// Moves the body at constant speed from its present position to the newest sample, within the
+/// interval of the last two samples: one period late, like the output of any tracker. The first
+/// sample places the body without a motion, and so does a sample too far away for a person's
+/// motion: the tracker was restarted. Unobserved joints are fitted to the observed joints
+/// (`fit_body`). Own method: needs neither period nor delay of the tracker.
 class FollowedBody {
  public:
   FollowedBody(const BodyPoints& start, double stature);
 
-  /// Takes a sample at `now` [s]. Returns true when it placed the body.
+  /// Takes a sample at `now` [s]. Returns true if the sample placed the body without a motion.
   bool observe(const ObservedPerson& seen, double now);
-  /// Writes the body points at `now` [s]; from the end of the motion on those of the newest sample.
+  /// Writes the body points at `now` [s]; after the end of the motion those of the newest sample.
   void sample(double now, BodyPoints& out) const;
 
  private:
   Person fitted_;
   BodyPoints from_, to_;
-  double begun_{0}, lasts_{0};
-  bool seen_{false};
+  double motion_start_{0}, motion_duration_{0};
+  bool has_sample_{false};
 };
 
 }  // namespace handsel::sim

@@ -9,10 +9,10 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr int kCodes =
-    100;  // capsules a person may have: a touch's index is person * kCodes + capsule
+// Max number of capsules of a person; the index of a touch is person * kMaxCapsules + capsule.
+constexpr int kMaxCapsules = 100;
 
-Pose along(const Vector3& a, const Vector3& b) {
+Pose capsule_pose(const Vector3& a, const Vector3& b) {
   return make_pose((a + b) / 2, Eigen::Quaterniond::FromTwoVectors(
                                     Vector3::UnitZ(),
                                     (b - a).norm() > 1e-9 ? Vector3(b - a) : Vector3(0, 0, 1)));
@@ -23,15 +23,18 @@ bool of_hand(BodyPart part, Side side) {
                             : part == BodyPart::hand_right || part == BodyPart::forearm_right;
 }
 
-/// Returns the pose of an object in a hand that holds it, turned by `turn`: its nearest part at the
-/// palm, where it is turned at all.
+/// Returns the pose of a held object in the hand frame. `turn`: orientation of the object,
+/// whose nearest part is then at the palm.
 Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>& turn) {
-  constexpr double kBeside = PersonModel::kPalm + 0.05, kFarthest = 0.4, kStep = 0.002;  // [m]
-  if (!turn) return Pose(Eigen::Translation3d(kBeside, 0, 0));
-  double away = kFarthest;
-  const Vector3 back = turn->inverse() * Vector3::UnitX();
-  while (away > 0 && surface_distance(model, -away * back) > PersonModel::kPalm) away -= kStep;
-  return make_pose(Vector3(away, 0, 0), *turn);
+  constexpr double kPalmOffset = PersonModel::kPalm + 0.05;  // of an unturned object [m]
+  constexpr double kMaxOffset = 0.4;     // first offset of a turned object's origin [m]
+  constexpr double kOffsetStep = 0.002;  // decrement of the offset [m]
+  if (!turn) return Pose(Eigen::Translation3d(kPalmOffset, 0, 0));
+  double offset = kMaxOffset;
+  const Vector3 palm_direction = turn->inverse() * Vector3::UnitX();
+  while (offset > 0 && surface_distance(model, -offset * palm_direction) > PersonModel::kPalm)
+    offset -= kOffsetStep;
+  return make_pose(Vector3(offset, 0, 0), *turn);
 }
 
 bool is_hand(BodyPart part) { return part == BodyPart::hand_left || part == BodyPart::hand_right; }
@@ -74,7 +77,7 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   person.capsules = body_capsules(person.model.body());
   for (std::size_t c = 0; c < person.capsules.size(); ++c) {
     const BodyCapsule& capsule = person.capsules[c];
-    const int code = number * kCodes + static_cast<int>(c);
+    const int code = number * kMaxCapsules + static_cast<int>(c);
     if (is_hand(capsule.part)) {
       const int hand = hand_number(capsule.part);
       person.hands[hand] = std::make_unique<PersonHand>(
@@ -85,7 +88,7 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
     }
     btConvexShape* shape = shapes.convex(Capsule{capsule.radius, (capsule.b - capsule.a).norm()});
     btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape);
-    info.m_startWorldTransform = to_bt(along(capsule.a, capsule.b));
+    info.m_startWorldTransform = to_bt(capsule_pose(capsule.a, capsule.b));
     info.m_friction = 0.6;
     auto body = std::make_unique<btRigidBody>(info);
     body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
@@ -114,7 +117,7 @@ void People::follow(const HumanObservation& seen) {
   }
 }
 
-bool People::follow_somebody() const {
+bool People::any_follows_source() const {
   return std::any_of(people_.begin(), people_.end(),
                      [](const Body& person) { return !person.model.source().empty(); });
 }
@@ -129,14 +132,14 @@ void People::announce(Announcement announcement, const std::string& human,
   }
 }
 
-bool People::listen() const {
+bool People::any_reacts_to_announcements() const {
   return std::any_of(people_.begin(), people_.end(),
-                     [](const Body& person) { return person.model.listens(); });
+                     [](const Body& person) { return person.model.reacts_to_announcements(); });
 }
 
-bool People::mind_fingers() const {
+bool People::any_needs_finger_distance() const {
   return std::any_of(people_.begin(), people_.end(),
-                     [](const Body& person) { return person.model.minds_fingers(); });
+                     [](const Body& person) { return person.model.needs_finger_distance(); });
 }
 
 void People::move(double dt, const std::vector<RobotHandState>& robot_hands) {
@@ -147,8 +150,9 @@ void People::move(double dt, const std::vector<RobotHandState>& robot_hands) {
   }
 }
 
-/// Returns the hand of the robot that a person deals with: the one that holds the person's object,
-/// else the nearest to what the person holds, else one that holds anything, else the nearest.
+/// Returns the robot hand relevant to a person: the hand that holds the person's object, else the
+/// nearest to the object that the person holds, else a hand that holds any object, else the
+/// nearest.
 const RobotHandState& People::hand_for(const Body& person,
                                        const std::vector<RobotHandState>& robot_hands) const {
   const auto holds_same = [&](const RobotHandState& hand) {
@@ -223,18 +227,19 @@ void People::hold_or_release(Body& person) {
 }
 
 void People::pull(Body& person, double dt) {
-  const bool soft = person.model.in_handover();
+  const bool in_handover = person.model.in_handover();
   person.capsules = body_capsules(person.model.body());
   for (int s = 0; s < 2; ++s) person.hands[s]->pull_to(person.model.hand(s), dt);
   for (std::size_t c = 0; c < person.colliders.size(); ++c) {
     const BodyCapsule& capsule = person.capsules[c];
     if (person.colliders[c])
-      person.colliders[c]->setWorldTransform(to_bt(along(capsule.a, capsule.b)));
+      person.colliders[c]->setWorldTransform(to_bt(capsule_pose(capsule.a, capsule.b)));
     btRigidBody& body = person.colliders[c] ? *person.colliders[c]
                                             : person.hands[hand_number(capsule.part)]->body();
     const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
-    const bool yielding = soft && of_hand(capsule.part, person.model.side());
-    body.setCollisionFlags(yielding ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE : flags);
+    const bool is_compliant = in_handover && of_hand(capsule.part, person.model.side());
+    body.setCollisionFlags(is_compliant ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE
+                                        : flags);
   }
   if (!person.grip.holding()) return;
   ObjectBody& object = objects_[person.object];
@@ -256,7 +261,7 @@ bool People::grips(int object) const {
                      [&](const Body& p) { return p.grip.holding() && p.object == object; });
 }
 
-int People::toucher(int object) const {
+int People::touching_person(int object) const {
   const auto found = std::find_if(people_.begin(), people_.end(), [&](const Body& p) {
     if (p.object != object || object < 0) return false;
     if (p.grip.holding()) return true;
@@ -267,13 +272,13 @@ int People::toucher(int object) const {
   return found != people_.end() ? static_cast<int>(found - people_.begin()) : -1;
 }
 
-bool People::yields(int code) const {
-  const Body& person = people_[code / kCodes];
+bool People::complies(int code) const {
+  const Body& person = people_[code / kMaxCapsules];
   return person.model.in_handover() &&
-         of_hand(person.capsules[code % kCodes].part, person.model.side());
+         of_hand(person.capsules[code % kMaxCapsules].part, person.model.side());
 }
 
-const std::string& People::id(int code) const { return people_[code / kCodes].model.id(); }
+const std::string& People::id(int code) const { return people_[code / kMaxCapsules].model.id(); }
 
 void People::volumes(const std::vector<RobotHandState>& robot_hands,
                      std::vector<PersonVolume>& out) const {

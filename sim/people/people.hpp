@@ -1,5 +1,5 @@
-// People as bodies of the physics: kinematic capsules, free hands on springs, a grip on the object
-// of the handover.
+// People as bodies of the physics world: kinematic capsules, free hands on springs, and a grip on
+// the object of the handover.
 #pragma once
 
 #include <array>
@@ -17,29 +17,29 @@
 
 namespace handsel::sim {
 
-/// Objects keep their places: bodies are not moved in memory.
+/// Objects of the scene; their addresses never change.
 using ObjectBodies = std::deque<ObjectBody>;
 
-/// The number of the object with that id; -1: none.
+/// Returns the index of the object with this id; -1: none.
 int object_index(const ObjectBodies& objects, const std::string& id);
 
-/// A ball.
+/// A sphere.
 struct Ball {
-  Vector3 p_world{Vector3::Zero()};  ///< of its middle [m]
-  double radius{};                   ///< [m]
+  Vector3 p_world{Vector3::Zero()};  ///< centre [m]
+  double radius{};                   ///< radius [m]
 };
 
-/// What people see of a hand of the robot.
+/// The state of a robot hand as people observe it.
 struct RobotHandState {
-  BodyState palm;             ///< world
-  std::vector<Ball> fingers;  ///< ends of their links, while any person minds them
-  int gripped{-1};            ///< object in the hand; -1: none
-  bool holds_firmly{};        ///< with what grips that object, its weight could be borne
+  BodyState palm;             ///< state of the palm, world
+  std::vector<Ball> fingers;  ///< spheres at the ends of finger links; empty if nobody needs them
+  int gripped{-1};            ///< index of the held object; -1: none
+  bool holds_firmly{};        ///< whether all hands on that object can bear its weight
 };
 
 class People {
  public:
-  /// Puts an object into the hand of each person that starts with one.
+  /// Places an object in the hand of each person that starts with one.
   People(const SceneSetup&, const SimSettings&, ObjectBodies& objects, ShapeStore&,
          btDynamicsWorld&);
   ~People();
@@ -54,32 +54,35 @@ class People {
   /// Returns a person's capsules as of the last move(), world frame; no check of the index.
   const std::vector<BodyCapsule>& capsules(std::size_t i) const { return people_[i].capsules; }
 
-  /// Moves the people that follow this source: each to the body with its id, else to the first
-  /// seen.
+  /// Moves the people that follow this source: each to the body with the person's id, else to the
+  /// first observed body.
   void follow(const HumanObservation&);
-  /// Tells the partners that the robot offers `object` to `human`, or asks for the object; empty:
-  /// whoever, whatever.
+  /// Announces to the partners that the robot offers `object` to `human`, or asks for the object;
+  /// an empty text stands for any.
   void announce(Announcement announcement, const std::string& human, const std::string& object);
-  bool listen() const;           ///< whether the robot may say something to any of these people
-  bool follow_somebody() const;  ///< whether any person follows a source outside
-  /// Decides, moves and holds for the coming step. `robot_hands`: not empty.
+  /// Returns whether any person reacts to announcements.
+  bool any_reacts_to_announcements() const;
+  /// Returns whether any person follows observations from outside.
+  bool any_follows_source() const;
+  /// Advances decisions, motions and grips of all people by dt [s]. `robot_hands`: not empty.
   void move(double dt, const std::vector<RobotHandState>& robot_hands);
-  /// Shows people where the platform of a robot that drives stands, world [m].
+  /// Sets the position of the robot's mobile platform, world [m].
   void set_platform(const Vector3& p_world) { platform_ = p_world; }
-  /// Returns whether any person minds how near the fingers of the robot are.
-  bool mind_fingers() const;
+  /// Returns whether any person needs the distance of the robot's fingers.
+  bool any_needs_finger_distance() const;
 
-  bool grips(int object) const;  ///< whether a person's hand holds the object
-  /// Whether a person's hand holds the object or, reaching for it, is within 12 mm of contact.
-  bool touches(int object) const { return toucher(object) >= 0; }
-  /// Returns the number of the first person whose hand does so; -1: nobody's.
-  int toucher(int object) const;
-  /// Whether the touched part is forearm or hand of a handover, which yields; `code` as in the
-  /// index of a touch.
-  bool yields(int code) const;
-  const std::string& id(int code) const;  ///< of a touched person
-  /// Writes what the separation is measured to. Forearm and hand of a handover are exempt until
-  /// every hand of the robot is 0.35 m from the object.
+  bool grips(int object) const;  ///< Returns whether a person's hand holds the object.
+  /// Returns whether a person's hand holds the object, or reaches for the object and is within 12
+  /// mm of contact.
+  bool touches(int object) const { return touching_person(object) >= 0; }
+  /// Returns the index of the first person for whom touches() holds; -1: none.
+  int touching_person(int object) const;
+  /// Returns whether the touched part is the forearm or hand of a handover, which complies with
+  /// contact; `code` as in the index of a touch.
+  bool complies(int code) const;
+  const std::string& id(int code) const;  ///< Returns the id of a touched person.
+  /// Writes the volumes to which the separation is measured. Forearm and hand of a handover are
+  /// exempt until every hand of the robot is 0.35 m from the object.
   void volumes(const std::vector<RobotHandState>& robot_hands,
                std::vector<PersonVolume>& out) const;
 
@@ -87,11 +90,11 @@ class People {
   struct Body {
     PersonModel model;
     Grip grip;
-    int object{-1};  // number of the one the handover is about, or that is fetched
+    int object{-1};  // index of the object of the handover, or of the fetched object
     int fetches{-1};
     bool broke{false};
     std::vector<BodyCapsule> capsules;
-    std::vector<std::unique_ptr<btRigidBody>> colliders;  // kinematic; none for a hand
+    std::vector<std::unique_ptr<btRigidBody>> colliders;  // kinematic; nullptr for a hand
     std::array<std::unique_ptr<PersonHand>, 2> hands;     // left, right
 
     PersonHand& hand() { return *hands[model.side() == Side::left ? 0 : 1]; }
@@ -107,7 +110,7 @@ class People {
   ObjectBodies& objects_;
   btDynamicsWorld& world_;
   std::vector<Body> people_;
-  std::optional<Vector3> platform_;  // of a robot that drives
+  std::optional<Vector3> platform_;  // of a mobile robot
 };
 
 }  // namespace handsel::sim

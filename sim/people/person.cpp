@@ -8,19 +8,24 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kStill = 0.05;  // an object slower than this is offered [m/s]
-constexpr double kEarly = 0.35;  // for who does not wait, slower than this [m/s] ...
-constexpr double kGone =
-    0.2;  // who reaches for an object follows it up to this speed, who is early ...
-constexpr double kGoneEarly = 0.5;   // ... up to this [m/s]
-constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
-constexpr double kTakenUp = 0.1;     // from its place, before a person reaches for it [m]
-constexpr double kGiveWay = 0.5;     // pace of giving way, of that of withdrawing
-constexpr double kPatience = 8.0;    // pulls no longer than this [s]
-constexpr double kStepBack = 0.2;    // with what it took [m]
-constexpr double kStay = 2.0;        // who has fetched something goes then [s]
-constexpr double kStep =
-    0.3;  // a recorded body is moved on the floor by no more than this before contact [m]
+// Max speed of an object that counts as offered [m/s].
+constexpr double kMaxOfferSpeed = 0.05;
+// Same, for a person who takes objects before they are at rest [m/s].
+constexpr double kMaxEarlyOfferSpeed = 0.35;
+// Max speed of an object that a reach still follows [m/s].
+constexpr double kMaxTargetSpeed = 0.2;
+// Same, for a person who takes objects before they are at rest [m/s].
+constexpr double kMaxEarlyTargetSpeed = 0.5;
+constexpr double kLeanReach = 0.12;  // increase of the reach by leaning forward [m]
+// Min displacement of an object from where the robot grasped it before a person reaches for it [m].
+constexpr double kMinLift = 0.1;
+// Max rate of moving back while the grip force is too large, divided by the rate of withdrawing.
+constexpr double kMaxYieldRate = 0.5;
+constexpr double kMaxPullTime = 8.0;     // max duration of a pull [s]
+constexpr double kStepBackLength = 0.2;  // step backward with a received object [m]
+constexpr double kKeepTime = 2.0;        // time before a fetcher leaves with the object [s]
+// Max displacement of a recorded body on the floor before contact [m].
+constexpr double kMaxRecordedStep = 0.3;
 
 }  // namespace
 
@@ -42,7 +47,7 @@ PersonModel::PersonModel(const PersonSettings& settings)
     side_ = settings_.recording->taking;
     template_ = settings_.recording->frames.front();
   }
-  const int s = index();
+  const int s = hand_index();
   reach_ = (template_[kElbow[s]] - template_[kShoulder[s]]).norm() +
            (template_[kWrist[s]] - template_[kElbow[s]]).norm() +
            (template_[kHand[s]] - template_[kWrist[s]]).norm();
@@ -59,12 +64,12 @@ PersonModel::PersonModel(const PersonSettings& settings)
   if (settings_.kind == PersonKind::giver || settings_.holds) {
     phase_ = PersonPhase::keeping;
     hand_active_ = wants_grip_ = true;
-    place_base();
-    hand_target_ = from_ = keep_point();
+    place_body();
+    hand_target_ = from_ = carry_position();
     duration_ = settings_.reaction;
   }
   if (settings_.kind == PersonKind::external) {
-    place_base();
+    place_body();
     followed_.emplace(points_, settings_.stature);
   }
   step(0, PersonView{});
@@ -88,7 +93,7 @@ bool PersonModel::in_handover() const {
 void PersonModel::enter(PersonPhase phase) {
   phase_ = phase;
   phase_since_ = clock_;
-  lost_time_ = sore_time_ = progress_ = 0;
+  exit_time_ = overload_time_ = progress_ = 0;
 }
 
 void PersonModel::dart(double speed) {
@@ -115,29 +120,29 @@ void PersonModel::step(double dt, const PersonView& view) {
     clock_ += dt;
     if (view.held_by_robot) carried_since_ = std::min(carried_since_, clock_);
     if (!view.held_by_robot)
-      p_gripped_.reset();
-    else if (!seen_held_ && !wants_grip_)
-      p_gripped_ = view.T_world_object.translation();
-    seen_held_ = view.held_by_robot;
+      p_object_at_grasp_.reset();
+    else if (!held_by_robot_before_ && !wants_grip_)
+      p_object_at_grasp_ = view.T_world_object.translation();
+    held_by_robot_before_ = view.held_by_robot;
     if (settings_.kind == PersonKind::external) {
-      accompany(dt, view);
+      run_external_person(dt, view);
     } else if (settings_.kind != PersonKind::still) {
-      act(dt, view);
+      run_phase(dt, view);
     }
     if (settings_.steps_in.speed > 0)
       feet_ = home_ -
               distance_from_place(settings_.steps_in, settings_.approach_from, clock_) * forward();
     step_aside(dt);
-    if (!followed_) look_at(looked_at(view), dt);
+    if (!followed_) turn_gaze(gaze_target(view), dt);
   }
   placed_ = false;
-  place_base();
+  place_body();
   if (wants_grip_) keep_above_furniture(view.robot_hand);
   if (hand_active_) {
-    bend_arm(index(), hand_target_);
-    hand_target_ = points_[kHand[index()]];
+    bend_arm(hand_index(), hand_target_);
+    hand_target_ = points_[kHand[hand_index()]];
   }
-  want_hands(dt);
+  command_hands(dt);
   for (int s = 0; s < 2; ++s) {
     if (!view.hand_pushed[s].isZero(0)) bend_arm(s, points_[kHand[s]] + view.hand_pushed[s]);
   }
@@ -153,30 +158,30 @@ void PersonModel::step(double dt, const PersonView& view) {
 }
 
 bool PersonModel::waits_for_robot(const PersonView& view) const {
-  constexpr double kAhead = 1.3;        // from the feet to what stands ahead [m]
-  constexpr double kBeside = 0.9;       // from the middle of the platform to the person's line [m]
-  constexpr double kBesideHand = 0.55;  // from the robot's hand to this line [m]
+  constexpr double kMinAhead = 1.3;   // min distance to the robot along the walk [m]
+  constexpr double kMinBeside = 0.9;  // min distance of the platform's centre from the walk [m]
+  constexpr double kMinBesideHand = 0.55;  // min distance of the robot's hand from the walk [m]
   if (settings_.kind != PersonKind::walker || !view.platform) return false;
   const Vector3 walk = walk_direction_ * forward();
-  const auto stands_ahead = [&](const Vector3& p_world, double beside) {
+  const auto is_ahead = [&](const Vector3& p_world, double beside) {
     const Vector3 to = (p_world - feet_).cwiseProduct(Vector3(1, 1, 0));
     const double ahead = to.dot(walk);
-    return ahead > 0 && ahead < kAhead && (to - ahead * walk).norm() < beside;
+    return ahead > 0 && ahead < kMinAhead && (to - ahead * walk).norm() < beside;
   };
-  return stands_ahead(*view.platform, kBeside) || stands_ahead(view.robot_hand, kBesideHand);
+  return is_ahead(*view.platform, kMinBeside) || is_ahead(view.robot_hand, kMinBesideHand);
 }
 
 void PersonModel::wait_for_robot(double dt, double duration) {
-  constexpr double kPatience = 3.0;  // [s]
+  constexpr double kMaxWaitForRobot = 3.0;  // max time at rest before turning back [s]
   phase_since_ += dt;
   waited_for_robot_ += dt;
-  if (waited_for_robot_ < kPatience) return;
+  if (waited_for_robot_ < kMaxWaitForRobot) return;
   waited_for_robot_ = 0;
   walk_direction_ = -walk_direction_;
-  phase_since_ += 2 * since() - duration;  // at the same place of the walk back
+  phase_since_ += 2 * phase_time() - duration;  // same place on the walk back
 }
 
-void PersonModel::act(double dt, const PersonView& view) {
+void PersonModel::run_phase(double dt, const PersonView& view) {
   if (wants_grip_ && view.grip_broke) give_up();
   switch (phase_) {
     case PersonPhase::arriving: {
@@ -186,7 +191,7 @@ void PersonModel::act(double dt, const PersonView& view) {
         wait_for_robot(dt, length / kWalkSpeed);
       else
         waited_for_robot_ = 0;
-      const double s = length > 0 ? since() * kWalkSpeed / length : 1;
+      const double s = length > 0 ? phase_time() * kWalkSpeed / length : 1;
       feet_ =
           home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();
       if (s < 1) break;
@@ -203,15 +208,15 @@ void PersonModel::act(double dt, const PersonView& view) {
       break;
     case PersonPhase::reaching:
       if (settings_.recording) {
-        play(dt, view);
+        replay(dt, view);
       } else {
         reach_out(dt, view);
       }
       break;
     case PersonPhase::closing:
-      if (view.object == nullptr || gap(view) > kPalm + 0.03) {
+      if (view.object == nullptr || hand_to_surface(view) > kPalm + 0.03) {
         give_up();
-      } else if (since() > 0.25) {
+      } else if (phase_time() > 0.25) {
         wants_grip_ = true;
         from_ = hand_target_;
         enter(PersonPhase::pulling);
@@ -225,10 +230,10 @@ void PersonModel::act(double dt, const PersonView& view) {
       break;
     case PersonPhase::keeping:
       if (settings_.kind == PersonKind::giver || settings_.kind == PersonKind::partner) {
-        hold_back(view);
+        hold_object(view);
       } else {
-        hand_target_ = keep_point();
-        if (settings_.kind == PersonKind::fetcher && since() > kStay) leave();
+        hand_target_ = carry_position();
+        if (settings_.kind == PersonKind::fetcher && phase_time() > kKeepTime) leave();
       }
       break;
     case PersonPhase::retracting:
@@ -238,47 +243,49 @@ void PersonModel::act(double dt, const PersonView& view) {
       offer(dt, view);
       break;
     case PersonPhase::darting:
-      dart_on(dt, view);
+      continue_dart(dt, view);
       break;
     case PersonPhase::leaving:
-      feet_ = home_ - 3.0 * min_jerk(since() * kWalkSpeed / 3.0) * forward();
-      if (wants_grip_) hand_target_ = keep_point();
+      feet_ = home_ - 3.0 * min_jerk(phase_time() * kWalkSpeed / 3.0) * forward();
+      if (wants_grip_) hand_target_ = carry_position();
       break;
   }
 }
 
-/// What the person is after is not where they would take it from: the robot's hand, or, for who
-/// fetches it, the place where it stands.
-bool PersonModel::out_of_hand(const PersonView& view) const {
+/// Returns whether the object is not where this person takes objects from: the robot's hand, or for
+/// a fetcher the place where the object stands.
+bool PersonModel::is_unavailable(const PersonView& view) const {
   return view.held_by_robot == (settings_.kind == PersonKind::fetcher);
 }
 
-bool PersonModel::offered(const PersonView& view, int side) const {
-  const double fastest = settings_.behaviour.early ? kEarly : kStill;
-  if (refusing_ || view.object == nullptr || out_of_hand(view) ||
-      view.object_velocity.norm() > fastest)
+bool PersonModel::is_offered_to(const PersonView& view, int side) const {
+  const double max_speed = settings_.behaviour.early ? kMaxEarlyOfferSpeed : kMaxOfferSpeed;
+  if (refusing_ || view.object == nullptr || is_unavailable(view) ||
+      view.object_velocity.norm() > max_speed)
     return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
-  // What the robot has only begun to lift from its place is not held out to anybody.
-  const bool is_taken_up = settings_.kind != PersonKind::taker || !p_gripped_ ||
-                           (view.T_world_object.translation() - *p_gripped_).norm() >= kTakenUp;
-  if (!is_taken_up) return false;
+  // An object that the robot has only begun to lift is not offered to anybody.
+  const bool is_lifted =
+      settings_.kind != PersonKind::taker || !p_object_at_grasp_ ||
+      (view.T_world_object.translation() - *p_object_at_grasp_).norm() >= kMinLift;
+  if (!is_lifted) return false;
   if (settings_.kind == PersonKind::partner && announcement_ != Announcement::offers) return false;
   return (object_centre(view) - shoulder(side)).norm() <
-         reach_ + (settings_.recording ? kStep : kLeanReach);
+         reach_ + (settings_.recording ? kMaxRecordedStep : kLeanReach);
 }
 
-// The better hand, unless the other is clearly nearer or the only one that reaches.
+/// Selects the preferred hand, unless the other hand is clearly nearer or only the other reaches
+/// the object.
 void PersonModel::choose_hand(const PersonView& view) {
   if (settings_.recording || view.object == nullptr) return;
-  const Side better = preferred_side();
+  const Side preferred = preferred_side();
   const double right = (object_centre(view) - shoulder(1)).norm(),
                left_distance = (object_centre(view) - shoulder(0)).norm();
-  const double own = better == Side::right ? right : left_distance,
-               other = better == Side::right ? left_distance : right;
+  const double own = preferred == Side::right ? right : left_distance,
+               other = preferred == Side::right ? left_distance : right;
   const bool change = !has_changed_hands() &&
                       (own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own));
-  side_ = change == (better == Side::right) ? Side::left : Side::right;
+  side_ = change == (preferred == Side::right) ? Side::left : Side::right;
 }
 
 void PersonModel::watch(double dt, const PersonView& view) {
@@ -287,14 +294,15 @@ void PersonModel::watch(double dt, const PersonView& view) {
                      settings_.kind == PersonKind::recording ||
                      settings_.kind == PersonKind::fetcher;
   if (settings_.behaviour.readies)
-    get_ready(dt, view);
+    raise_hand_in_advance(dt, view);
   else if (offer_time_ <= 0)
     choose_hand(view);
-  offer_time_ = takes && cooldown_ <= 0 && offered(view, index()) ? offer_time_ + dt : 0;
+  offer_time_ = takes && cooldown_ <= 0 && is_offered_to(view, hand_index()) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
   offer_time_ = 0;
   const Vector3 centre = object_centre(view);
-  const Vector3 toward = (shoulder(index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const Vector3 toward =
+      (shoulder(hand_index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
   side_of_object_ =
       (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero())))
@@ -304,98 +312,100 @@ void PersonModel::watch(double dt, const PersonView& view) {
   duration_ =
       std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
   lean_from_ = lean_;
-  const double excess = (goal - shoulder(index())).norm() - 0.95 * reach_;
-  lean_to_ = std::clamp(
-      lean_ + excess / std::max(0.2, template_[kShoulder[index()]].z() - template_[kWaist].z()),
-      0.0, 0.35);
+  const double excess = (goal - shoulder(hand_index())).norm() - 0.95 * reach_;
+  lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[hand_index()]].z() -
+                                                           template_[kWaist].z()),
+                        0.0, 0.35);
   hand_target_ = from_;
   hand_active_ = !settings_.recording;
-  ready_ = 0;
+  raise_progress_ = 0;
   playback_ = 0;
   if (settings_.recording) {
     home_ = feet_;
-    step_ = (goal - at_contact(home_)).cwiseProduct(Vector3(1, 1, 0));
-    if (step_.norm() > kStep) step_ *= kStep / step_.norm();
+    step_ = (goal - recorded_contact(home_)).cwiseProduct(Vector3(1, 1, 0));
+    if (step_.norm() > kMaxRecordedStep) step_ *= kMaxRecordedStep / step_.norm();
   }
   enter(PersonPhase::reaching);
 }
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
-  const double fastest = settings_.behaviour.early ? kGoneEarly : kGone;
-  const bool lost = refusing_ || view.object == nullptr || out_of_hand(view) ||
-                    view.object_velocity.norm() > fastest;
-  lost_time_ = lost ? lost_time_ + dt : 0;
-  if (lost_time_ > 0.3) return give_up();
+  const double max_speed = settings_.behaviour.early ? kMaxEarlyTargetSpeed : kMaxTargetSpeed;
+  const bool is_target_lost = refusing_ || view.object == nullptr || is_unavailable(view) ||
+                              view.object_velocity.norm() > max_speed;
+  exit_time_ = is_target_lost ? exit_time_ + dt : 0;
+  if (exit_time_ > 0.3) return give_up();
   if (view.object == nullptr) return;
   const double s = reach_fraction();
   lean_ = lean_from_ + s * (lean_to_ - lean_from_);
   hand_target_ = from_ + s * (grasp_point(view) - from_);
-  if (s >= kMidway && settings_.behaviour.withdraws && !came_once_) return give_up();
+  if (s >= kMidwayFraction && settings_.behaviour.withdraws && !first_attempt_over_)
+    return give_up();
   if (s < 1) return;
-  if (gap(view) < kPalm + 0.012) {
+  if (hand_to_surface(view) < kPalm + 0.012) {
     enter(PersonPhase::closing);
-  } else if (since() > reach_time() + 1.0) {
+  } else if (phase_time() > reach_duration() + 1.0) {
     give_up();
   }
 }
 
-void PersonModel::play(double dt, const PersonView& view) {
+void PersonModel::replay(double dt, const PersonView& view) {
   const Recording& recording = *settings_.recording;
-  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot ||
-                    view.object_velocity.norm() > 0.2;
-  lost_time_ = lost ? lost_time_ + dt : 0;
-  if (lost_time_ > 0.5 || since() > recording.contact + 1.5) return give_up();
+  const bool is_target_lost = refusing_ || view.object == nullptr || !view.held_by_robot ||
+                              view.object_velocity.norm() > 0.2;
+  exit_time_ = is_target_lost ? exit_time_ + dt : 0;
+  if (exit_time_ > 0.5 || phase_time() > recording.contact + 1.5) return give_up();
   playback_ = std::min(playback_ + dt, recording.contact);
   feet_ =
       home_ + min_jerk(playback_ / std::max(0.1, recording.contact - settings_.warp_time)) * step_;
-  place_base();
-  const Vector3 recorded = points_[kHand[index()]];
+  place_body();
+  const Vector3 recorded = points_[kHand[hand_index()]];
   if (view.object != nullptr) {
-    const Vector3 meets = at_contact(home_ + step_);
-    warp_ = nearest_hold(view, meets) - meets;
+    const Vector3 p_recorded_contact = recorded_contact(home_ + step_);
+    warp_ = nearest_grasp_point(view, p_recorded_contact) - p_recorded_contact;
     if (warp_.norm() > settings_.max_warp) warp_ *= settings_.max_warp / warp_.norm();
   }
   const double s = min_jerk(1 - (recording.contact - playback_) / settings_.warp_time);
   hand_active_ = s > 0;
   hand_target_ = recorded + s * warp_;
-  if (playback_ >= recording.contact && view.object != nullptr && gap(view) < kPalm + 0.012)
+  if (playback_ >= recording.contact && view.object != nullptr &&
+      hand_to_surface(view) < kPalm + 0.012)
     enter(PersonPhase::closing);
 }
 
 void PersonModel::pull(double dt, const PersonView& view) {
   if (!wants_grip_ || view.object == nullptr) return give_up();
   const Vector3 direction =
-      (keep_point() - hand_target_).cwiseProduct(Vector3(1, 1, 0)).normalized();
-  const double ramp = std::min(1.0, since() / 0.4);
-  const double felt = view.grip_force.dot(direction);
-  const double speed = std::clamp(0.02 * (ramp * settings_.pull - felt), -0.1, 0.1);
+      (carry_position() - hand_target_).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const double ramp = std::min(1.0, phase_time() / 0.4);
+  const double pull_force = view.grip_force.dot(direction);
+  const double speed = std::clamp(0.02 * (ramp * settings_.pull - pull_force), -0.1, 0.1);
   hand_target_ += speed * dt * direction;
-  sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
-  lost_time_ = view.held_by_robot ? 0 : lost_time_ + dt;
+  overload_time_ = view.grip_force.norm() > kMaxToleratedForce ? overload_time_ + dt : 0;
+  exit_time_ = view.held_by_robot ? 0 : exit_time_ + dt;
   const double moved = (hand_target_ - from_).dot(direction);
-  if (sore_time_ > 0.1 || since() > kPatience || moved < -0.15) {
+  if (overload_time_ > 0.1 || phase_time() > kMaxPullTime || moved < -0.15) {
     give_up();
-  } else if (lost_time_ > 0.1 || (moved > 0.05 && felt < 0.7 * settings_.pull)) {
+  } else if (exit_time_ > 0.1 || (moved > 0.05 && pull_force < 0.7 * settings_.pull)) {
     from_ = hand_target_;
     duration_ = 1.2;
     lean_from_ = lean_;
     home_ = feet_;
-    held_below_ = below_hand(view);
+    held_below_ = extent_below_hand(view);
     enter(PersonPhase::withdrawing);
   }
 }
 
 void PersonModel::withdraw(double dt, const PersonView& view) {
   if (!wants_grip_) return give_up();
-  sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
-  if (sore_time_ > 0.3) return give_up();
-  // People pull no harder than twice as usual, and give way where the object is caught.
-  const double pace = 2 - view.grip_force.norm() / settings_.pull;
-  progress_ = std::max(0.0, progress_ + dt / duration_ * std::clamp(pace, -kGiveWay, 1.0));
+  overload_time_ = view.grip_force.norm() > kMaxToleratedForce ? overload_time_ + dt : 0;
+  if (overload_time_ > 0.3) return give_up();
+  // A person pulls with at most twice the usual force, and moves back where the object is caught.
+  const double rate = 2 - view.grip_force.norm() / settings_.pull;
+  progress_ = std::max(0.0, progress_ + dt / duration_ * std::clamp(rate, -kMaxYieldRate, 1.0));
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
-  if (!settings_.behaviour.seated) feet_ = home_ - s * kStepBack * forward();
-  hand_target_ = from_ + s * (keep_point() - from_);
+  if (!settings_.behaviour.seated) feet_ = home_ - s * kStepBackLength * forward();
+  hand_target_ = from_ + s * (carry_position() - from_);
   if (progress_ < 1) return;
   from_ = hand_target_;
   enter(PersonPhase::keeping);
@@ -403,7 +413,7 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
 
 void PersonModel::give_up() {
   wants_grip_ = false;
-  came_once_ = true;
+  first_attempt_over_ = true;
   cooldown_ = 2.0;
   from_ = hand_active_ ? hand_target_ : hand_point();
   hand_active_ = true;
@@ -415,29 +425,29 @@ void PersonModel::give_up() {
 }
 
 void PersonModel::retract(double) {
-  const double s = min_jerk(since() / duration_);
+  const double s = min_jerk(phase_time() / duration_);
   lean_ = (1 - s) * lean_from_;
   playback_ = settings_.recording ? (1 - s) * warp_.x() : 0;
   const Vector3 rest =
-      feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[index()]];
+      feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[hand_index()]];
   hand_target_ = from_ + s * (rest - from_);
-  if (since() < duration_) return;
+  if (phase_time() < duration_) return;
   hand_active_ = false;
   playback_ = 0;
   enter(PersonPhase::watching);
 }
 
-void PersonModel::dart_on(double dt, const PersonView& view) {
+void PersonModel::continue_dart(double dt, const PersonView& view) {
   const Vector3 to = view.robot_hand - hand_target_;
-  const double pace = std::min(speed_, kMaxHandAcceleration * since());
-  const double move = std::min(pace * dt, std::max(0.0, to.norm() - 0.08));
+  const double speed = std::min(speed_, kMaxHandAcceleration * phase_time());
+  const double move = std::min(speed * dt, std::max(0.0, to.norm() - 0.08));
   if (to.norm() > 1e-6) hand_target_ += move / to.norm() * to;
-  const Vector3 beyond = hand_target_ - shoulder(index());
-  const Vector3 lacking =
+  const Vector3 beyond = hand_target_ - shoulder(hand_index());
+  const Vector3 missing_reach =
       std::max(0.0, 1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
-  feet_speed_ = std::min(feet_speed_ + kMaxTrunkAcceleration * dt, lacking.norm() / dt);
-  if (feet_speed_ > 0) feet_ += feet_speed_ * dt * lacking.normalized();
-  if (since() > 1.5) give_up();
+  feet_speed_ = std::min(feet_speed_ + kMaxTrunkAcceleration * dt, missing_reach.norm() / dt);
+  if (feet_speed_ > 0) feet_ += feet_speed_ * dt * missing_reach.normalized();
+  if (phase_time() > 1.5) give_up();
 }
 
 }  // namespace handsel::sim

@@ -1,6 +1,6 @@
-// An emulated person: a body moved by what it sees, its hands wanted somewhere and pushed
-// elsewhere. Pure: time comes in steps. Own method: the behaviours vary what the robot has to cope
-// with.
+// Emulates a person: computes body, gaze and the commanded poses of the hands from what the person
+// observes; forces may deflect the hands. Pure: time advances by step(). Own method: behaviour
+// profiles vary the conditions of a handover.
 #pragma once
 
 #include <array>
@@ -24,77 +24,78 @@ namespace handsel::sim {
 
 enum class PersonKind { taker, still, walker, recording, giver, external, fetcher, partner };
 
-/// What makes a person different from the next.
+/// The individual behaviour of one person.
 struct BehaviourProfile {
-  double speed_scale{1};  ///< of the hand, times the usual
-  double hesitation{};    ///< stops midway on the first reach or offer [s]
-  bool withdraws{};    ///< withdraws the hand once from its first reach or offer, and comes again
-  double look_away{};  ///< looks elsewhere once, so long [s] ...
-  double look_away_at{};              ///< ... from this time on [s]
-  Vector3 sidestep{Vector3::Zero()};  ///< walks so far [m] ...
-  double sidestep_at{};               ///< ... from this time on [s]
-  /// Raises the hand that will take while the robot has the object.
+  double speed_scale{1};  ///< speed of the hand divided by the default speed
+  double hesitation{};    ///< duration of a stop midway on the first reach or offer [s]
+  bool withdraws{};    ///< withdraws the hand once from the first reach or offer, then repeats the
+                       ///< motion
+  double look_away{};  ///< duration for which the gaze is averted once [s]
+  double look_away_at{};              ///< time at which the gaze is averted [s]
+  Vector3 sidestep{Vector3::Zero()};  ///< displacement of one sidestep, world [m]
+  double sidestep_at{};               ///< time at which the sidestep begins [s]
+  /// Raises the receiving hand in advance, while the robot holds the object.
   bool readies{};
-  /// Takes with the other hand only from this time on, the first is busy [s].
+  /// Time from which only the other hand receives objects [s]; infinity: never.
   double changes_hand_at{std::numeric_limits<double>::infinity()};
-  /// The times of sidestep and change of hand count from when the robot has the object.
+  /// The times of sidestep and change of hand count from the robot's first grasp of the object.
   bool from_carry{};
-  bool seated{};  ///< sits, and takes no steps aside or back
-  bool early{};   ///< takes what comes within reach while it still moves
+  bool seated{};  ///< the person sits and takes no steps
+  bool early{};   ///< takes an object within reach before it is at rest
 };
 
-/// A box that stands where it is.
+/// A fixed box.
 struct Furniture {
-  Pose T_world_box{Pose::Identity()};  ///< of its centre
+  Pose T_world_box{Pose::Identity()};  ///< pose of the centre
   Vector3 size{Vector3::Zero()};       ///< full extents [m]
 };
 
 struct PersonSettings {
   std::string id;                      ///< unique in the scenario
-  Vector3 feet{Vector3::Zero()};       ///< world [m]
-  double yaw{};                        ///< facing, 0 = +x [rad]
-  double stature{1.75};                ///< [m]
+  Vector3 feet{Vector3::Zero()};       ///< position on the floor, world [m]
+  double yaw{};                        ///< direction of the body, 0 = +x [rad]
+  double stature{1.75};                ///< body height [m]
   PersonKind kind{PersonKind::taker};  ///< behaviour
-  double reaction{0.4};                ///< from offer to reach [s]
-  double approach_from{};              ///< walks in from this far behind its place [m]
-  double pull{8.0};                    ///< when taking [N]
-  bool left_handed{};                  ///< prefers the left hand; a recording has a hand of its own
-  bool holds{};                        ///< a partner begins with its object in the hand
-  std::shared_ptr<const Recording> recording;  ///< motion to play; null: none
-  std::string external;                        ///< source of the body an external person follows
-  /// An external person's hand closer than this to an offered object is led to it [m].
+  double reaction{0.4};                ///< reaction time from an offer to the reach [s]
+  double approach_from{};  ///< distance behind the place from which the person walks in [m]
+  double pull{8.0};        ///< pull force of a receiver [N]
+  bool left_handed{};      ///< prefers the left hand; a recording defines its own hand
+  bool holds{};            ///< a partner starts with the object in the hand
+  std::shared_ptr<const Recording> recording;  ///< motion to replay; null: none
+  std::string external;  ///< source of observations that an external person follows
+  /// Max distance at which an external person's hand is guided to an offered object [m].
   double correction{0.15};
-  double max_warp{0.10};             ///< a recorded hand is moved by no more than this [m]
-  double warp_time{0.5};             ///< over the last part before contact [s]
-  double fetches_at{};               ///< a fetcher reaches for its object from then on [s]
-  StepInSettings steps_in;           ///< a person at rest otherwise comes from behind
-  MovingOfferSettings moving;        ///< how a giver moves what is offered; duration 0: not at all
-  BehaviourProfile behaviour{};      ///< what this person does differently
-  std::vector<Furniture> furniture;  ///< what they hold is kept above it
+  double max_warp{0.10};    ///< max displacement of a recorded hand [m]
+  double warp_time{0.5};    ///< duration before contact over which a recorded hand is displaced [s]
+  double fetches_at{};      ///< time from which a fetcher reaches for the object [s]
+  StepInSettings steps_in;  ///< walk of an otherwise resting person toward the robot and back
+  MovingOfferSettings moving;    ///< how a giver moves the offered object; duration 0: no motion
+  BehaviourProfile behaviour{};  ///< individual behaviour
+  std::vector<Furniture> furniture;  ///< held objects stay above these boxes
 };
 
-/// What the person sees and feels.
+/// What the person observes, by sight and by touch.
 struct PersonView {
-  /// Where the platform of a robot that drives stands, world [m]; nullopt: the robot does not
-  /// drive.
+  /// Position of the robot's mobile platform, world [m]; nullopt: the robot has none.
   std::optional<Vector3> platform{};
-  Vector3 robot_hand{Vector3::Zero()};       ///< world [m]
-  const ObjectModel* object{nullptr};        ///< the one the handover is about; nullptr: none
-  Pose T_world_object{Pose::Identity()};     ///< of `object`
-  Vector3 object_velocity{Vector3::Zero()};  ///< of its centre of mass, world [m/s]
-  bool held_by_robot{};                      ///< `object` is in a hand of the robot
-  bool held_firmly{};                        ///< and would not fall if nobody else held it
-  /// Left, right: how far forces keep the hand from where it is wanted [m].
+  Vector3 robot_hand{Vector3::Zero()};    ///< palm position, world [m]
+  const ObjectModel* object{nullptr};     ///< object of the handover; nullptr: none
+  Pose T_world_object{Pose::Identity()};  ///< pose of `object`
+  /// Velocity of the object's centre of mass, world [m/s].
+  Vector3 object_velocity{Vector3::Zero()};
+  bool held_by_robot{};  ///< whether a hand of the robot holds `object`
+  bool held_firmly{};    ///< whether the robot's grasp alone bears the object's weight
+  /// Left, right: displacement of the hand from its commanded position by forces, world [m].
   std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
-  bool grip_broke{};                    ///< it slipped out of this person's hand
-  Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
-  /// Of the robot's nearest finger from the surface of `object` [m].
+  bool grip_broke{};                    ///< the object slipped out of this person's hand
+  Vector3 grip_force{Vector3::Zero()};  ///< force of this person's hand on the object, world [N]
+  /// Distance of the robot's nearest finger from the surface of `object` [m].
   double finger_distance{std::numeric_limits<double>::infinity()};
-  /// Of `object`, in the frame of the hand that holds it [m].
+  /// Position of `object` in the frame of the hand that holds it [m].
   Vector3 p_hand_object{Vector3::Zero()};
 };
 
-/// What a partner hears the robot say about an object.
+/// What the robot announces to a partner about an object.
 enum class Announcement { none, offers, asks };
 
 enum class PersonPhase {
@@ -110,72 +111,81 @@ enum class PersonPhase {
   darting,
   leaving
 };
-const char* name(PersonPhase);  ///< as in the enumeration
+const char* name(PersonPhase);  ///< Returns the name as in the enumeration.
 
 class PersonModel {
  public:
   explicit PersonModel(const PersonSettings&);
 
-  /// Advances by dt [s] (>= 0). A frozen person's own time stops; its pushed hands still move.
+  /// Advances by dt [s] (>= 0). The time of a frozen person stops, but forces still move the
+  /// hands.
   void step(double dt, const PersonView&);
-  /// Takes where an external person is now, as reported from outside; other people and frozen ones
-  /// ignore it.
+  /// Takes an observation of the body that an external person follows; all other people and frozen
+  /// people ignore the observation.
   void follow(const ObservedPerson&);
-  void freeze(bool on) { frozen_ = on; }  ///< on: the person no longer acts
-  void dart(double speed);                ///< the hand moves fast toward the robot's hand [m/s]
-  void leave();                           ///< walks 3 m backward, with what is in the hand
-  void refuse() { refusing_ = true; }     ///< neither reaches for nor offers an object any more
-  /// Tells a partner what the robot does: a partner takes only what is offered, and offers what the
-  /// robot asks for.
+  /// Stops (`on`) or continues all actions of the person.
+  void freeze(bool on) { frozen_ = on; }
+  /// Starts a fast motion of the hand toward the robot's hand, at `speed` [m/s].
+  void dart(double speed);
+  /// Starts a walk of 3 m backward; a held object stays in the hand.
+  void leave();
+  /// Ends all reaching for objects and all offers.
+  void refuse() { refusing_ = true; }
+  /// Takes an announcement of the robot: a partner takes an object only if the robot offers it, and
+  /// offers an object if the robot asks for it.
   void announce(Announcement announcement);
 
-  /// Whether a giver moves what is offered: the distance of the robot's fingers is needed.
-  bool minds_fingers() const { return settings_.moving.duration > 0; }
-  const std::string& source() const { return settings_.external; }  ///< followed; empty: none
-  const std::string& id() const { return settings_.id; }            ///< unique in the scenario
-  /// Whether announce() changes, now or later, what the person does.
-  bool listens() const {
+  /// Returns whether the person needs PersonView::finger_distance: a giver moves the offer.
+  bool needs_finger_distance() const { return settings_.moving.duration > 0; }
+  /// Returns the source followed; empty: none.
+  const std::string& source() const { return settings_.external; }
+  const std::string& id() const { return settings_.id; }  ///< unique in the scenario
+  /// Returns whether announce() changes the behaviour now or later.
+  bool reacts_to_announcements() const {
     return settings_.kind == PersonKind::partner || settings_.kind == PersonKind::giver;
   }
-  PersonPhase phase() const { return phase_; }     ///< what the person does now
-  const Person& body() const { return body_; }     ///< ground truth, velocities included
-  Side side() const { return side_; }              ///< of the handover hand
-  bool wants_grip() const { return wants_grip_; }  ///< whether that hand is to hold its object
-  /// Whether a handover is under way: from reach or offer until the object is withdrawn or
-  /// the hand is back. Never for a fetcher, which takes an object by itself.
+  PersonPhase phase() const { return phase_; }  ///< current phase
+  const Person& body() const { return body_; }  ///< ground truth, velocities included
+  Side side() const { return side_; }           ///< side of the handover hand
+  /// Returns whether the handover hand is to hold the object.
+  bool wants_grip() const { return wants_grip_; }
+  /// Returns whether a handover is under way: from reach or offer until the object is withdrawn or
+  /// the hand is back at rest. Always false for a fetcher, which fetches the object itself.
   bool in_handover() const;
-  /// Whether the person offers the object at rest: from the end of the motion until the withdrawal.
+  /// Returns whether the person offers the object at rest: from the end of the offering motion
+  /// until the withdrawal.
   bool is_offering() const;
-  /// Where the handover hand is wanted; axes turn with the body.
-  const BodyState& hand() const { return hands_[index()]; }
-  const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
-  bool placed() const { return placed_; }  ///< the next step takes it elsewhere without a motion
-  double reach() const { return reach_; }  ///< shoulder to middle of the hand [m]
-  static constexpr double kPalm = 0.03;    ///< middle of the hand to what it holds [m]
+  /// Returns the commanded state of the handover hand; its axes turn with the body.
+  const BodyState& hand() const { return hands_[hand_index()]; }
+  /// Returns the commanded state; 0 left, 1 right.
+  const BodyState& hand(int side) const { return hands_[side]; }
+  bool placed() const { return placed_; }  ///< the body was placed elsewhere without a motion
+  double reach() const { return reach_; }  ///< shoulder to the centre of the hand [m]
+  static constexpr double kPalm = 0.03;    ///< centre of the hand to the held object [m]
 
  private:
-  void place_base();
-  void want_hands(double dt);
+  void place_body();
+  void command_hands(double dt);
   void bend_arm(int side, const Vector3& target);
-  void look_at(const Vector3& target, double dt);
+  void turn_gaze(const Vector3& target, double dt);
   void enter(PersonPhase);
-  void act(double dt, const PersonView&);
-  /// Returns whether someone walking would come too near to a robot that drives.
+  void run_phase(double dt, const PersonView&);
+  /// Returns whether a walker would come too near to a mobile robot.
   bool waits_for_robot(const PersonView& view) const;
-  /// Stands for a while, then turns back. `duration`: of the whole walk [s].
+  /// Waits at rest, then turns back. `duration`: of the whole walk [s].
   void wait_for_robot(double dt, double duration);
   void watch(double dt, const PersonView&);
   void reach_out(double dt, const PersonView&);
-  void play(double dt, const PersonView&);
+  void replay(double dt, const PersonView&);
   void pull(double dt, const PersonView&);
   void withdraw(double dt, const PersonView&);
   void retract(double dt);
-  void dart_on(double dt, const PersonView&);
+  void continue_dart(double dt, const PersonView&);
   void give_up();
-  void take_part();
-  void hold_back(const PersonView&);
+  void become_partner();
+  void hold_object(const PersonView&);
   bool is_to_offer() const;
-  void come_back();
+  void return_to_place();
   Vector3 step_to_place() const;
   Vector3 offer_from_shoulder(const PersonView&, const Vector3& step = Vector3::Zero()) const;
   void offer(double dt, const PersonView&);
@@ -183,53 +193,61 @@ class PersonModel {
   void offer_in_motion(double dt, const PersonView&);
   void step_aside(double dt);
   double reach_fraction() const;
-  double reach_time() const;
-  Vector3 looked_at(const PersonView&) const;
-  void accompany(double dt, const PersonView&);
-  void pull_after(const Vector3& would_be, double dt, const PersonView&);
+  double reach_duration() const;
+  Vector3 gaze_target(const PersonView&) const;
+  void run_external_person(double dt, const PersonView&);
+  void pull_toward(const Vector3& p_free_hand, double dt, const PersonView&);
   void release();
-  bool offered(const PersonView&, int side) const;
-  bool out_of_hand(const PersonView&) const;
+  bool is_offered_to(const PersonView&, int side) const;
+  bool is_unavailable(const PersonView&) const;
   void choose_hand(const PersonView&);
-  void get_ready(double dt, const PersonView&);
+  void raise_hand_in_advance(double dt, const PersonView&);
   bool has_changed_hands() const;
   Side preferred_side() const;
   double behaviour_time() const;
   Vector3 grasp_point(const PersonView&) const;
-  Vector3 nearest_hold(const PersonView&, const Vector3& from) const;
-  Vector3 at_contact(const Vector3& feet) const;
+  Vector3 nearest_grasp_point(const PersonView&, const Vector3& from) const;
+  Vector3 recorded_contact(const Vector3& feet) const;
   Vector3 shoulder(int side) const;
   Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
   Vector3 left() const { return {-std::sin(yaw_), std::cos(yaw_), 0}; }
   Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
-  double gap(const PersonView&) const;
-  Vector3 keep_point() const;
+  double hand_to_surface(const PersonView&) const;
+  Vector3 carry_position() const;
   double height_above_furniture(const Vector3& hand) const;
   void keep_above_furniture(const Vector3& robot_hand);
-  double below_hand(const PersonView&) const;
-  double since() const { return clock_ - phase_since_; }
-  Vector3 hand_point() const { return hands_[index()].T_world_body.translation(); }
-  int index() const { return side_ == Side::left ? 0 : 1; }
+  double extent_below_hand(const PersonView&) const;
+  double phase_time() const { return clock_ - phase_since_; }
+  Vector3 hand_point() const { return hands_[hand_index()].T_world_body.translation(); }
+  int hand_index() const { return side_ == Side::left ? 0 : 1; }
 
   PersonSettings settings_;
   BodyPoints template_{}, points_{}, before_{};
-  double reach_{}, clock_{0}, phase_since_{0}, offer_time_{0}, lost_time_{0}, sore_time_{0},
-      cooldown_{0}, playback_{0}, progress_{0};
+  double reach_{};           // distance from the shoulder to the centre of the hand [m]
+  double clock_{0};          // own time, which stops while frozen [s]
+  double phase_since_{0};    // begin of the phase, by clock_ [s]
+  double offer_time_{0};     // duration for which the robot has offered the object [s]
+  double exit_time_{0};      // duration for which the condition that ends the phase has held [s]
+  double overload_time_{0};  // duration for which the grip force has been too large [s]
+  double cooldown_{0};       // time until the next reach is allowed [s]
+  double playback_{0};       // time in the recording [s]
+  double progress_{0};       // progress of a withdrawal, 0 to 1
   PersonPhase phase_{PersonPhase::watching};
   Side side_{Side::right};
   bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true},
       placed_{false};
-  bool came_once_{false};  // the first reach or offer is over
-  double step_clock_{0};   // of the sidestep
-  // When the robot first had the object, by the clock of the person [s]; infinity: not yet.
+  bool first_attempt_over_{false};  // whether the first reach or offer is over
+  double sidestep_time_{0};         // time since the begin of the sidestep [s]
+  // Time of the robot's first grasp of the object, by clock_ [s]; infinity: none so far.
   double carried_since_{std::numeric_limits<double>::infinity()};
-  bool seen_held_{true};              // the robot held the object in the step before
-  std::optional<Vector3> p_gripped_;  // where it gripped the object; nullopt: not seen
-  double held_below_{0};              // how far the held object extends below the hand [m]
-  double ready_{0};                   // fraction of the time of raising the hand
-  double ignored_{0};                 // the offer, so long [s]
+  bool held_by_robot_before_{true};  // whether the robot held the object in the previous step
+  // Where the robot grasped the object, world [m]; nullopt: unobserved.
+  std::optional<Vector3> p_object_at_grasp_;
+  double held_below_{0};      // extent of the held object below the hand [m]
+  double raise_progress_{0};  // progress of raising the hand, 0 to 1
+  double ignored_time_{0};    // duration for which the robot has ignored the offer [s]
   Announcement announcement_{Announcement::none};
-  double announced_at_{0};  // by the clock of the person [s]
+  double announced_at_{0};  // by clock_ [s]
   int steps_nearer_{0};
   Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};
@@ -237,12 +255,13 @@ class PersonModel {
       walk_direction_{1}, waited_for_robot_{0};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()},
       side_of_object_{Vector3::UnitX()}, warp_{Vector3::Zero()}, step_{Vector3::Zero()};
-  std::optional<FollowedBody> followed_;    // of an external person
-  std::optional<MovingOffer> moving_;       // of a giver who keeps moving, once they offer
-  Vector3 p_hand_object_{Vector3::Zero()};  // of what is moved, in the hand [m]
-  // Of the handover hand from its middle configuration.
+  std::optional<FollowedBody> followed_;    // body of an external person
+  std::optional<MovingOffer> moving_;       // motion of the offer; nullopt: not begun
+  Vector3 p_hand_object_{Vector3::Zero()};  // the moved object in the hand frame [m]
+  // Rotation of the handover hand from the neutral wrist configuration.
   Eigen::Quaterniond hand_turn_{Eigen::Quaterniond::Identity()};
-  Vector3 led_{Vector3::Zero()};  // of its hand from where it is reported to be
+  // Offset of the hand from its reported position, world [m].
+  Vector3 hand_offset_{Vector3::Zero()};
   Vector3 gaze_{Vector3::UnitX()};
   Person body_;
   std::array<BodyState, 2> hands_;

@@ -1,4 +1,4 @@
-// What makes people different: who offers, hesitates, changes their mind, looks away, steps aside.
+// Individual behaviour of people: offers, hesitation, withdrawal, averted gaze, sidesteps.
 #include <limits>
 
 #include "sim/people/person.hpp"
@@ -8,66 +8,77 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kPart = 0.6;   // each part of a reach with a stop takes this share of one without
-constexpr double kLetGo = 0.5;  // who gives lets go once the robot has held on for so long [s]
-constexpr double kComeNear = 0.35;   // the robot's hand, when who changes their mind does so [m]
-constexpr double kReconsider = 2.0;  // before the second offer [s]
-constexpr double kMoveTime = 1.0;    // to where a giver who keeps moving begins to do so [s]
-// Such a giver holds the object this far out: share of the arm's length [1], before the shoulder
-// [m].
-constexpr double kMinOut = 0.6, kMaxOut = 0.95, kMinBefore = 0.4;
-constexpr double kOffFingers = 0.35;  // ... and this far from the robot's palm [m]
-constexpr double kOfferTime = 1.0;    // of the motion [s]
-constexpr double kTurnBack = 0.5;    // time constant of a hand that turns back after the motion [s]
-constexpr double kMostTurn = 0.6;    // of the offer out of the way ahead [rad]
-constexpr double kBeforeHand = 0.5;  // from the robot's hand, where something is held out [m]
-constexpr double kImpatience = 8.0;  // who is ignored for so long holds it out anew [s] ...
-constexpr double kStepNearer = 0.12;  // ... and comes nearer by this [m] ...
-constexpr int kMostSteps = 2;         // ... so often ...
-constexpr double kBend = 0.01;  // ... where the arm need not bend for it by more than this [m]
-// [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it,
-// and lower with every step away from there.
-constexpr double kAbove = 0.12, kBeside = 0.12;
-constexpr double kOverFurniture = 0.02;  // of the lowest point of what is held [m]
-// Who waits for something raises a hand so long [s], to so far ahead of the shoulder and below it,
-// over the stature: the forearm level.
-constexpr double kReadyTime = 0.7, kReadyAhead = 0.18, kReadyBelow = 0.19;
-// Who takes something draws it away from the robot's hand before it is lifted: within so long [s],
-// and from so far off on [m].
-constexpr double kLift = 1.2, kClearOfHand = 0.30, kOffHand = 0.15;
+// Duration of each part of a reach with a stop, divided by the duration of a reach without a stop.
+constexpr double kPartDuration = 0.6;
+// Time for which the robot must hold the object before a giver releases the object [s].
+constexpr double kReleaseDelay = 0.5;
+// Distance of the robot's hand at which a giver withdraws an offer [m].
+constexpr double kWithdrawDistance = 0.35;
+constexpr double kSecondOfferDelay = 2.0;  // time before the second offer [s]
+// Duration of the motion to the start of a moving offer [s].
+constexpr double kMoveTime = 1.0;
+// Bounds of the distance from the shoulder in a moving offer, divided by the length of the arm.
+constexpr double kMinExtension = 0.6, kMaxExtension = 0.95;
+constexpr double kMinBeforeShoulder = 0.4;  // min distance in front of the shoulder [m]
+constexpr double kMinPalmDistance = 0.35;   // min distance from the robot's palm [m]
+constexpr double kOfferTime = 1.0;          // duration of the motion to an offer [s]
+// Time constant of the hand's return to the neutral wrist configuration [s].
+constexpr double kWristReturnTime = 0.5;
+constexpr double kMaxOfferTurn = 0.6;       // max angle of an offer from straight ahead [rad]
+constexpr double kMinHandDistance = 0.5;    // min distance of an offer from the robot's hand [m]
+constexpr double kMaxIgnoredTime = 8.0;     // time after which an ignored offer is repeated [s]
+constexpr double kStepNearerLength = 0.12;  // step toward the robot before a repeated offer [m]
+constexpr int kMaxStepsNearer = 2;          // max number of these steps
+// Max shortening of the arm by such a step [m]; otherwise no step is made.
+constexpr double kMaxArmShortening = 0.01;
+constexpr double kAboveFurniture = 0.12;   // min height of a holding hand above furniture [m]
+constexpr double kBesideFurniture = 0.12;  // horizontal distance up to which this height holds [m]
+// Min height of the lowest point of a held object above furniture [m].
+constexpr double kObjectAboveFurniture = 0.02;
+constexpr double kRaiseTime = 0.7;  // duration of raising a hand in advance [s]
+// Position of a raised hand, forearm level: ahead of and below the shoulder, divided by the
+// stature.
+constexpr double kRaisedAhead = 0.18, kRaisedBelow = 0.19;
+// A received object is moved away from the robot's hand before it is lifted over furniture.
+// The lift rises over this time [s], and with the distance from the robot's hand: from this min
+// distance over this range [m].
+constexpr double kLiftTime = 1.2, kLiftMinHandDistance = 0.30, kLiftHandRange = 0.15;
 
 }  // namespace
 
-/// Share of the way of a reach or an offer.
+/// Returns the completed fraction of a reach or an offer, 0 to 1.
 double PersonModel::reach_fraction() const {
-  const double t = since(), part = kPart * duration_, stop = settings_.behaviour.hesitation;
-  const bool wavers = !came_once_ && (stop > 0 || settings_.behaviour.withdraws);
-  if (!wavers) return min_jerk(t / duration_);
-  return t < part + stop ? kMidway * min_jerk(t / part)
-                         : kMidway + (1 - kMidway) * min_jerk((t - part - stop) / part);
+  const double t = phase_time(), part = kPartDuration * duration_,
+               stop = settings_.behaviour.hesitation;
+  const bool in_two_parts = !first_attempt_over_ && (stop > 0 || settings_.behaviour.withdraws);
+  if (!in_two_parts) return min_jerk(t / duration_);
+  return t < part + stop
+             ? kMidwayFraction * min_jerk(t / part)
+             : kMidwayFraction + (1 - kMidwayFraction) * min_jerk((t - part - stop) / part);
 }
 
-double PersonModel::reach_time() const {
-  const bool wavers =
-      !came_once_ && (settings_.behaviour.hesitation > 0 || settings_.behaviour.withdraws);
-  return wavers ? 2 * kPart * duration_ + settings_.behaviour.hesitation : duration_;
+double PersonModel::reach_duration() const {
+  const bool in_two_parts =
+      !first_attempt_over_ && (settings_.behaviour.hesitation > 0 || settings_.behaviour.withdraws);
+  return in_two_parts ? 2 * kPartDuration * duration_ + settings_.behaviour.hesitation : duration_;
 }
 
 bool PersonModel::is_offering() const {
-  return phase_ == PersonPhase::offering && since() >= reach_time();
+  return phase_ == PersonPhase::offering && phase_time() >= reach_duration();
 }
 
-/// A giver offers unasked, a partner when the robot has asked for a reaction time.
+/// Returns whether the person is to offer: a giver always, a partner once the robot has asked for
+/// at least the reaction time.
 bool PersonModel::is_to_offer() const {
   if (refusing_) return false;
   return settings_.kind == PersonKind::giver ||
          (announcement_ == Announcement::asks && clock_ - announced_at_ >= settings_.reaction);
 }
 
-void PersonModel::hold_back(const PersonView& view) {
+void PersonModel::hold_object(const PersonView& view) {
   const double back = kOfferTime / settings_.behaviour.speed_scale;
-  hand_target_ = from_ + min_jerk(since() / back) * (keep_point() - from_);
-  if (!is_to_offer() || since() < duration_) return;
+  hand_target_ = from_ + min_jerk(phase_time() / back) * (carry_position() - from_);
+  if (!is_to_offer() || phase_time() < duration_) return;
   from_ = hand_target_;
   home_ = feet_;
   duration_ = back;
@@ -75,42 +86,43 @@ void PersonModel::hold_back(const PersonView& view) {
   enter(PersonPhase::offering);
 }
 
-/// Returns the step that takes a partner back to its place, from where it went with what it took.
+/// Returns the step that returns a partner to the starting place after the step back with a
+/// received object; zero for all others.
 Vector3 PersonModel::step_to_place() const {
   return settings_.kind == PersonKind::partner ? Vector3(settings_.feet - home_)
                                                : Vector3(Vector3::Zero());
 }
 
-/// Comfortably toward the robot's hand, but not into it, after a step.
+/// Returns the vector from the shoulder to a comfortable offer toward the robot's hand, at least
+/// kMinHandDistance from the hand, after a step; world [m].
 Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& step) const {
-  const Vector3 root = shoulder(index()),
+  const Vector3 root = shoulder(hand_index()),
                 to_hand = view.robot_hand - root - (home_ + step_to_place() - feet_) - step;
   Vector3 arm = comfortable_reach(body_, side_) - root;
   const double turn =
       std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);
-  arm = Eigen::AngleAxisd(std::clamp(turn, -kMostTurn, kMostTurn), Vector3::UnitZ()) * arm;
-  const double too_near = kBeforeHand - (to_hand - arm).norm();
-  if (too_near > 0) arm.head<2>() *= std::max(0.0, 1 - too_near / arm.head<2>().norm());
+  arm = Eigen::AngleAxisd(std::clamp(turn, -kMaxOfferTurn, kMaxOfferTurn), Vector3::UnitZ()) * arm;
+  const double shortfall = kMinHandDistance - (to_hand - arm).norm();
+  if (shortfall > 0) arm.head<2>() *= std::max(0.0, 1 - shortfall / arm.head<2>().norm());
   return arm;
 }
 
-void PersonModel::come_back() {
+void PersonModel::return_to_place() {
   const Vector3 step = step_to_place();
-  if (step.norm() > 0) feet_ = home_ + min_jerk(since() / step_time(step.norm())) * step;
+  if (step.norm() > 0) feet_ = home_ + min_jerk(phase_time() / step_time(step.norm())) * step;
 }
 
-/// Makes a giver who has given a partner: takes the object when it is handed back, and offers it at
-/// rest when asked again.
-void PersonModel::take_part() {
+/// Turns a giver into a partner, who receives the object back and offers it at rest on request.
+void PersonModel::become_partner() {
   if (settings_.kind == PersonKind::giver) settings_.kind = PersonKind::partner;
   settings_.moving = {};
 }
 
 void PersonModel::offer(double dt, const PersonView& view) {
-  // Fingers that only touch the object could not bear it.
-  lost_time_ = view.held_firmly ? lost_time_ + dt : 0;
-  if (lost_time_ > kLetGo) {
-    take_part();
+  // Fingers that only touch the object cannot bear its weight.
+  exit_time_ = view.held_firmly ? exit_time_ + dt : 0;
+  if (exit_time_ > kReleaseDelay) {
+    become_partner();
     return give_up();
   }
   if (view.held_by_robot) return;
@@ -118,77 +130,80 @@ void PersonModel::offer(double dt, const PersonView& view) {
     offer_in_motion(dt, view);
     if (!moving_->is_over()) return;
   } else {
-    come_back();
+    return_to_place();
     turn_hand_back(dt);
-    hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
+    hand_target_ = from_ + reach_fraction() * (shoulder(hand_index()) + p_shoulder_offer_ - from_);
   }
-  const bool near =
-      view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kComeNear;
-  if (near || since() < duration_) ignored_ = 0;
-  if ((ignored_ += dt) > kImpatience) {  // holds it out anew, nearer to where the robot's hand is
-    ignored_ = 0;
+  const bool is_hand_near =
+      view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kWithdrawDistance;
+  if (is_hand_near || phase_time() < duration_) ignored_time_ = 0;
+  if ((ignored_time_ += dt) > kMaxIgnoredTime) {  // repeats the offer nearer to the robot's hand
+    ignored_time_ = 0;
     settings_.moving = {};
     from_ = hand_target_;
     home_ = feet_;
     const Vector3 step =
-        kStepNearer *
+        kStepNearerLength *
         (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
     p_shoulder_offer_ = offer_from_shoulder(view);
     const Vector3 nearer = offer_from_shoulder(view, step);
-    // Nobody steps nearer only to bend the arm.
-    const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - kBend;
-    const bool steps_nearer = has_room && !settings_.behaviour.seated && steps_nearer_ < kMostSteps;
+    // A step that only bends the arm is not made.
+    const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - kMaxArmShortening;
+    const bool steps_nearer =
+        has_room && !settings_.behaviour.seated && steps_nearer_ < kMaxStepsNearer;
     if (steps_nearer) p_shoulder_offer_ = nearer;
     if (steps_nearer) {
       ++steps_nearer_;
       settings_.behaviour.sidestep = step;
       home_aside_ = aside_;
-      step_clock_ = 0;
+      sidestep_time_ = 0;
       settings_.behaviour.sidestep_at = behaviour_time();
     }
     enter(PersonPhase::offering);
   }
-  if (is_to_offer() && !(near && settings_.behaviour.withdraws && !came_once_)) return;
-  came_once_ = true;
+  if (is_to_offer() && !(is_hand_near && settings_.behaviour.withdraws && !first_attempt_over_))
+    return;
+  first_attempt_over_ = true;
   from_ = hand_target_;
-  duration_ = kReconsider;
+  duration_ = kSecondOfferDelay;
   enter(PersonPhase::keeping);
 }
 
-/// Turns the hand back to the middle configuration of the wrist.
+/// Turns the hand back to the neutral configuration of the wrist.
 void PersonModel::turn_hand_back(double dt) {
   if (hand_turn_.w() < 1)
-    hand_turn_ = hand_turn_.slerp(std::min(1.0, dt / kTurnBack), Eigen::Quaterniond::Identity());
+    hand_turn_ =
+        hand_turn_.slerp(std::min(1.0, dt / kWristReturnTime), Eigen::Quaterniond::Identity());
 }
 
-/// Leads the hand to where the motion begins, then along it. The object turns about itself, so that
-/// the hand goes around it.
+/// Moves the hand to the start of the moving offer, then along its curves. The object turns about
+/// its own origin, so the hand moves around the object.
 void PersonModel::offer_in_motion(double dt, const PersonView& view) {
   const Eigen::Quaterniond facing(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
   if (!moving_) {
-    const ArmReach reach{shoulder(index()), forward(),
-                         kMinOut * reach_,  kMaxOut * reach_,
-                         kMinBefore,        view.robot_hand - facing * view.p_hand_object,
-                         kOffFingers};
-    // The boxes are of the object; in reach is the hand, in the middle posture of the wrist.
+    const ArmReach reach{shoulder(hand_index()), forward(),
+                         kMinExtension * reach_, kMaxExtension * reach_,
+                         kMinBeforeShoulder,     view.robot_hand - facing * view.p_hand_object,
+                         kMinPalmDistance};
+    // The boxes bound the object, but the reach bounds the hand in the neutral wrist configuration.
     MovingOfferSettings of_hand = settings_.moving;
     p_hand_object_ = view.p_hand_object;
     const Vector3 ahead = facing * p_hand_object_;
     for (Vector3* corner :
          {&of_hand.start_low, &of_hand.start_high, &of_hand.next_low, &of_hand.next_high})
       *corner -= ahead;
-    moving_.emplace(of_hand, reach, shoulder(index()) + p_shoulder_offer_);
+    moving_.emplace(of_hand, reach, shoulder(hand_index()) + p_shoulder_offer_);
   }
   const bool waits = view.finger_distance < settings_.moving.waits_within;
-  if (waits && since() < kMoveTime) phase_since_ += dt;
-  const double s = min_jerk(since() / kMoveTime);
+  if (waits && phase_time() < kMoveTime) phase_since_ += dt;
+  const double s = min_jerk(phase_time() / kMoveTime);
   if (s >= 1) moving_->step(dt, waits);
   hand_turn_ = Eigen::Quaterniond::Identity().slerp(s, moving_->turn());
   const Vector3 turned = facing * (p_hand_object_ - hand_turn_ * p_hand_object_);
   hand_target_ = from_ + s * (moving_->position() + turned - from_);
 }
 
-/// Returns the time that sidestep and change of hand are counted in [s].
+/// Returns the time to which sidestep and change of hand refer [s].
 double PersonModel::behaviour_time() const {
   return settings_.behaviour.from_carry ? clock_ - carried_since_ : clock_;
 }
@@ -202,72 +217,74 @@ Side PersonModel::preferred_side() const {
   return has_changed_hands() ? other_side(usual) : usual;
 }
 
-/// Raises the preferred hand before the body while the robot has the object, or the other one where
-/// the preferred does not reach and that one is free. A hand that was raised is lowered first.
-void PersonModel::get_ready(double dt, const PersonView& view) {
+/// Raises the preferred hand in front of the body while the robot holds the object. Uses the other
+/// hand if only that hand reaches the object and is free. Lowers a raised hand before a change.
+void PersonModel::raise_hand_in_advance(double dt, const PersonView& view) {
   Side wanted = preferred_side();
-  const bool is_carried = view.object != nullptr && view.held_by_robot;
-  if (is_carried && !has_changed_hands() && !offered(view, wanted == Side::left ? 0 : 1) &&
-      offered(view, wanted == Side::left ? 1 : 0))
+  const bool robot_holds_object = view.object != nullptr && view.held_by_robot;
+  if (robot_holds_object && !has_changed_hands() &&
+      !is_offered_to(view, wanted == Side::left ? 0 : 1) &&
+      is_offered_to(view, wanted == Side::left ? 1 : 0))
     wanted = other_side(wanted);
-  const bool is_raised = is_carried && side_ == wanted && !refusing_;
-  ready_ = std::clamp(ready_ + (is_raised ? dt : -dt) / kReadyTime, 0.0, 1.0);
-  hand_active_ = ready_ > 0;
+  const bool is_raised = robot_holds_object && side_ == wanted && !refusing_;
+  raise_progress_ = std::clamp(raise_progress_ + (is_raised ? dt : -dt) / kRaiseTime, 0.0, 1.0);
+  hand_active_ = raise_progress_ > 0;
   if (!hand_active_) side_ = wanted;
   const Vector3 rest =
-      feet_ + aside_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[index()]];
-  const Vector3 raised = shoulder(index()) +
-                         settings_.stature * (kReadyAhead * forward() - Vector3(0, 0, kReadyBelow));
-  hand_target_ = rest + min_jerk(ready_) * (raised - rest);
+      feet_ + aside_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[hand_index()]];
+  const Vector3 raised = shoulder(hand_index()) + settings_.stature * (kRaisedAhead * forward() -
+                                                                       Vector3(0, 0, kRaisedBelow));
+  hand_target_ = rest + min_jerk(raise_progress_) * (raised - rest);
 }
 
-/// Not while both have hold of the object, or reach for it.
+/// Moves the body aside, except while person and robot both hold the object or a hand reaches.
 void PersonModel::step_aside(double dt) {
   const double length = settings_.behaviour.sidestep.norm();
   if (length <= 0) return;
   const bool free = phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping ||
-                    (phase_ == PersonPhase::offering && lost_time_ <= 0);
+                    (phase_ == PersonPhase::offering && exit_time_ <= 0);
   const double duration = step_time(length);
-  const bool under_way = step_clock_ > 0 && step_clock_ < duration;
+  const bool under_way = sidestep_time_ > 0 && sidestep_time_ < duration;
   if (behaviour_time() < settings_.behaviour.sidestep_at || !(free || under_way)) return;
-  step_clock_ += dt;
-  aside_ = home_aside_ + min_jerk(step_clock_ / duration) * settings_.behaviour.sidestep;
+  sidestep_time_ += dt;
+  aside_ = home_aside_ + min_jerk(sidestep_time_ / duration) * settings_.behaviour.sidestep;
 }
 
-/// The least height of a hand that holds something, there [m].
+/// Returns the min height of a holding hand at this position, world [m].
 double PersonModel::height_above_furniture(const Vector3& hand) const {
-  double least = -std::numeric_limits<double>::infinity();
+  double min_height = -std::numeric_limits<double>::infinity();
   for (const Furniture& box : settings_.furniture) {
     const Vector3 p = box.T_world_box.inverse() * hand, half = box.size / 2;
     const double up = (box.T_world_box.linear().row(2).transpose().cwiseAbs()).dot(half),
                  z = box.T_world_box.translation().z();
-    if (hand.z() < z - up) continue;  // it hangs over them
+    if (hand.z() < z - up) continue;  // the box is above the hand
     const double beside = (p.cwiseAbs() - half).cwiseMax(0).head<2>().norm();
-    const double above = std::max(kAbove, held_below_ + kOverFurniture);
-    least = std::max(least, z + up + above - std::max(0.0, beside - kBeside));
+    const double above = std::max(kAboveFurniture, held_below_ + kObjectAboveFurniture);
+    min_height = std::max(min_height, z + up + above - std::max(0.0, beside - kBesideFurniture));
   }
-  return least;
+  return min_height;
 }
 
-/// Only what nobody else has hold of.
+/// Raises the hand above furniture if only this person holds the object.
 void PersonModel::keep_above_furniture(const Vector3& robot_hand) {
-  const bool alone = phase_ == PersonPhase::withdrawing || phase_ == PersonPhase::keeping ||
-                     phase_ == PersonPhase::leaving ||
-                     (phase_ == PersonPhase::offering && lost_time_ <= 0);
-  if (!alone) return;
-  const double away = ((hand_target_ - robot_hand).norm() - kClearOfHand) / kOffHand;
-  const double share = phase_ == PersonPhase::withdrawing
-                           ? std::min(min_jerk(since() / kLift), min_jerk(away))
-                           : 1.0;
-  const double least = height_above_furniture(hand_target_);
-  hand_target_.z() += share * std::max(0.0, least - hand_target_.z());
-  // Nobody presses what they hold down on furniture.
+  const bool holds_alone = phase_ == PersonPhase::withdrawing || phase_ == PersonPhase::keeping ||
+                           phase_ == PersonPhase::leaving ||
+                           (phase_ == PersonPhase::offering && exit_time_ <= 0);
+  if (!holds_alone) return;
+  const double away = ((hand_target_ - robot_hand).norm() - kLiftMinHandDistance) / kLiftHandRange;
+  const double lift_fraction = phase_ == PersonPhase::withdrawing
+                                   ? std::min(min_jerk(phase_time() / kLiftTime), min_jerk(away))
+                                   : 1.0;
+  const double min_height = height_above_furniture(hand_target_);
+  hand_target_.z() += lift_fraction * std::max(0.0, min_height - hand_target_.z());
+  // A held object is not pressed down on furniture.
   if (phase_ == PersonPhase::withdrawing)
-    hand_target_.z() = std::max(hand_target_.z(), std::min(least, before_[kHand[index()]].z()));
+    hand_target_.z() =
+        std::max(hand_target_.z(), std::min(min_height, before_[kHand[hand_index()]].z()));
 }
 
 /// Returns how far the object extends below the hand [m].
-double PersonModel::below_hand(const PersonView& view) const {
+double PersonModel::extent_below_hand(const PersonView& view) const {
   if (view.object == nullptr) return 0;
   double lowest = hand_target_.z();
   for (const Vector3& p : view.object->mesh.vertices)
@@ -275,15 +292,15 @@ double PersonModel::below_hand(const PersonView& view) const {
   return hand_target_.z() - lowest;
 }
 
-Vector3 PersonModel::looked_at(const PersonView& view) const {
+Vector3 PersonModel::gaze_target(const PersonView& view) const {
   if (refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker)
     return points_[kHead] + forward();
   const BehaviourProfile& behaviour = settings_.behaviour;
   if (clock_ >= behaviour.look_away_at && clock_ < behaviour.look_away_at + behaviour.look_away)
     return points_[kHead] + left() + 0.3 * forward();
-  const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_ ||
-                                                      settings_.kind == PersonKind::fetcher);
-  return interesting ? object_centre(view) : view.robot_hand;
+  const bool is_object_relevant = view.object != nullptr && (view.held_by_robot || wants_grip_ ||
+                                                             settings_.kind == PersonKind::fetcher);
+  return is_object_relevant ? object_centre(view) : view.robot_hand;
 }
 
 }  // namespace handsel::sim

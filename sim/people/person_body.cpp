@@ -1,4 +1,4 @@
-// Where body, arms and gaze of a person are, and where a hand holds an object.
+// Positions of a person's body, arms and gaze, and grasp points of a hand on an object.
 #include <algorithm>
 
 #include "common/model/object_surface.hpp"
@@ -7,7 +7,7 @@
 
 namespace handsel::sim {
 
-void PersonModel::place_base() {
+void PersonModel::place_body() {
   if (followed_) {
     followed_->sample(clock_, points_);
     const Vector3 left = points_[kShoulder[0]] - points_[kShoulder[1]];
@@ -29,8 +29,9 @@ void PersonModel::place_base() {
   for (std::size_t i = 0; i < own.size(); ++i) points_[i] = feet_ + aside_ + R * own[i];
 }
 
-// Moves the hand to `target`. Near the base posture the arm keeps its shape, farther away hand and
-// forearm line up, elbow down and out: no joint jumps when the hand begins or ends to be led.
+/// Moves hand and arm so that the hand is at `target`. Near the rest configuration the arm keeps
+/// its shape; farther away hand and forearm align and the elbow points down and out. So no joint
+/// jumps when a motion of the hand begins or ends.
 void PersonModel::bend_arm(int s, const Vector3& target) {
   const Vector3 root = points_[kShoulder[s]], elbow = points_[kElbow[s]],
                 wrist = points_[kWrist[s]], hand = points_[kHand[s]];
@@ -60,42 +61,43 @@ void PersonModel::bend_arm(int s, const Vector3& target) {
   points_[kHand[s]] = points_[kWrist[s]] + palm_vector;
 }
 
-void PersonModel::look_at(const Vector3& target, double dt) {
+void PersonModel::turn_gaze(const Vector3& target, double dt) {
   const Vector3 want = (target - points_[kHead]).normalized();
   gaze_ = (gaze_ + std::min(1.0, dt / 0.15) * (want - gaze_)).normalized();
 }
 
-void PersonModel::want_hands(double dt) {
+void PersonModel::command_hands(double dt) {
   for (int s = 0; s < 2; ++s) {
     const Vector3 before = hands_[s].T_world_body.translation(), now = points_[kHand[s]];
     hands_[s].velocity =
         first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((now - before) / dt);
     Eigen::Quaterniond turned(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
-    if (s == index()) turned = turned * hand_turn_;
+    if (s == hand_index()) turned = turned * hand_turn_;
     hands_[s].T_world_body = make_pose(now, turned);
   }
 }
 
-Vector3 PersonModel::keep_point() const {
+Vector3 PersonModel::carry_position() const {
   return points_[kTorso] + 0.22 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() -
          Vector3(0, 0, 0.05);
 }
 
 Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }
 
-double PersonModel::gap(const PersonView& view) const {
+double PersonModel::hand_to_surface(const PersonView& view) const {
   return surface_distance(*view.object, view.T_world_object.inverse() * hand_target_);
 }
 
-// Where the recorded hand is at its farthest when the person stands at `feet`.
-Vector3 PersonModel::at_contact(const Vector3& feet) const {
+/// Returns the recorded hand's position of farthest reach for a person at `feet`, world [m].
+Vector3 PersonModel::recorded_contact(const Vector3& feet) const {
   BodyPoints points;
   settings_.recording->sample(settings_.recording->contact, points);
-  return feet + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * points[kHand[index()]];
+  return feet + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * points[kHand[hand_index()]];
 }
 
-// The place for the middle of the hand nearest to `from` from which it holds the object.
-Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) const {
+/// Returns the position of the hand's centre nearest to `from` at which the hand holds the object,
+/// world [m].
+Vector3 PersonModel::nearest_grasp_point(const PersonView& view, const Vector3& from) const {
   const Pose T_object_world = view.T_world_object.inverse();
   const auto distance = [&](const Vector3& p) {
     return surface_distance(*view.object, T_object_world * p);
@@ -113,7 +115,8 @@ Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) c
   return p;
 }
 
-// Where the middle of the hand touches the object, coming from side_of_object_.
+/// Returns the position of the hand's centre at contact, on a line from the object's centre along
+/// side_of_object_, world [m].
 Vector3 PersonModel::grasp_point(const PersonView& view) const {
   const Vector3 centre = object_centre(view);
   const Pose T_object_world = view.T_world_object.inverse();

@@ -1,7 +1,7 @@
-// A person moved from outside: the body goes where it is told; only the exchange is its own (ours).
-// What is offered near a hand draws the hand onto it, as somebody who sees it would; a hand that is
-// told to go away while the robot still holds on pulls, with limited force; a hand that was led
-// comes back to where it is told to be.
+// A person whose body follows observations from outside; only the handover is simulated. Own
+// method: a hand near an offered object is guided to the object. A hand whose reported position
+// moves away while the robot holds the object pulls with limited force. A guided hand returns to
+// its reported position.
 #include <algorithm>
 
 #include "common/model/object_surface.hpp"
@@ -11,80 +11,85 @@
 namespace handsel::sim {
 namespace {
 
-constexpr double kLead = 0.6;         // the hand is led no faster than this [m/s]
-constexpr double kTouch = 0.012;      // as near as this to the surface it closes [m]
-constexpr double kClose = 0.25;       // [s]
-constexpr double kStretch = 200.0;    // pull by how far the told hand has gone away [N/m]
-constexpr double kPullSpeed = 0.1;    // [m/s]
-constexpr double kGivesUp = 0.5;      // away from what it holds while the robot holds on [m]
-constexpr double kAdmittance = 0.02;  // [m/s/N]
-constexpr double kBack = 0.02;        // a hand this near to where it is told to be is back [m]
+constexpr double kMaxGuideSpeed = 0.6;    // max speed of guiding the hand [m/s]
+constexpr double kMaxTouchGap = 0.012;    // max distance of palm and surface at which it closes [m]
+constexpr double kCloseTime = 0.25;       // duration of closing the hand [s]
+constexpr double kPullStiffness = 200.0;  // pull force per distance to the reported hand [N/m]
+constexpr double kMaxPullSpeed = 0.1;     // max speed of the hand while it pulls [m/s]
+// Max distance of the reported hand from the held hand before the person releases the object [m].
+constexpr double kMaxPullDistance = 0.5;
+constexpr double kAdmittance = 0.02;  // speed of the hand per force error [m/s/N]
+// Max distance from the reported position at which a guided hand counts as returned [m].
+constexpr double kReturnedDistance = 0.02;
 
-Vector3 limited(const Vector3& v, double longest) {
-  return v.norm() > longest ? Vector3(longest / v.norm() * v) : v;
+Vector3 limited(const Vector3& v, double max_norm) {
+  return v.norm() > max_norm ? Vector3(max_norm / v.norm() * v) : v;
 }
 
 }  // namespace
 
 void PersonModel::follow(const ObservedPerson& seen) {
   if (!followed_ || frozen_) return;
-  if (followed_->observe(seen, clock_)) {  // it is there from one moment to the next: nothing is
-                                           // moved, pushed or taken along
+  if (followed_->observe(seen, clock_)) {  // placed without a motion: nothing is pushed or moved
+                                           // along
     first_ = placed_ = true;
     wants_grip_ = hand_active_ = false;
-    led_.setZero();
+    hand_offset_.setZero();
     enter(PersonPhase::watching);
   }
   if (seen.has_gaze) gaze_ = seen.gaze_direction;
 }
 
-void PersonModel::accompany(double dt, const PersonView& view) {
-  place_base();
-  const auto wanted_by = [&](int side) { return cooldown_ <= 0 && offered(view, side); };
-  const bool wanted = wanted_by(index());
+void PersonModel::run_external_person(double dt, const PersonView& view) {
+  place_body();
+  const auto is_offered_to_hand = [&](int side) {
+    return cooldown_ <= 0 && is_offered_to(view, side);
+  };
+  const bool wanted = is_offered_to_hand(hand_index());
   const auto in_reach = [&](int side) {
     const Vector3& hand = points_[kHand[side]];
-    return (nearest_hold(view, hand) - hand).norm() <= settings_.correction + kPalm;
+    return (nearest_grasp_point(view, hand) - hand).norm() <= settings_.correction + kPalm;
   };
   cooldown_ = std::max(0.0, cooldown_ - dt);
-  const auto told = [&](int side) { return points_[kHand[side]]; };
+  const auto p_reported = [&](int side) { return points_[kHand[side]]; };
   switch (phase_) {
     case PersonPhase::reaching:
     case PersonPhase::closing: {
-      Vector3 to = told(index());
-      if (wanted && in_reach(index())) to = nearest_hold(view, to);
-      led_ += limited(to - told(index()) - led_, kLead * dt);
-      if (!wanted && led_.norm() < 1e-9) {
+      Vector3 to = p_reported(hand_index());
+      if (wanted && in_reach(hand_index())) to = nearest_grasp_point(view, to);
+      hand_offset_ += limited(to - p_reported(hand_index()) - hand_offset_, kMaxGuideSpeed * dt);
+      if (!wanted && hand_offset_.norm() < 1e-9) {
         hand_active_ = false;
         enter(PersonPhase::watching);
         return;
       }
-      hand_target_ = told(index()) + led_;
-      const bool touches = wanted && gap(view) < kPalm + kTouch;
+      hand_target_ = p_reported(hand_index()) + hand_offset_;
+      const bool touches = wanted && hand_to_surface(view) < kPalm + kMaxTouchGap;
       if (touches != (phase_ == PersonPhase::closing))
         enter(touches ? PersonPhase::closing : PersonPhase::reaching);
-      if (phase_ != PersonPhase::closing || since() < kClose) return;
+      if (phase_ != PersonPhase::closing || phase_time() < kCloseTime) return;
       wants_grip_ = true;
       enter(PersonPhase::pulling);
       return;
     }
     case PersonPhase::pulling:
-      pull_after(told(index()) + led_, dt, view);
+      pull_toward(p_reported(hand_index()) + hand_offset_, dt, view);
       return;
     case PersonPhase::withdrawing:
     case PersonPhase::keeping:
       if (!wants_grip_ || view.grip_broke) return release();
-      led_ -= limited(led_, kLead * min_jerk(since() / 0.5) * dt);
-      hand_target_ = told(index()) + led_;
-      if (phase_ == PersonPhase::withdrawing && led_.norm() < kBack) enter(PersonPhase::keeping);
+      hand_offset_ -= limited(hand_offset_, kMaxGuideSpeed * min_jerk(phase_time() / 0.5) * dt);
+      hand_target_ = p_reported(hand_index()) + hand_offset_;
+      if (phase_ == PersonPhase::withdrawing && hand_offset_.norm() < kReturnedDistance)
+        enter(PersonPhase::keeping);
       return;
     default:
-      offer_time_ = wanted_by(0) || wanted_by(1) ? offer_time_ + dt : 0;
+      offer_time_ = is_offered_to_hand(0) || is_offered_to_hand(1) ? offer_time_ + dt : 0;
       for (int s = 0; s < 2; ++s) {
-        if (offer_time_ < settings_.reaction || !wanted_by(s) || !in_reach(s)) continue;
+        if (offer_time_ < settings_.reaction || !is_offered_to_hand(s) || !in_reach(s)) continue;
         side_ = s == 0 ? Side::left : Side::right;
-        led_.setZero();
-        hand_target_ = told(s);
+        hand_offset_.setZero();
+        hand_target_ = p_reported(s);
         hand_active_ = true;
         enter(PersonPhase::reaching);
         return;
@@ -92,27 +97,27 @@ void PersonModel::accompany(double dt, const PersonView& view) {
   }
 }
 
-/// Holds on while the robot does, and pulls toward where the hand would be.
-void PersonModel::pull_after(const Vector3& would_be, double dt, const PersonView& view) {
+/// Holds the object while the robot holds it, and pulls toward the position of the free hand.
+void PersonModel::pull_toward(const Vector3& p_free_hand, double dt, const PersonView& view) {
   if (!wants_grip_ || view.grip_broke || view.object == nullptr) return release();
-  const Vector3 away = would_be - hand_target_;
-  const Vector3 direction = away.stableNormalized();
-  const double wanted = std::min(settings_.pull, kStretch * away.norm());
-  const double speed =
-      std::clamp(kAdmittance * (wanted - view.grip_force.dot(direction)), -kPullSpeed, kPullSpeed);
+  const Vector3 to_free_hand = p_free_hand - hand_target_;
+  const Vector3 direction = to_free_hand.stableNormalized();
+  const double wanted = std::min(settings_.pull, kPullStiffness * to_free_hand.norm());
+  const double speed = std::clamp(kAdmittance * (wanted - view.grip_force.dot(direction)),
+                                  -kMaxPullSpeed, kMaxPullSpeed);
   hand_target_ += speed * dt * direction;
-  sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
-  lost_time_ = view.held_by_robot ? 0 : lost_time_ + dt;
-  if (sore_time_ > 0.1 || away.norm() > kGivesUp) return release();
-  if (lost_time_ <= 0.1) return;
-  led_ += hand_target_ - would_be;
+  overload_time_ = view.grip_force.norm() > kMaxToleratedForce ? overload_time_ + dt : 0;
+  exit_time_ = view.held_by_robot ? 0 : exit_time_ + dt;
+  if (overload_time_ > 0.1 || to_free_hand.norm() > kMaxPullDistance) return release();
+  if (exit_time_ <= 0.1) return;
+  hand_offset_ += hand_target_ - p_free_hand;
   enter(PersonPhase::withdrawing);
 }
 
 void PersonModel::release() {
   wants_grip_ = false;
   cooldown_ = 1.0;
-  led_ = hand_target_ - points_[kHand[index()]];
+  hand_offset_ = hand_target_ - points_[kHand[hand_index()]];
   enter(PersonPhase::reaching);
 }
 

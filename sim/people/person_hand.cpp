@@ -30,7 +30,7 @@ PersonHand::PersonHand(const PersonHandSettings& settings, const BodyState& star
   info.m_linearDamping = info.m_angularDamping = 0;
   body_ = std::make_unique<btRigidBody>(info);
   body_->setActivationState(DISABLE_DEACTIVATION);
-  body_->setFlags(body_->getFlags() | BT_DISABLE_WORLD_GRAVITY);  // the arm bears it
+  body_->setFlags(body_->getFlags() | BT_DISABLE_WORLD_GRAVITY);  // the arm bears the weight
   world.addRigidBody(body_.get(), group, mask);
   body_->setGravity(btVector3(0, 0, 0));
   spring_.hold(Pose::Identity());

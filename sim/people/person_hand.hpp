@@ -1,5 +1,5 @@
-// A person's hand as a body: free, pulled to where the person wants it by a spring and damper of
-// limited force. Own method: keeps the forces between hand and robot limited.
+// A person's hand as a free rigid body: a spring and damper of limited force pull the hand toward
+// its commanded pose. Own method: the limit bounds the forces between hand and robot.
 #pragma once
 
 #include <memory>
@@ -10,13 +10,13 @@
 namespace handsel::sim {
 
 struct PersonHandSettings {
-  double mass{0.6};         ///< hand and what of the forearm moves with it [kg]
-  double inertia{3e-3};     ///< about any axis [kg m^2]
-  double radius{0.045};     ///< [m]
+  double mass{0.6};         ///< hand and moved part of the forearm [kg]
+  double inertia{3e-3};     ///< moment of inertia about any axis [kg m^2]
+  double radius{0.045};     ///< radius of the sphere that stands for the hand [m]
   double friction{0.6};     ///< Coulomb coefficient
-  double frequency{100.0};  ///< of the hand on its spring [rad/s]
-  double max_force{60.0};   ///< of the spring: what the arm pushes or pulls with at most [N]
-  double max_torque{6.0};   ///< [Nm]
+  double frequency{100.0};  ///< natural frequency of the hand on the spring [rad/s]
+  double max_force{60.0};   ///< max force of the spring, hence of the arm [N]
+  double max_torque{6.0};   ///< max torque of the spring [Nm]
 };
 
 class PersonHand {
@@ -27,13 +27,13 @@ class PersonHand {
   PersonHand(const PersonHand&) = delete;
   PersonHand& operator=(const PersonHand&) = delete;
 
-  btRigidBody& body() { return *body_; }  ///< for its owner and its contact flags
-  BodyState state() const;                ///< as of the last physics step, world
-  /// Moves the hand there at once, with these velocities.
+  btRigidBody& body() { return *body_; }  ///< body, for its owner and contact flags
+  BodyState state() const;                ///< state after the last physics step, world
+  /// Moves the hand to a pose in no time, with these velocities.
   void place(const BodyState&);
-  /// Applies force and torque of the spring for the coming step of length dt [s] toward `wanted`.
+  /// Applies the spring's force and torque toward `wanted` for the next step of length dt [s].
   void pull_to(const BodyState& wanted, double dt);
-  /// Applies a wrench at a world point, for the coming step.
+  /// Applies a wrench at a world point for the next step.
   void push(const Vector3& point, const Wrench&);
 
  private:

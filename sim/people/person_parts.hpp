@@ -1,4 +1,4 @@
-// For the sources of PersonModel: places of joints, and numbers its behaviours share.
+// For the sources of PersonModel: indices of joints, and constants common to all behaviours.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,11 @@
 
 namespace handsel::sim {
 
-inline constexpr double kSoreForce = 30.0;  ///< beyond this the person releases the object [N]
-inline constexpr double kWalkSpeed = 0.6;   ///< mean [m/s]
-/// Fraction of a reach where a person hesitates or changes plans.
-inline constexpr double kMidway = 0.55;
+/// Grip force beyond which the person releases the object [N].
+inline constexpr double kMaxToleratedForce = 30.0;
+inline constexpr double kWalkSpeed = 0.6;  ///< mean walking speed [m/s]
+/// Fraction of a reach at which a person hesitates or withdraws.
+inline constexpr double kMidwayFraction = 0.55;
 
 /// Returns the minimum-jerk profile from 0 to 1 (Flash and Hogan 1985); s is limited to [0, 1].
 inline double min_jerk(double s) {
@@ -19,17 +20,16 @@ inline double min_jerk(double s) {
   return s * s * s * (10 + s * (-15 + 6 * s));
 }
 
-/// Largest accelerations of a rushing person, those that the controller's stop proof assumes
-/// [m/s^2].
+/// Max accelerations of a rushing person, as assumed by the controller's stop proof [m/s^2].
 inline constexpr double kMaxHandAcceleration = 50.0, kMaxTrunkAcceleration = 10.0;
 /// Peak acceleration of the trunk in a short step [m/s^2]; a rapid voluntary step from standing has
 /// 3 to 4 m/s^2.
 inline constexpr double kMaxStepAcceleration = 4.0;
 
-/// Returns how long a minimum-jerk step of `length` [m] takes [s]: at walking speed, a short one no
-/// faster than people can.
+/// Returns the duration of a minimum-jerk step of `length` [m] at walking speed [s]; the peak
+/// acceleration is at most kMaxStepAcceleration.
 inline double step_time(double length) {
-  constexpr double kPeak = 5.7735;  // largest second derivative of min_jerk(): 10 / sqrt(3)
+  constexpr double kPeak = 5.7735;  // max second derivative of min_jerk(): 10 / sqrt(3)
   return std::max(length / kWalkSpeed, std::sqrt(kPeak * length / kMaxStepAcceleration));
 }
 

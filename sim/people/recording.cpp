@@ -15,8 +15,8 @@ using namespace recording_detail;
 
 namespace recording_detail {
 
-constexpr double kTravel = 0.5;  // a body that goes farther than this walks on the spot [m]
-constexpr double kHeadUp = 0.93;
+constexpr double kMaxTravel = 0.5;  // max travel of a body that is not made to walk on the spot [m]
+constexpr double kHeadUp = 0.93;    // height of the head joint, divided by the stature
 
 [[noreturn]] void fail_at(const std::string& name, std::size_t line, const std::string& what) {
   throw ConfigError(name + ":" + std::to_string(line) + ": " + what);
@@ -80,7 +80,7 @@ void check_body(const BodyPoints& p, const std::string& name, std::size_t line) 
 
 Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_recorded) {
   const Vector3 left = frames[0][kShoulder[0]] - frames[0][kShoulder[1]];
-  const double yaw = std::atan2(-left.x(), left.y());  // facing = left x up
+  const double yaw = std::atan2(-left.x(), left.y());  // forward = left x up
   const Vector3 origin(frames[0][kWaist].x(), frames[0][kWaist].y(), 0);
   const Eigen::Matrix3d R = Eigen::AngleAxisd(-yaw, Vector3::UnitZ()).toRotationMatrix();
   Recording recording;
@@ -101,10 +101,10 @@ Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_re
   const double raise = lower_body_recorded ? kAnkleUp * recording.stature - lowest : 0.0;
   std::array<double, 2> farthest{-1e9, -1e9}, when{};
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const Vector3 gone = travel > kTravel
-                             ? Vector3(frames[i][kWaist].x(), frames[i][kWaist].y(), -raise)
-                             : Vector3(0, 0, -raise);
-    for (Vector3& p : frames[i]) p -= gone;
+    const Vector3 travelled = travel > kMaxTravel
+                                  ? Vector3(frames[i][kWaist].x(), frames[i][kWaist].y(), -raise)
+                                  : Vector3(0, 0, -raise);
+    for (Vector3& p : frames[i]) p -= travelled;
     for (std::size_t s = 0; s < 2; ++s) {
       const double reach = frames[i][kHand[s]].x() - frames[i][kWaist].x();
       if (reach > farthest[s]) farthest[s] = reach, when[s] = static_cast<double>(i) / rate;
@@ -126,8 +126,8 @@ BodyPoints points_of(const std::vector<BodyJoint>& joints) {
 
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 256u << 20;
-constexpr double kKthPalm = 0.09;  // wrist to the middle of the hand in the KTH set [m]
+constexpr std::uintmax_t kMaxBytes = 256u << 20;  // max size of a file [byte]
+constexpr double kKthPalm = 0.09;  // wrist to the centre of the hand in the KTH set [m]
 
 std::string text_of(const std::filesystem::path& file) {
   std::error_code error;
@@ -262,27 +262,27 @@ Recording retarget(const Recording& recording, double stature) {
   for (std::size_t f = 0; f < out.frames.size(); ++f) {
     const BodyPoints& from = recording.frames[f];
     BodyPoints& to = out.frames[f];
-    const auto carry = [&](int parent, int child) {
+    const auto copy_bone = [&](int parent, int child) {
       const Vector3 along = (from[child] - from[parent]).norm() > 1e-6
                                 ? Vector3(from[child] - from[parent])
                                 : Vector3(from[kHead] - from[kWaist]);
       to[child] = to[parent] + (model[child] - model[parent]).norm() * along.stableNormalized();
     };
     to[kWaist] = Vector3(k * from[kWaist].x(), k * from[kWaist].y(), 0);
-    carry(kWaist, kTorso);
-    carry(kTorso, kNeck);
-    carry(kNeck, kHead);
+    copy_bone(kWaist, kTorso);
+    copy_bone(kTorso, kNeck);
+    copy_bone(kNeck, kHead);
     for (std::size_t s = 0; s < 2; ++s) {
-      carry(kNeck, kShoulder[s]);
+      copy_bone(kNeck, kShoulder[s]);
       const auto bone = [&](const BodyPoints& p, int a, int b) { return (p[b] - p[a]).norm(); };
       const double upper = bone(model, kShoulder[s], kElbow[s]),
                    lower = bone(model, kElbow[s], kWrist[s]);
       const double palm = bone(model, kWrist[s], kHand[s]);
-      const double whole = bone(from, kShoulder[s], kElbow[s]) + bone(from, kElbow[s], kWrist[s]) +
-                           bone(from, kWrist[s], kHand[s]);
-      const double share = bone(from, kShoulder[s], kHand[s]) / std::max(whole, 1e-6);
+      const double arm_length = bone(from, kShoulder[s], kElbow[s]) +
+                                bone(from, kElbow[s], kWrist[s]) + bone(from, kWrist[s], kHand[s]);
+      const double reach_fraction = bone(from, kShoulder[s], kHand[s]) / std::max(arm_length, 1e-6);
       const Vector3 root = to[kShoulder[s]];
-      to[kHand[s]] = root + share * (upper + lower + palm) *
+      to[kHand[s]] = root + reach_fraction * (upper + lower + palm) *
                                 (from[kHand[s]] - from[kShoulder[s]]).stableNormalized();
       to[kWrist[s]] = to[kHand[s]] + palm * (from[kWrist[s]] - from[kHand[s]]).stableNormalized();
       const Vector3 arm = to[kWrist[s]] - root;
@@ -293,9 +293,9 @@ Recording retarget(const Recording& recording, double stature) {
       to[kHand[s]] += back;
       to[kElbow[s]] = bend(root, to[kWrist[s]], upper, lower,
                            root + k * (from[kElbow[s]] - from[kShoulder[s]]));
-      carry(kWaist, kHip[s]);
-      carry(kHip[s], kKnee[s]);
-      carry(kKnee[s], kAnkle[s]);
+      copy_bone(kWaist, kHip[s]);
+      copy_bone(kHip[s], kKnee[s]);
+      copy_bone(kKnee[s], kAnkle[s]);
     }
     const double lift = std::min(from[kAnkle[0]].z(), from[kAnkle[1]].z()) - lowest;
     const double raise =

@@ -1,4 +1,4 @@
-// BVH skeletons as recordings.
+// Converts BVH skeletons to recordings.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace recording_detail;
 
 namespace {
 
-constexpr double kStature = 1.75;  // of a skeleton without a unit [m]
+constexpr double kStature = 1.75;  // stature assigned to a skeleton of unknown unit [m]
 
 std::string plain(std::string_view name) {
   std::string out;
@@ -22,8 +22,8 @@ std::string plain(std::string_view name) {
   return out;
 }
 
-/// Index of the first of `names` among the joints; each also with "l"/"r" for "left"/"right". -1:
-/// none.
+/// Returns the index of the joint with the first of `names` found, each also with "l" or "r" for
+/// "left" or "right"; -1: none.
 int find_any(const Bvh& bvh, std::initializer_list<std::string> names) {
   for (const std::string& wanted : names) {
     const std::string brief = wanted.starts_with("left")    ? "l" + wanted.substr(4)
@@ -36,7 +36,7 @@ int find_any(const Bvh& bvh, std::initializer_list<std::string> names) {
   return -1;
 }
 
-/// Which joint of a skeleton is which point of the body; -1: none.
+/// Assigns joints of a skeleton to points of the body; -1: none.
 struct BvhMap {
   std::array<int, kBodyJoints.size()> joint{};
   int head_top{-1};
@@ -64,7 +64,7 @@ BvhMap map_joints(const Bvh& bvh, const std::string& name) {
   need(kHead, {"head"});
   need(kNeck, {"neck", "neck1"});
   need(kTorso, {"spine2", "spine1", "chest2", "chest", "thorax", "upperback", "spine"});
-  int& torso = map.joint[static_cast<std::size_t>(kTorso)];  // not where the neck is
+  int& torso = map.joint[static_cast<std::size_t>(kTorso)];  // not at the neck
   for (int i = map.joint[static_cast<std::size_t>(kNeck)];
        i > 0 && torso == bvh.joints[static_cast<std::size_t>(i)].parent &&
        bvh.joints[static_cast<std::size_t>(i)].offset.norm() < 1e-9;)

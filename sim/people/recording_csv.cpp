@@ -1,4 +1,4 @@
-// Body points over time, from CSV.
+// Reads body points over time from CSV.
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,9 @@ using namespace recording_detail;
 
 namespace {
 
-/// Frames at uneven times to frames at their mean rate.
-std::vector<BodyPoints> even(const std::vector<double>& times,
-                             const std::vector<BodyPoints>& frames, double rate) {
+/// Returns frames at uneven times resampled at their mean rate.
+std::vector<BodyPoints> resample(const std::vector<double>& times,
+                                 const std::vector<BodyPoints>& frames, double rate) {
   const auto n =
       static_cast<std::size_t>(std::floor((times.back() - times.front()) * rate + 1e-6)) + 1;
   std::vector<BodyPoints> out(n);
@@ -20,9 +20,9 @@ std::vector<BodyPoints> even(const std::vector<double>& times,
   for (std::size_t i = 0; i < n; ++i) {
     const double t = times.front() + static_cast<double>(i) / rate;
     while (at + 2 < times.size() && times[at + 1] <= t) ++at;
-    const double part = std::clamp((t - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
+    const double fraction = std::clamp((t - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
     for (std::size_t k = 0; k < out[i].size(); ++k)
-      out[i][k] = (1 - part) * frames[at][k] + part * frames[at + 1][k];
+      out[i][k] = (1 - fraction) * frames[at][k] + fraction * frames[at + 1][k];
   }
   return out;
 }
@@ -154,7 +154,7 @@ Recording BodyCsv::recording() const {
     fail_at(name_, last_,
             "has " + std::to_string(rate) +
                 " rows a second, must be at most 1000 (is time in seconds?)");
-  return finish(even(times_, frames_, rate), rate, has(kAnkle[0]) || has(kAnkle[1]));
+  return finish(resample(times_, frames_, rate), rate, has(kAnkle[0]) || has(kAnkle[1]));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace handsel::sim {
 namespace {
 
-/// A walk over a length, from rest to rest.
+/// A walk of fixed length from rest to rest, with trapezoidal speed.
 class Walk {
  public:
   Walk(double length, double speed)

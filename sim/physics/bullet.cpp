@@ -8,12 +8,12 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kMargin = 0.0005;
+constexpr double kMargin = 0.0005;  // collision margin of a shape [m]
 
 std::unique_ptr<btConvexShape> hull(const TriangleMesh& mesh) {
   btConvexHullShape full;
   full.setMargin(0);
-  std::vector<Vector3> vertices = mesh.vertices;  // many files name a vertex once a triangle
+  std::vector<Vector3> vertices = mesh.vertices;  // many files repeat a vertex for each triangle
   const auto before = [](const Vector3& a, const Vector3& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
   };

@@ -1,4 +1,4 @@
-// Conversions and shapes between our types and Bullet's (double precision).
+// Converts types and shapes to and from Bullet's (double precision).
 #pragma once
 
 #include <memory>
@@ -29,10 +29,9 @@ inline Pose from_bt(const btTransform& T) {
 /// Collision shapes with their owner: Bullet keeps plain pointers.
 class ShapeStore {
  public:
-  /// Makes a convex Bullet shape of the given one; a mesh becomes its convex hull, reduced to at
-  /// most 42 vertices.
+  /// Returns a convex Bullet shape; a mesh becomes its convex hull, reduced to at most 42 vertices.
   btConvexShape* convex(const Shape&);
-  /// One shape for all of `parts`, placed by T_body_parent; nullptr if there are none.
+  /// Returns one shape for all of `parts`, placed by T_body_parent; nullptr without parts.
   btCollisionShape* combine(const std::vector<PlacedShape>& parts, const Pose& T_body_parent);
 
  private:

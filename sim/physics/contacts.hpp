@@ -1,4 +1,4 @@
-// What touches what, read from Bullet after a step.
+// Contacts between bodies, read from Bullet after a step.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace handsel::sim {
 
-/// Whose a collision object is; kept in its user indices together with a number.
+/// The owner of a collision object; stored in the object's user indices together with a number.
 enum class Owner : int { robot = 1, object = 2, fixed = 3, floor = 4, person = 5 };
 
 /// Collision groups of Bullet's filter.
@@ -25,10 +25,10 @@ struct Touch {
   Owner a{}, b{};                       ///< the two parties
   int index_a{}, index_b{};             ///< numbers given to own()
   Vector3 point{Vector3::Zero()};       ///< world [m]
-  Vector3 normal{Vector3::UnitZ()};     ///< from b to a
-  double distance{};                    ///< negative: they overlap [m]
-  double normal_force{};                ///< [N]
-  Vector3 force_on_a{Vector3::Zero()};  ///< friction included [N]
+  Vector3 normal{Vector3::UnitZ()};     ///< contact normal from b to a, world
+  double distance{};                    ///< [m]; negative: overlap
+  double normal_force{};                ///< magnitude [N]
+  Vector3 force_on_a{Vector3::Zero()};  ///< with friction, world [N]
   double friction{};                    ///< Coulomb coefficient of the pair
   double torsion{};                     ///< torque about the normal per normal force [m]
 };

@@ -5,7 +5,7 @@ namespace handsel::sim {
 void Grip::hold(const Pose& T_holder_object) {
   holding_ = true;
   broke_ = false;
-  at_cap_ = 0;
+  time_at_max_ = 0;
   T_holder_object_ = T_holder_object;
 }
 
@@ -27,8 +27,8 @@ const Wrench& Grip::update(const BodyState& holder, const BodyState& object, dou
       std::max(force.norm() / settings_.max_force, torque.norm() / settings_.max_torque);
   if (force.norm() > settings_.max_force) force *= settings_.max_force / force.norm();
   if (torque.norm() > settings_.max_torque) torque *= settings_.max_torque / torque.norm();
-  at_cap_ = over >= 1 ? at_cap_ + dt : 0;
-  if (at_cap_ > settings_.break_time) {
+  time_at_max_ = over >= 1 ? time_at_max_ + dt : 0;
+  if (time_at_max_ > settings_.break_time) {
     holding_ = false;
     broke_ = true;
     return wrench_;

@@ -1,4 +1,4 @@
-// An object as a rigid body of the physics.
+// An object as a rigid body of the physics world.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,22 @@ namespace handsel::sim {
 
 class ObjectBody {
  public:
-  /// Throws ConfigError when the model has no parts to collide with. `index` tells it apart in
-  /// contacts.
+  /// Throws ConfigError if the model has no collision parts. `index`: number in contacts.
   ObjectBody(const StartObject& start, int index, ShapeStore&, btDynamicsWorld&);
   ~ObjectBody();
   ObjectBody(const ObjectBody&) = delete;
   ObjectBody& operator=(const ObjectBody&) = delete;
 
-  const StartObject& start() const { return start_; }         ///< as the scenario places it
+  const StartObject& start() const { return start_; }         ///< as placed by the scenario
   const ObjectModel& model() const { return *start_.model; }  ///< of the object library
-  double min_inertia() const { return min_inertia_; }         ///< least principal moment [kg m^2]
+  double min_inertia() const { return min_inertia_; }         ///< min principal moment [kg m^2]
   /// Returns the pose of the object frame as of the last read().
   const Pose& T_world_object() const { return T_world_object_; }
-  const BodyState& state() const { return state_; }  ///< of the centre of mass
+  const BodyState& state() const { return state_; }  ///< state of the centre of mass, world
 
-  /// Moves the object there at once; its velocities stay as they are.
+  /// Moves the object to a pose without a motion; its velocities do not change.
   void put(const Pose& T_world_com);
-  /// Wrench about the centre of mass, for the coming step.
+  /// Applies a wrench about the centre of mass for the next step.
   void push(const Wrench&);
   /// Reads the state after a step.
   void read();

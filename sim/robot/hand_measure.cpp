@@ -33,12 +33,12 @@ void HandMeasure::update(const std::vector<Touch>& touches, const RobotBody& rob
   }
   add(grasp.palm(), at, load.force, load.torque);
   if (!whole_) robot.project(grasp.palm(), at, load, external_);
-  const auto share = [&](double rate) { return std::min(1.0, step_ * 2 * M_PI * rate); };
-  const double k = share(cut_off_);
+  const auto filter_gain = [&](double rate) { return std::min(1.0, step_ * 2 * M_PI * rate); };
+  const double k = filter_gain(cut_off_);
   wrench_.force += k * (tool.linear().transpose() * wrench.force - wrench_.force);
   wrench_.torque += k * (tool.linear().transpose() * wrench.torque - wrench_.torque);
   torque_ += k * (external_ - torque_);
-  payload_ += share(5.0) * (-wrench.force.z() / 9.81 - payload_);
+  payload_ += filter_gain(5.0) * (-wrench.force.z() / 9.81 - payload_);
   contact_ += std::min(1.0, step_ / 0.01) * (contact - contact_);
   largest_contact_ = std::max(largest_contact_, contact_);
 }

@@ -1,5 +1,5 @@
-// What the robot side measures of the world's forces at a hand: wrist wrench, joint torques,
-// payload (filtered as a sensor does); and the largest force on a person.
+// Computes the robot side's measurements at a hand: wrist wrench, joint torques and payload,
+// low-pass filtered as by a sensor; and the max force on a person.
 #pragma once
 
 #include <vector>
@@ -12,20 +12,20 @@ namespace handsel::sim {
 
 class HandMeasure {
  public:
-  /// `cut_off`: of the low-pass filter [Hz]; `step`: physics step [s]. `whole`: the joint torques
-  /// contain what touches the robot anywhere; else only the load of this hand's hold, as another
-  /// hand's measure contains the rest.
+  /// `cut_off`: cut-off of the low-pass filter [Hz]; `step`: physics step [s]. `whole`: the joint
+  /// torques contain all contacts of the robot; else only the load of this hand's grasp constraint,
+  /// because another hand's measurement contains the rest.
   HandMeasure(int dof, double cut_off, double step, bool whole = true);
 
-  /// Takes in one physics step; to be called once a step. `tool`: pose of the tool; `load`: wrench
-  /// of the hold on the palm about `at`, world, zero when there is none.
+  /// Evaluates one physics step. `tool`: pose of the tool, world; `load`: wrench of the grasp
+  /// constraint on the palm about `at`, world, or zero.
   void update(const std::vector<Touch>&, const RobotBody&, const RobotGrasp&, const Pose& tool,
               const Wrench& load, const Vector3& at);
 
   const Wrench& wrist_wrench() const { return wrench_; }     ///< tool axes, at the tool's origin
   const Vector& external_torque() const { return torque_; }  ///< all axes [Nm] ([N])
   double payload() const { return payload_; }                ///< [kg]
-  /// Normal force on a person, over 10 ms [N].
+  /// Returns the max normal force on a person, filtered over 10 ms [N].
   double largest_contact() const { return largest_contact_; }
 
  private:

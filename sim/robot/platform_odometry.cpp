@@ -6,9 +6,9 @@
 namespace handsel::sim {
 namespace {
 
-constexpr double kSlip = 0.5;  // that slipping wheels roll on for each metre that they drive [m]
+constexpr double kSlipRatio = 0.5;  // additional rolling of slipping wheels per distance driven
 
-Place after(const Place& a, const Place& b) {
+Place compose(const Place& a, const Place& b) {
   const double c = std::cos(a.z()), s = std::sin(a.z());
   return {a.x() + c * b.x() - s * b.y(), a.y() + s * b.x() + c * b.y(), a.z() + b.z()};
 }
@@ -37,18 +37,18 @@ Place PlatformOdometry::place_of(const Vector& all) const {
 
 void PlatformOdometry::advance(const Vector& position, double now) {
   const Place here = place_of(position);
-  Place step = after(inverse(actual_), here);
+  Place step = compose(inverse(actual_), here);
   const double distance = std::sqrt(step.head<2>().norm());
   const double turned = std::sqrt(step.head<2>().norm() + std::abs(step.z()));
   step.x() += draw(odometry_.noise * distance);
   step.y() += draw(odometry_.noise * distance);
   step.z() += draw(odometry_.turn_noise * turned);
-  const double slipped = std::min(to_slip_, kSlip * step.head<2>().norm());
+  const double slipped = std::min(to_slip_, kSlipRatio * step.head<2>().norm());
   to_slip_ -= slipped;
   if (slipped > 0) step.head<2>() += slipped * Eigen::Vector2d(step.head<2>()).normalized();
   actual_ = here;
-  measured_ = after(measured_, step);
-  offset_ = after(actual_, inverse(measured_));
+  measured_ = compose(measured_, step);
+  offset_ = compose(actual_, inverse(measured_));
   localise(now);
 }
 
@@ -56,23 +56,23 @@ void PlatformOdometry::localise(double now) {
   if (now + 1e-9 < next_) return;
   next_ = now + 1 / localisation_.rate;
   if (now < lost_until_) return;
-  // The platform is found where it is, with noise; the frame follows from its odometry.
+  // The measured pose has noise; the pose of the odometry frame follows from the odometry.
   const Place found(actual_.x() + shift_ + draw(localisation_.noise),
                     actual_.y() + draw(localisation_.noise),
                     actual_.z() + draw(localisation_.turn_noise));
-  const Place frame = after(found, inverse(measured_));
+  const Place frame = compose(found, inverse(measured_));
   const double period = now - found_;
   found_ = now;
-  const double jump = (after(estimate_, measured_) - found).head<2>().norm();
-  constexpr double kRestart = 0.1;  // an estimate this far off begins anew [m]
-  const double weight = jump > kRestart ? 1.0 : period / (localisation_.filter_time + period);
-  // Mixed where the platform is: a turned frame far from its origin is no other place.
-  const Place mixed = after(estimate_, measured_) * (1 - weight) + found * weight;
-  estimate_ = weight < 1 ? after(mixed, inverse(measured_)) : frame;
+  const double jump = (compose(estimate_, measured_) - found).head<2>().norm();
+  constexpr double kMaxJump = 0.1;  // max error of the estimate before the filter restarts [m]
+  const double weight = jump > kMaxJump ? 1.0 : period / (localisation_.filter_time + period);
+  // Filters the platform's pose: the position of a distant frame depends strongly on its heading.
+  const Place filtered = compose(estimate_, measured_) * (1 - weight) + found * weight;
+  estimate_ = weight < 1 ? compose(filtered, inverse(measured_)) : frame;
 }
 
 void PlatformOdometry::to_root(Vector& position, Vector& velocity, Vector& acceleration) const {
-  const Place place = after(offset_, place_of(position));
+  const Place place = compose(offset_, place_of(position));
   for (int i = 0; i < 3; ++i) position[axes_[static_cast<std::size_t>(i)]] = place[i];
   const Eigen::Rotation2Dd turn(offset_.z());
   for (Vector* rate : {&velocity, &acceleration}) {
@@ -84,7 +84,7 @@ void PlatformOdometry::to_root(Vector& position, Vector& velocity, Vector& accel
 
 Vector PlatformOdometry::measured_position(const Vector& position) const {
   Vector out = position;
-  const Place place = after(inverse(offset_), place_of(position));
+  const Place place = compose(inverse(offset_), place_of(position));
   for (int i = 0; i < 3; ++i) out[axes_[static_cast<std::size_t>(i)]] = place[i];
   return out;
 }

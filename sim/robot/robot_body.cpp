@@ -10,8 +10,9 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kGravity = 9.81;
-constexpr double kLeastMass = 0.005, kLeastInertia = 2e-6;
+constexpr double kGravity = 9.81;     // acceleration of gravity [m/s^2]
+constexpr double kMinMass = 0.005;    // min mass of a body [kg]
+constexpr double kMinInertia = 2e-6;  // min principal inertia of a body [kg m^2]
 
 Eigen::Matrix3d shifted(const Eigen::Matrix3d& inertia, double mass, const Vector3& d) {
   return inertia + mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
@@ -26,11 +27,12 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
       world_(world.dynamics),
       T_world_base_(T_world_base),
       q_(start) {
-  lump(model);
+  merge_links(model);
   const int n = bodies();
   qd_ = Vector::Zero(model.dof());
   effort_ = Vector::Zero(model.dof());
-  force_.resize(n), moment_.resize(n), alpha_.resize(n), acc_.resize(n), wanted_.resize(n);
+  force_.resize(n), moment_.resize(n), alpha_.resize(n), acc_.resize(n),
+      commanded_acceleration_.resize(n);
 
   multibody_ = std::make_unique<btMultiBody>(n, 1.0, btVector3(1, 1, 1), true, false);
   multibody_->setBaseWorldTransform(to_bt(T_world_base));
@@ -39,7 +41,7 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(b.inertia);
     b.R_body_principal = eigen.eigenvectors();
     if (b.R_body_principal.determinant() < 0) b.R_body_principal.col(0) *= -1;
-    const Vector3 diagonal = eigen.eigenvalues().cwiseMax(kLeastInertia);
+    const Vector3 diagonal = eigen.eigenvalues().cwiseMax(kMinInertia);
     const Eigen::Matrix3d R_parent =
         b.parent < 0 ? Eigen::Matrix3d::Identity() : bodies_[b.parent].R_body_principal;
     const Vector3 com_parent = b.parent < 0 ? Vector3(Vector3::Zero()) : bodies_[b.parent].com;
@@ -73,7 +75,7 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
   multibody_->updateCollisionObjectWorldTransforms(rotations, origins);
   T_world_link_.resize(model.links().size());
   forward();
-  soften_fingers();
+  set_finger_stiffness();
   for (Body& b : bodies_) {
     if (b.finger < 0 || !b.collider) continue;
     b.collider->setFriction(pad.friction);
@@ -113,7 +115,7 @@ void RobotBody::add_colliders(const BodyWorld& world) {
   }
 }
 
-void RobotBody::lump(const RobotModel& model) {
+void RobotBody::merge_links(const RobotModel& model) {
   const auto& links = model.links();
   body_of_link_.assign(links.size(), -1);
   T_body_link_.assign(links.size(), Pose::Identity());
@@ -155,7 +157,7 @@ void RobotBody::lump(const RobotModel& model) {
     const Eigen::Matrix3d about_origin = shifted(R * link.inertia * R.transpose(), link.mass, com);
     b.com = (b.mass * b.com + link.mass * com) / (b.mass + link.mass);
     b.mass += link.mass;
-    b.inertia += about_origin;  // about the body's origin until all links are in
+    b.inertia += about_origin;  // about the body's origin until all links are added
   }
   for (Body& b : bodies_) {
     if (!model.joints()[links[b.link].parent_joint].is_mimic) continue;
@@ -166,7 +168,7 @@ void RobotBody::lump(const RobotModel& model) {
   for (Body& b : bodies_) {
     b.inertia -=
         b.mass * (b.com.squaredNorm() * Eigen::Matrix3d::Identity() - b.com * b.com.transpose());
-    b.mass = std::max(b.mass, kLeastMass);
+    b.mass = std::max(b.mass, kMinMass);
   }
   find_fingers();
 }
@@ -183,42 +185,43 @@ void RobotBody::find_fingers() {
   }
 }
 
-// Stiffness in proportion to what a joint moves, as high as the torque limits and the fastest
-// motion of the finger allow; Rayleigh damping.
-void RobotBody::soften_fingers() {
-  std::vector<int> together;  // for each finger the first of those it is coupled with
+/// Sets the stiffness of finger joints in proportion to their moved inertia, as high as torque
+/// limits and finger bandwidth allow, with Rayleigh damping.
+void RobotBody::set_finger_stiffness() {
+  std::vector<int> together;  // per finger: representative of its coupled fingers
   for (const Body& b : bodies_)
     if (b.finger >= static_cast<int>(together.size())) together.push_back(b.finger);
   for (const Body& b : bodies_) {
-    if (!follows(b)) continue;
+    if (!is_coupled(b)) continue;
     const int from = together[b.finger], to = together[bodies_[b.leader].finger];
     std::replace(together.begin(), together.end(), from, to);
   }
   std::vector<std::vector<int>> fingers(together.size());
   for (int i = 0; i < bodies(); ++i)
     if (bodies_[i].finger >= 0) fingers[together[bodies_[i].finger]].push_back(i);
-  const double fastest = settings_.finger_bandwidth;
+  const double max_bandwidth = settings_.finger_bandwidth;
   for (const std::vector<int>& finger : fingers) {
     if (finger.empty()) continue;
     const auto n = static_cast<Eigen::Index>(finger.size());
     const Eigen::MatrixXd M = mass_matrix(finger);
     Eigen::MatrixXd K;
-    double quickest = 2 * fastest * fastest;
-    for (double share = 1; quickest > fastest * fastest; share *= 0.8) {
+    double max_eigenvalue = 2 * max_bandwidth * max_bandwidth;
+    for (double stiffness_scale = 1; max_eigenvalue > max_bandwidth * max_bandwidth;
+         stiffness_scale *= 0.8) {
       K = Eigen::MatrixXd::Zero(n, n);
       for (Eigen::Index i = 0; i < n; ++i) {
         Body& b = bodies_[finger[i]];
         const auto leader = std::find(finger.begin(), finger.end(), b.leader) - finger.begin();
-        b.stiffness = share * M(i, i) * fastest * fastest;
-        if (!follows(b))
+        b.stiffness = stiffness_scale * M(i, i) * max_bandwidth * max_bandwidth;
+        if (!is_coupled(b))
           b.stiffness =
               std::min(b.limit / (settings_.finger_travel * (b.prismatic ? 0.01 : 1)), b.stiffness);
-        b.damping = b.stiffness / fastest;
-        Eigen::VectorXd way = Eigen::VectorXd::Unit(n, i);
-        if (follows(b) && leader < n) way[leader] = -b.factor;
-        K += b.stiffness * way * way.transpose();
+        b.damping = b.stiffness / max_bandwidth;
+        Eigen::VectorXd direction = Eigen::VectorXd::Unit(n, i);
+        if (is_coupled(b) && leader < n) direction[leader] = -b.factor;
+        K += b.stiffness * direction * direction.transpose();
       }
-      quickest =
+      max_eigenvalue =
           Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(K, M, Eigen::EigenvaluesOnly)
               .eigenvalues()
               .maxCoeff();
@@ -226,18 +229,18 @@ void RobotBody::soften_fingers() {
   }
 }
 
-// By unit accelerations at rest; gravity falls out of the difference.
+/// Returns the mass matrix, computed by unit accelerations at rest; differences eliminate gravity.
 Eigen::MatrixXd RobotBody::mass_matrix(const std::vector<int>& of) {
   const auto n = static_cast<Eigen::Index>(of.size());
   Eigen::MatrixXd M(n, n);
-  std::fill(wanted_.begin(), wanted_.end(), 0.0);
-  inverse_dynamics(wanted_);
+  std::fill(commanded_acceleration_.begin(), commanded_acceleration_.end(), 0.0);
+  inverse_dynamics(commanded_acceleration_);
   Eigen::VectorXd rest(n);
   for (Eigen::Index i = 0; i < n; ++i) rest[i] = bodies_[of[i]].torque;
   for (Eigen::Index k = 0; k < n; ++k) {
-    wanted_[of[k]] = 1;
-    inverse_dynamics(wanted_);
-    wanted_[of[k]] = 0;
+    commanded_acceleration_[of[k]] = 1;
+    inverse_dynamics(commanded_acceleration_);
+    commanded_acceleration_[of[k]] = 0;
     for (Eigen::Index i = 0; i < n; ++i) M(i, k) = bodies_[of[i]].torque - rest[i];
   }
   return (M + M.transpose()) / 2 + 1e-9 * Eigen::MatrixXd::Identity(n, n);
@@ -248,20 +251,20 @@ void RobotBody::drive(const Vector& position, const Vector& velocity, const Vect
   const double w = settings_.bandwidth;
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
-    wanted_[i] = b.factor * acceleration[b.dof];
-    wanted_[i] += 2 * w * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
+    commanded_acceleration_[i] = b.factor * acceleration[b.dof];
+    commanded_acceleration_[i] += 2 * w * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
     if (b.finger >= 0) continue;
-    wanted_[i] +=
+    commanded_acceleration_[i] +=
         w * w *
         std::clamp(b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i), -0.1, 0.1);
   }
-  inverse_dynamics(wanted_);
+  inverse_dynamics(commanded_acceleration_);
   for (const Body& b : bodies_) {
-    if (follows(b)) bodies_[b.leader].torque += b.factor * b.torque;
+    if (is_coupled(b)) bodies_[b.leader].torque += b.factor * b.torque;
   }
   for (int i = 0; i < bodies(); ++i) {
     Body& b = bodies_[i];
-    if (follows(b)) continue;
+    if (is_coupled(b)) continue;
     if (b.finger >= 0) {
       b.torque +=
           b.stiffness * (b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i)) +
@@ -272,7 +275,7 @@ void RobotBody::drive(const Vector& position, const Vector& velocity, const Vect
   }
   for (int i = 0; i < bodies(); ++i) {
     Body& b = bodies_[i];
-    if (!follows(b)) continue;
+    if (!is_coupled(b)) continue;
     const double off =
         b.factor * multibody_->getJointPos(b.leader) + b.offset - multibody_->getJointPos(i);
     const double tie =
@@ -337,8 +340,8 @@ void RobotBody::forward() {
   }
 }
 
-// Newton and Euler in world axes about each body's frame origin, at the present velocities and the
-// wanted accelerations.
+/// Solves the Newton-Euler equations in world axes about each body's frame origin, for the present
+/// velocities and the commanded accelerations.
 void RobotBody::inverse_dynamics(const std::vector<double>& acceleration) {
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];

@@ -5,8 +5,8 @@
 namespace handsel::sim {
 
 namespace {
-constexpr int kConeEdges = 8;
-constexpr double kTorqueScale = 10;  // [1/m]; closure does not depend on it
+constexpr int kConeEdges = 8;        // edges of a linearised friction cone
+constexpr double kTorqueScale = 10;  // scale of torques [1/m]; force closure is independent of it
 }  // namespace
 
 RobotGrasp::RobotGrasp(int palm, const RobotBody& robot, double touch_force, double grasp_time,

@@ -1,5 +1,5 @@
-// When the robot's hand holds an object: its measured contacts pass force closure, for a time. Own
-// method: the physics has contacts, but no notion of a hold.
+// Decides when the robot's hand holds an object: its contacts have force closure for a time. Own
+// method: the physics engine has contacts, but no grasps.
 #pragma once
 
 #include <vector>
@@ -12,23 +12,26 @@ namespace handsel::sim {
 
 class RobotGrasp {
  public:
-  /// `palm`: link of the hand; -1: there is none.
+  /// `palm`: link of the palm; -1: the robot has no hand. `touch_force`: min normal force of a
+  /// contact [N]; `grasp_time`, `lose_time`: time with or without force closure that begins or ends
+  /// a grasp [s].
   RobotGrasp(int palm, const RobotBody&, double touch_force, double grasp_time, double lose_time);
 
-  /// Which chain of the hand a body belongs to: 0 the palm, 1 … the fingers, -1 not the hand.
+  /// Returns the chain of the hand to which a body belongs: 0 palm, from 1 fingers, -1 not the
+  /// hand.
   int chain_of(int body) const { return body < 0 ? -1 : chain_[body]; }
-  int palm() const { return palm_; }  ///< body of the palm; -1: the base, or there is no hand
+  int palm() const { return palm_; }  ///< body of the palm; -1: the base, or no hand
 
-  /// Normal force with which the hand presses on the object [N].
+  /// Returns the hand's total normal force on the object [N].
   double pressure(const std::vector<Touch>&, int object) const;
-  /// Net force of the hand's contacts on the object, world [N].
+  /// Returns the net force of the hand's contacts on the object, world [N].
   Vector3 force(const std::vector<Touch>&, int object) const;
-  /// Whether the contacts of the hand that bear at least touch_force pass force closure; `centre`:
-  /// the object's mass centre, world.
+  /// Returns whether the hand's contacts of at least touch_force have force closure; `centre`: the
+  /// object's centre of mass, world.
   bool closed(const std::vector<Touch>&, int object, const Vector3& centre);
-  /// Call once a step with the object of interest (-1: none); true while it is held.
+  /// Evaluates one step for an object (-1: none); returns whether the hand holds the object.
   bool update(const std::vector<Touch>&, int object, const Vector3& centre, double dt);
-  /// Forgets the hold and the times of contact.
+  /// Resets the grasp and the times of contact.
   void reset() { closed_for_ = open_for_ = 0, held_ = false; }
 
  private:

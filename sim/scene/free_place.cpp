@@ -6,7 +6,7 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr int kMaxDraws = 2000;
+constexpr int kMaxDraws = 2000;  // max number of drawn places
 
 bool is_free(const Surface& surface, const Vector2& p, double distance) {
   return std::none_of(

@@ -1,4 +1,4 @@
-// Free places on a surface, drawn at random: where a scenario's objects of `free_place` stand.
+// Draws free places on a surface for objects with `free_place` in a scenario.
 #pragma once
 
 #include <functional>
@@ -22,15 +22,15 @@ struct TakenRectangle {
   Vector2 low{Vector2::Zero()}, high{Vector2::Zero()};  ///< opposite corners [m]
 };
 
-/// A surface and what stands on it.
+/// A surface and the objects on it.
 struct Surface {
   Vector2 size{Vector2::Zero()};           ///< full extents of the rectangle around its origin [m]
-  std::vector<TakenCircle> circles;        ///< circles around the objects
+  std::vector<TakenCircle> circles;        ///< circles around objects
   std::vector<TakenRectangle> rectangles;  ///< boxes that reach through the surface
 };
 
-/// Returns the centre of a circle of `radius` that is at least `clearance` from all on the surface
-/// and from its edge [m], uniform over such places; nullopt after 2000 places that are not free.
+/// Returns the centre of a circle of `radius` with at least `clearance` to all objects on the
+/// surface and to its edge [m], uniform over these places; nullopt after 2000 occupied places.
 /// `uniform` returns numbers in [0, 1).
 std::optional<Vector2> free_place(const Surface& surface, double radius, double clearance,
                                   const std::function<double()>& uniform);

@@ -87,10 +87,11 @@ class Reader {
 
   template <class Entries>
   void require_names(const Entries& entries, const std::string& kind) const {
-    constexpr int kMost = 200;  // of a kind: each costs time in every physics step
-    if (entries.size() > kMost)
+    // Max number of entries of one kind: each entry takes time in every physics step.
+    constexpr int kMaxEntries = 200;
+    if (entries.size() > kMaxEntries)
       fail(std::to_string(entries.size()) + " entries of kind " + kind + ", must be at most " +
-           std::to_string(kMost));
+           std::to_string(kMaxEntries));
     std::set<std::string> known;
     for (const auto& entry : entries) {
       if (entry.id().empty()) fail(kind + " has no id: each needs a name of its own");
@@ -118,7 +119,7 @@ class Reader {
     }
   }
 
-  /// The base of the scenario is where the platform stands; its place refers to the world.
+  /// Places the platform at the base of the scenario, world frame.
   void put_on_platform() {
     const Pose& T = out_.T_world_base;
     const double heading = std::atan2(T.linear()(1, 0), T.linear()(0, 0));
@@ -170,7 +171,8 @@ class Reader {
     return radius;
   }
 
-  /// The objects that already have a place on the box, and the boxes that reach through its top.
+  /// Returns the top of a box with the objects already placed there and the boxes that reach
+  /// through.
   Surface surface_on(const StartBox& box) const {
     const Pose T_box_world = box.T_world_box.inverse();
     Surface surface;
@@ -187,8 +189,8 @@ class Reader {
       const Pose T = T_box_world * other.T_world_box;
       const Vector3 half = T.linear().cwiseAbs() * other.size / 2;
       const Vector3 low = T.translation() - half, high = T.translation() + half;
-      constexpr double kHeadroom = 0.4;  // [m] what stands below a lower board is out of reach
-      if (high.z() > top + 1e-3 && low.z() < top + kHeadroom)
+      constexpr double kMinHeadroom = 0.4;  // min free height above a place within reach [m]
+      if (high.z() > top + 1e-3 && low.z() < top + kMinHeadroom)
         surface.rectangles.push_back({{low.x(), low.y()}, {high.x(), high.y()}});
     }
     return surface;
@@ -289,8 +291,8 @@ class Reader {
     if ((m.start_high - m.start_low).minCoeff() < 0 || (m.next_high - m.next_low).minCoeff() < 0)
       fail("moves of " + s.id + ": a box has a high corner below its low corner");
     m.spread = moves.spread();
-    m.slowest = moves.slowest(), m.fastest = moves.fastest();
-    m.slowest_turn = moves.slowest_turn(), m.fastest_turn = moves.fastest_turn();
+    m.min_speed = moves.slowest(), m.max_speed = moves.fastest();
+    m.min_turn_speed = moves.slowest_turn(), m.max_turn_speed = moves.fastest_turn();
     m.max_turn = moves.max_turn(), m.waits_within = moves.waits_within();
     m.seed = random_();
     if (!moves.any_orientation()) return;
@@ -300,13 +302,13 @@ class Reader {
     p.hand_turn = Eigen::Quaterniond(turn.normalized());
   }
 
-  /// False: nobody this time.
+  /// Draws the individual variation of a person; returns false if the person is absent.
   bool vary(PersonSettings& s, const config::PersonVariation& v) {
-    for (const double share :
+    for (const double fraction :
          {v.absent(), v.left_handed(), v.hesitates(), v.withdraws(), v.looks_away(), v.sidesteps(),
           v.seated(), v.early(), v.readies(), v.changes_hand()})
-      if (share < 0 || share > 1)
-        fail("varies of " + s.id + ": a share is " + std::to_string(share) +
+      if (fraction < 0 || fraction > 1)
+        fail("varies of " + s.id + ": a share is " + std::to_string(fraction) +
              ", must be between 0 and 1");
     for (const double size : {v.place(), v.turn(), v.stature(), v.hesitation(), v.away(),
                               v.sidestep(), v.slowest(), v.begins_after(), v.min_sidestep()})
@@ -316,46 +318,46 @@ class Reader {
       fail("varies of " + s.id + ": fastest must not be below slowest");
     if (v.begins_before() < v.begins_after())
       fail("varies of " + s.id + ": begins_before must not be below begins_after");
-    // Every number is drawn, needed or not: one share changed leaves the others' draws as they
-    // were.
+    // Every number is drawn even if not needed, so a changed fraction does not change other draws.
     const auto within = [this](double low, double high) {
       return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random_);
     };
-    const auto chance = [&](double share) { return within(0, 1) < share; };
+    const auto chance = [&](double fraction) { return within(0, 1) < fraction; };
     const bool absent = chance(v.absent());
     s.feet += Vector3(jitter(v.place()), jitter(v.place()), 0);
     s.yaw += jitter(v.turn());
     s.stature = std::clamp(s.stature + jitter(v.stature()), 1.2, 2.2);
     s.left_handed = chance(v.left_handed());
-    const double pace = within(v.slowest(), v.fastest());
-    if (v.fastest() > 0) s.behaviour.speed_scale = pace;
-    const auto some = [&](double share, double most) {
-      const bool does = chance(share);
-      const double size = within(0.3, 1) * most;
+    const double speed_scale = within(v.slowest(), v.fastest());
+    if (v.fastest() > 0) s.behaviour.speed_scale = speed_scale;
+    const auto draw_size = [&](double fraction, double max_value) {
+      const bool does = chance(fraction);
+      const double size = within(0.3, 1) * max_value;
       return does ? size : 0.0;
     };
-    s.behaviour.hesitation = some(v.hesitates(), v.hesitation());
+    s.behaviour.hesitation = draw_size(v.hesitates(), v.hesitation());
     s.behaviour.withdraws = chance(v.withdraws());
-    s.behaviour.look_away = some(v.looks_away(), v.away());
+    s.behaviour.look_away = draw_size(v.looks_away(), v.away());
     s.behaviour.look_away_at = within(v.begins_after(), v.begins_before());
-    double step = some(v.sidesteps(), v.sidestep()), way = within(M_PI_2, 3 * M_PI_2);
+    double step = draw_size(v.sidesteps(), v.sidestep()), direction = within(M_PI_2, 3 * M_PI_2);
     if (step > 0 && v.min_sidestep() > 0)
       step =
           v.min_sidestep() + (step / v.sidestep() - 0.3) / 0.7 * (v.sidestep() - v.min_sidestep());
-    if (v.only_aside()) way = way < M_PI ? M_PI_2 : 3 * M_PI_2;
+    if (v.only_aside()) direction = direction < M_PI ? M_PI_2 : 3 * M_PI_2;
     s.behaviour.sidestep_at = within(v.begins_after(), v.begins_before());
     s.behaviour.seated = chance(v.seated());
     const Vector3 to_robot =
         (out_.p_world_robot - s.feet).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
     if (!s.behaviour.seated)
-      s.behaviour.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
+      s.behaviour.sidestep = step * (Eigen::AngleAxisd(direction, Vector3::UnitZ()) * to_robot);
     s.behaviour.early = chance(v.early());
     s.behaviour.from_carry = v.from_carry();
     vary_hands(s, v);
     return !absent;
   }
 
-  /// Draws from numbers of its own, so that the other draws are what they were.
+  /// Draws the variation of the hands from a separate sequence, so that all other draws stay the
+  /// same.
   void vary_hands(PersonSettings& s, const config::PersonVariation& v) const {
     auto own = random_;
     std::mt19937_64 random(own());
@@ -374,7 +376,7 @@ class Reader {
       std::snprintf(range, sizeof range, "%g, must be between %g and %g", value, low, high);
       fail("sensor " + sensor.source() + ": " + key + " is " + range);
     };
-    constexpr double kMost = 0.999;
+    constexpr double kMaxDropout = 0.999;  // max fraction of lost samples or joints
     SensorSettings s;
     s.source = sensor.source();
     if (s.source.empty()) fail("a sensor has no source: it needs a name");
@@ -382,11 +384,11 @@ class Reader {
     s.latency = within(sensor.latency(), "latency", 0, 10);
     s.noise = within(sensor.noise(), "noise", 0, 1);
     s.jitter = within(sensor.jitter(), "jitter", 0, 10);
-    s.dropout = within(sensor.dropout(), "dropout", 0, kMost);
+    s.dropout = within(sensor.dropout(), "dropout", 0, kMaxDropout);
     s.burst_rate = within(sensor.burst_rate(), "burst_rate", 0, 1000);
     s.burst_length =
         within(sensor.burst_length(), "burst_length", s.burst_rate > 0 ? 1e-3 : 0, 100);
-    s.joint_dropout = within(sensor.joint_dropout(), "joint_dropout", 0, kMost);
+    s.joint_dropout = within(sensor.joint_dropout(), "joint_dropout", 0, kMaxDropout);
     if (sensor.has_pose()) s.T_world_sensor = pose_of(sensor.pose());
     s.link = sensor.link();
     if (!s.link.empty()) {
@@ -415,7 +417,7 @@ class Reader {
     if ((s.coverage.low.array() > s.coverage.high.array()).any())
       fail("sensor " + s.source + ": coverage_high lies below coverage_low");
     if (of_people) {
-      if (const std::string why = claims_too_much(s); !why.empty())
+      if (const std::string why = coverage_error(s); !why.empty())
         fail("sensor " + s.source + ": " + why);
     }
     for (const std::string& joint : sensor.joints()) {
@@ -449,7 +451,7 @@ class Reader {
   const ObjectLibrary& library_;
   std::filesystem::path data_root_;
   std::mt19937_64 random_;
-  std::set<int> placed_;  // objects that have found their free place
+  std::set<int> placed_;  // objects already placed at a free place
   SceneSetup out_;
 };
 

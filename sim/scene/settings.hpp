@@ -13,41 +13,41 @@
 namespace handsel::sim {
 
 struct SimSettings {
-  double step{0.001};                             ///< [s]
+  double step{0.001};                             ///< physics step [s]
   int solver_iterations{10};                      ///< of the contact solver in one step
   double state_rate{500}, ground_truth_rate{50};  ///< of robot state and ground truth [Hz]
   ServoSettings servo;                            ///< joint servos of the robot
   PadSettings pad;                                ///< surface of its fingers
   /// A grasp constraint of limited force helps to hold while the contacts pass force closure.
   bool constraint{false};
-  RobotSideSettings robot_side;  ///< how the robot's driver takes set-points
+  RobotSideSettings robot_side;  ///< handling of set-points by the robot's driver
   /// Grasp constraint of a robot's hand, grip of a person's hand.
   GripSettings robot_grip, person_grip;
-  PersonHandSettings person_hand;  ///< free hand of a person on its spring
-  double touch_force{0.2};      ///< a contact weaker than this does not count for force closure [N]
-  double grasp_time{0.02};      ///< force closure for this long begins a hold [s]
-  double lose_time{0.05};       ///< no force closure for this long ends a hold [s]
-  double wrench_filter{25};     ///< cut-off of the wrench and torque measurement [Hz]
-  double force_noise{0.1};      ///< standard deviation of a measured force [N]
-  double position_noise{1e-5};  ///< standard deviation of a measured position [rad]
-  double coverage{4};           ///< half width of a sensor's default coverage [m]
-  double setpoint_period{0};    ///< [s], 0: measured
-  OdometrySettings odometry;    ///< of a platform
-  LocalisationSettings localisation;  ///< of a platform
+  PersonHandSettings person_hand;     ///< free hand of a person on its spring
+  double touch_force{0.2};            ///< min normal force of a contact for force closure [N]
+  double grasp_time{0.02};            ///< duration of force closure that begins a grasp [s]
+  double lose_time{0.05};             ///< duration without force closure that ends a grasp [s]
+  double wrench_filter{25};           ///< cut-off of the wrench and torque measurement [Hz]
+  double force_noise{0.1};            ///< standard deviation of a measured force [N]
+  double position_noise{1e-5};        ///< standard deviation of a measured position [rad]
+  double coverage{4};                 ///< half width of a sensor's default coverage [m]
+  double setpoint_period{0};          ///< period of set-points [s]; 0: measured
+  OdometrySettings odometry;          ///< odometry of a platform
+  LocalisationSettings localisation;  ///< localisation of a platform
   // With simulated time only (sim/time_keeper):
-  double clock_period{0.01};  ///< one grant lets the components' time advance by this [s]
-  double max_lag{0.005};      ///< steps may come this much late before the system's time waits [s]
-  double max_wait{0.5};       ///< for a component that does not answer, or for set-points [s]
-  SsmSettings ssm;            ///< of the separation oracle
-  std::filesystem::path data_root;  ///< where relative recordings are found; empty: nowhere
+  double clock_period{0.01};        ///< time by which one grant advances the components [s]
+  double max_lag{0.005};            ///< max delay of a step before the time of the system waits [s]
+  double max_wait{0.5};             ///< max wait for a component or for set-points [s]
+  SsmSettings ssm;                  ///< settings of the separation oracle
+  std::filesystem::path data_root;  ///< folder of relative recordings; empty: none
 };
 
-/// The environment's HANDSEL_DATA, else ../shared/data beside the project, else empty.
+/// Returns the environment's HANDSEL_DATA, else ../shared/data beside the project, else empty.
 std::filesystem::path data_root();
 
-/// Reads <folder>/sim.txtpb, and the period of the set-points from
-/// <folder>/trajectory_controller.txtpb; data_root as above. Throws ConfigError naming file and
-/// field.
+/// Reads <folder>/sim.txtpb, and the period of set-points from
+/// <folder>/trajectory_controller.txtpb; data_root as data_root(). Throws ConfigError that names
+/// file and field.
 SimSettings load_settings(const std::filesystem::path& folder);
 
 }  // namespace handsel::sim

@@ -7,8 +7,8 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kInsideOwnBody =
-    0.02;  // a joint this far beyond a capsule's surface still belongs to it [m]
+// Max distance of a joint outside the surface of a capsule to which it belongs [m].
+constexpr double kMaxOutsideOwnBody = 0.02;
 
 Vector3 noise(std::mt19937_64& random, std::normal_distribution<double>& normal, double sigma) {
   const double x = normal(random), y = normal(random), z = normal(random);
@@ -19,15 +19,16 @@ bool inside(const Coverage& c, const Vector3& p) {
   return (p.array() >= c.low.array()).all() && (p.array() <= c.high.array()).all();
 }
 
-/// Robot, boxes and the bodies of people other than `own`; of `own` what the point is not part of.
-bool hidden(const Sight& sight, std::size_t own, const Vector3& eye, const Vector3& point) {
+/// Returns whether robot, boxes, people other than `own`, or other parts of `own` occlude the
+/// point.
+bool is_occluded(const Sight& sight, std::size_t own, const Vector3& eye, const Vector3& point) {
   for (const SightCapsule& link : sight.robot)
     if (hides(link, eye, point)) return true;
   for (const SightBox& box : sight.boxes)
     if (hides(box, eye, point)) return true;
   for (std::size_t p = 0; p < sight.bodies.size(); ++p) {
     for (const BodyCapsule& part : sight.bodies[p]) {
-      if (p == own && contains({part.a, part.b, part.radius + kInsideOwnBody}, point)) continue;
+      if (p == own && contains({part.a, part.b, part.radius + kMaxOutsideOwnBody}, point)) continue;
       if (hides(SightCapsule{part.a, part.b, part.radius}, eye, point)) return true;
     }
   }
@@ -55,7 +56,7 @@ bool in_reach(const SensorSettings& s, const Vector3& point) {
   return !s.link.empty() || inside(s.coverage, point);
 }
 
-std::string claims_too_much(const SensorSettings& s) {
+std::string coverage_error(const SensorSettings& s) {
   if (!s.link.empty()) return "";
   if (s.gaze == GazeOutput::only) return "";
   for (int corner = 0; corner < 8; ++corner) {
@@ -84,8 +85,8 @@ bool SampleStream<M>::lost(double now) {
   if (settings_.burst_rate > 0 && now >= burst_until_ &&
       happens(std::min(1.0, settings_.burst_rate / settings_.rate)))
     burst_until_ = now - settings_.burst_length * std::log(1 - uniform());
-  const bool alone = happens(settings_.dropout);
-  return alone || now < burst_until_ || fault(now, SensorFaultKind::gap) != nullptr;
+  const bool is_dropped = happens(settings_.dropout);
+  return is_dropped || now < burst_until_ || fault(now, SensorFaultKind::gap) != nullptr;
 }
 
 template <class M>
@@ -153,7 +154,7 @@ bool HumanSensor::sees(const Sight& sight, std::size_t person, const Vector3& po
   if (settings_.gaze != GazeOutput::only && !in_reach(settings_, point)) return false;
   if (!in_view(settings_, point)) return false;
   return !settings_.occlusion ||
-         !hidden(sight, person, settings_.T_world_sensor->translation(), point);
+         !is_occluded(sight, person, settings_.T_world_sensor->translation(), point);
 }
 
 const std::string& HumanSensor::shown_id(const std::string& id) {
@@ -244,10 +245,10 @@ void ObjectSensor::observe(double now, const Sight& sight) {
   const SensorFault* teleport = stream_.fault(now, SensorFaultKind::teleport);
   const bool blind = stream_.fault(now, SensorFaultKind::blind) != nullptr;
   for (const TrueObject& object : sight.objects) {
-    const Vector3 where = object.T_world_object.translation();
-    if (blind || !in_reach(settings_, where) || !in_view(settings_, where)) continue;
+    const Vector3 p_world = object.T_world_object.translation();
+    if (blind || !in_reach(settings_, p_world) || !in_view(settings_, p_world)) continue;
     if (settings_.occlusion &&
-        hidden(sight, sight.people.size(), settings_.T_world_sensor->translation(), where))
+        is_occluded(sight, sight.people.size(), settings_.T_world_sensor->translation(), p_world))
       continue;
     ObservedObject observed{object.id, object.model, object.T_world_object, 0.95};
     observed.T_world_object.translation() += noise(random_, normal_, settings_.noise);

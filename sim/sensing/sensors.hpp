@@ -1,6 +1,6 @@
-// Emulated perception: several sources of people and objects, each with its own rate, latency,
-// jitter, noise, drop-outs, view and faults. Pure, seeded. Chance that is switched off is not
-// drawn, so a source without it is the same bit for bit.
+// Emulates perception: sources of people and objects, each with rate, latency, jitter, noise,
+// drop-outs, field of view and faults. Pure, seeded. Random numbers of a disabled effect are not
+// drawn, so disabled effects do not change a source by a bit.
 #pragma once
 
 #include <deque>
@@ -17,8 +17,8 @@
 
 namespace handsel::sim {
 
-/// repeated_empty: the same picture, with nobody in it, again and again; elsewhere: the sensor
-/// observes another place, `shift` away, where nobody is.
+/// Kinds of faults. repeated_empty: the sensor repeats one sample without people; elsewhere: the
+/// sensor observes an empty place displaced by `shift`.
 enum class SensorFaultKind {
   gap,
   frozen,
@@ -32,10 +32,10 @@ enum class SensorFaultKind {
 };
 
 struct SensorFault {
-  SensorFaultKind kind{};          ///< what goes wrong
+  SensorFaultKind kind{};          ///< kind of the fault
   double at{}, length{};           ///< begin and duration [s]
   Vector3 shift{Vector3::Zero()};  ///< teleport, elsewhere: world [m]
-  double delay{};                  ///< late [s]
+  double delay{};                  ///< late: additional latency [s]
 };
 
 enum class GazeOutput { with_body, none, only };
@@ -43,96 +43,95 @@ enum class GazeOutput { with_body, none, only };
 /// Fields as in SensorDescription of common/config/schema/scenario.proto.
 struct SensorSettings {
   std::string source;                    ///< name in the observations; not empty
-  double rate{30};                       ///< [Hz]
-  double latency{0.03};                  ///< from the instant seen to delivery [s]
+  double rate{30};                       ///< sample rate [Hz]
+  double latency{0.03};                  ///< from capture to delivery [s]
   double noise{0.0};                     ///< standard deviation of each coordinate [m]
   Coverage coverage;                     ///< box that the sensor claims to observe, world [m]
-  double jitter{};                       ///< of the delivery, to either side [s]
-  double dropout{}, joint_dropout{};     ///< fractions of samples and of joints that are lost
-  double burst_rate{}, burst_length{};   ///< of losses: mean rate [1/s], mean length [s]
-  std::optional<Pose> T_world_sensor;    ///< x forward; without it no field of view
+  double jitter{};                       ///< max deviation of the delivery time [s]
+  double dropout{}, joint_dropout{};     ///< fractions of lost samples and of lost joints
+  double burst_rate{}, burst_length{};   ///< bursts of losses: mean rate [1/s], mean length [s]
+  std::optional<Pose> T_world_sensor;    ///< x forward; nullopt: no field of view
   std::string link;                      ///< robot link that carries the sensor; empty: it is fixed
   Pose T_link_sensor{Pose::Identity()};  ///< pose on that link
   double fov_horizontal{}, fov_vertical{};  ///< full angles [rad], 0: unlimited
-  double range{};                           ///< [m], 0: unlimited
-  bool occlusion{};                         ///< robot, boxes and bodies hide points
-  std::vector<std::string> joints;          ///< tracked; empty: all
-  GazeOutput gaze{GazeOutput::with_body};   ///< whether the direction of gaze is observed too
+  double range{};                           ///< max distance [m], 0: unlimited
+  bool occlusion{};                         ///< whether robot, boxes and bodies occlude points
+  std::vector<std::string> joints;          ///< tracked joints; empty: all
+  GazeOutput gaze{GazeOutput::with_body};   ///< which of body and gaze is observed
   double gaze_noise{};                      ///< standard deviation [rad]; 0: follows `noise`
   double gaze_dropout{};                    ///< fraction of the gazes that are lost
   double swap_rate{};                       ///< rate at which two people's ids are swapped [1/s]
-  std::vector<SensorFault> faults;          ///< of the scenario
+  std::vector<SensorFault> faults;          ///< faults of the scenario
 };
 
-/// Whether the point is inside range and field of view.
+/// Returns whether the point is within range and field of view.
 bool in_view(const SensorSettings&, const Vector3& point);
 
-/// Moves the sensor. Its coverage becomes the point where the sensor is: it claims to observe
-/// nothing.
+/// Moves the sensor. The coverage becomes the sensor's position, so the sensor claims no coverage.
 void carried_to(SensorSettings&, const Pose& T_world_sensor);
-/// Whether a point can be observed at all: a fixed sensor observes its coverage, one that the robot
-/// carries everything in view.
+/// Returns whether the sensor can observe a point: a fixed sensor observes its coverage, a sensor
+/// on the robot everything in view.
 bool in_reach(const SensorSettings&, const Vector3& point);
 
-/// Returns an empty text, or one sentence: which corner of the coverage lies outside the sensor's
+/// Returns an empty text, or one sentence that names a corner of the coverage outside the sensor's
 /// view.
-std::string claims_too_much(const SensorSettings&);
+std::string coverage_error(const SensorSettings&);
 
-/// A message with the instant it shows and the instant it is handed over [s of simulated time].
+/// A message with the instants of capture and delivery [s of simulated time].
 template <class M>
 struct Delivery {
-  double seen{}, due{};  ///< instant shown, instant of delivery [s]
+  double seen{}, due{};  ///< instant of capture, instant of delivery [s]
   M message;             ///< without a stamp
 };
 
-/// An object as it truly is.
+/// The ground truth of an object.
 struct TrueObject {
   std::string id, model;                  ///< unique in the scene; name in the object library
   Pose T_world_object{Pose::Identity()};  ///< without noise
 };
 
-/// All there is to see.
+/// The ground truth of everything that sensors observe.
 struct Sight {
   std::vector<const Person*> people;             ///< ground truth; no null
-  std::vector<std::vector<BodyCapsule>> bodies;  ///< of `people`, for occlusion
-  std::vector<TrueObject> objects;               ///< all of the scene
-  std::vector<SightCapsule> robot;               ///< its links, for occlusion; may be empty
+  std::vector<std::vector<BodyCapsule>> bodies;  ///< capsules of `people`, for occlusion
+  std::vector<TrueObject> objects;               ///< all objects of the scene
+  std::vector<SightCapsule> robot;               ///< robot links, for occlusion; may be empty
   std::vector<SightBox> boxes;                   ///< furniture, for occlusion; may be empty
 };
 
-/// When samples are made, lost and handed over; shared by all kinds of sensors.
+/// Times of samples, losses and deliveries, common to all kinds of sensors.
 template <class M>
 class SampleStream {
  public:
   SampleStream(const SensorSettings& settings, std::uint64_t seed)
       : settings_(settings), chance_(seed ^ 0xd1ce'5eedULL) {}
 
-  /// Returns true once a period of the sensor.
+  /// Returns true once per period of the sensor.
   bool due(double now);
-  /// Whether the sample of this instant is lost.
+  /// Returns whether the sample of this instant is lost.
   bool lost(double now);
-  /// Queues the sample of the instant `now` [s] with its latency and jitter, changed as the faults
-  /// of that instant say. Samples are delivered in the order of their instants.
+  /// Queues the sample of the instant `now` [s] with latency, jitter and the faults of that
+  /// instant. Samples are delivered in the order of capture.
   void send(double now, M message);
-  /// Moves what is due by `now` [s] to the end of `out`.
+  /// Moves the samples due by `now` [s] to the end of `out`.
   void collect(double now, std::vector<Delivery<M>>& out);
-  /// Returns a fault of this kind that is active at `now` [s], of the settings first; nullptr:
+  /// Returns a fault of this kind that is active at `now` [s], first from the settings; nullptr:
   /// none.
   const SensorFault* fault(double now, SensorFaultKind kind) const;
-  /// Adds a fault to those of the settings; it replaces a disturbance of the same kind.
+  /// Adds a fault to the faults of the settings; replaces a disturbance of the same kind.
   void disturb(const SensorFault& fault);
   /// Ends all disturbances.
   void restore();
-  /// True with this probability; draws only when it is above 0.
+  /// Returns true with this probability; draws only if the probability is above 0.
   bool happens(double probability) { return probability > 0 && uniform_(chance_) < probability; }
-  double uniform() { return uniform_(chance_); }  ///< Draws from [0, 1).
+  double uniform() { return uniform_(chance_); }  ///< Draws a number from [0, 1).
 
  private:
   SensorSettings settings_;
   std::mt19937_64 chance_;
   std::uniform_real_distribution<double> uniform_{0, 1};
   double next_{0}, burst_until_{-1}, last_due_{0};
-  std::optional<Delivery<M>> last_, empty_;  // sent last; the picture of repeated_empty
+  std::optional<Delivery<M>> last_, empty_;  // last sample sent; sample of repeated_empty
   std::deque<Delivery<M>> pending_;
   std::vector<SensorFault> disturbances_;
 };
@@ -140,20 +139,20 @@ class SampleStream {
 class HumanSensor {
  public:
   HumanSensor(const SensorSettings&, std::uint64_t seed);
-  bool due(double now) { return stream_.due(now); }  ///< True once a period.
-  /// Moves a sensor that the robot carries.
+  bool due(double now) { return stream_.due(now); }  ///< Returns true once per period.
+  /// Moves a sensor on the robot.
   void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
-  /// Adds a fault to those of the settings; it replaces a disturbance of the same kind.
+  /// Adds a fault to the faults of the settings; replaces a disturbance of the same kind.
   void disturb(const SensorFault& fault) { stream_.disturb(fault); }
   /// Ends all disturbances.
   void restore() { stream_.restore(); }
   /// Takes a sample of people; to be called when due.
   void observe(double now, const Sight&);
-  /// Moves what is due by `now` to `out`.
+  /// Moves the samples due by `now` [s] to the end of `out`.
   void collect(double now, std::vector<Delivery<HumanObservation>>& out) {
     stream_.collect(now, out);
   }
-  const SensorSettings& settings() const { return settings_; }  ///< with the pose of now
+  const SensorSettings& settings() const { return settings_; }  ///< with the present pose
 
  private:
   bool sees(const Sight&, std::size_t person, const Vector3& point) const;
@@ -164,23 +163,23 @@ class HumanSensor {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0, 1};
   SampleStream<HumanObservation> stream_;
-  std::map<std::string, std::string> shown_;  // true id -> the tracker's, where it differs
+  std::map<std::string, std::string> shown_;  // true id -> tracker's id, where these differ
   int renamed_{0};
 };
 
 class ObjectSensor {
  public:
   ObjectSensor(const SensorSettings&, std::uint64_t seed);
-  bool due(double now) { return stream_.due(now); }  ///< True once a period.
-  /// Moves a sensor that the robot carries.
+  bool due(double now) { return stream_.due(now); }  ///< Returns true once per period.
+  /// Moves a sensor on the robot.
   void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
-  /// Takes a sample of objects by their origins; to be called when due.
+  /// Takes a sample of objects, observed by their origins; to be called when due.
   void observe(double now, const Sight&);
-  /// Moves what is due by `now` to `out`.
+  /// Moves the samples due by `now` [s] to the end of `out`.
   void collect(double now, std::vector<Delivery<ObjectObservation>>& out) {
     stream_.collect(now, out);
   }
-  const SensorSettings& settings() const { return settings_; }  ///< with the pose of now
+  const SensorSettings& settings() const { return settings_; }  ///< with the present pose
 
  private:
   SensorSettings settings_;

@@ -15,8 +15,8 @@ MovingOfferSettings settings_of(std::uint64_t seed) {
   s.start_low = Vector3(0.86, -0.3, 0.865), s.start_high = Vector3(1.06, 0.3, 1.065);
   s.next_low = Vector3(0.76, -0.5, 0.865), s.next_high = Vector3(1.16, 0.5, 1.465);
   s.spread = 0.2;
-  s.slowest = 0.1, s.fastest = 0.2;
-  s.slowest_turn = 0.5, s.fastest_turn = 1.0;
+  s.min_speed = 0.1, s.max_speed = 0.2;
+  s.min_turn_speed = 0.5, s.max_turn_speed = 1.0;
   s.max_turn = 0.9;
   s.waits_within = 0.1;
   s.seed = seed;
@@ -43,7 +43,7 @@ TEST(MovingOffer, keeps_its_speeds_in_reach_until_it_stays) {
       const Eigen::Quaterniond turn = offer.turn();
       offer.step(kStep, false);
       const double moved = (offer.position() - p).norm() / kStep;
-      ASSERT_LT(moved, s.fastest * 1.1) << "seed " << seed;
+      ASSERT_LT(moved, s.max_speed * 1.1) << "seed " << seed;
       length += moved * kStep;
       turned += turn.angularDistance(offer.turn());
       outside += !arm().contains(offer.position());

@@ -235,9 +235,9 @@ TEST(Sensors, field_of_view_and_range_limit_what_is_seen) {
   EXPECT_FALSE(in_view(s, {-2, 0, 1.2}));
   EXPECT_FALSE(in_view(s, {2, 0, 1.9}));
   EXPECT_FALSE(in_view(s, {3.1, 0, 1.2}));
-  EXPECT_NE(claims_too_much(s), "") << "the whole room is not in this view";
+  EXPECT_NE(coverage_error(s), "") << "the whole room is not in this view";
   s.coverage = {{1.5, -0.5, 1.0}, {2.5, 0.5, 1.4}};
-  EXPECT_EQ(claims_too_much(s), "");
+  EXPECT_EQ(coverage_error(s), "");
 }
 
 TEST(Sensors, one_that_is_carried_sees_what_is_before_it_and_claims_nothing) {

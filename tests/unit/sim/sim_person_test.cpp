@@ -225,8 +225,8 @@ TEST(SimPerson, giver_who_moves_and_is_ignored_then_holds_it_out_anew_upright) {
   settings.moving.start_low = settings.moving.next_low = Vector3(0.86, -0.3, 0.9);
   settings.moving.start_high = settings.moving.next_high = Vector3(1.06, 0.3, 1.1);
   settings.moving.spread = 0.1;
-  settings.moving.slowest = settings.moving.fastest = 0.1;
-  settings.moving.slowest_turn = settings.moving.fastest_turn = 0.3;
+  settings.moving.min_speed = settings.moving.max_speed = 0.1;
+  settings.moving.min_turn_speed = settings.moving.max_turn_speed = 0.3;
   settings.moving.max_turn = 0.9;
   settings.moving.seed = 3;
   PersonModel person(settings);
