@@ -11,8 +11,8 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kUnit = 1e-3;  // a quaternion's norm, a matrix' products may be off by this
-constexpr double kFarthestSensor = 50;  // nothing stands farther from the world's origin [m]
+constexpr double kMaxRotationError = 1e-3;  // max error of a quaternion's norm or matrix product
+constexpr double kMaxSensorDistance = 50;   // max distance from the world's origin [m]
 
 std::optional<std::chrono::sys_days> date(const std::string& text) {
   int y = 0, m = 0, d = 0, used = 0;
@@ -31,14 +31,14 @@ std::string number(double value) {
   return text;
 }
 
-/// `fail` throws with where it stands.
+/// Returns the pose in a file. `fail` throws an error with the position in the file.
 template <class Fail>
 Pose read(const config::Rigid& in, const Fail& fail) {
   const Vector3 p(in.position().x(), in.position().y(), in.position().z());
-  if (!p.allFinite() || p.norm() > kFarthestSensor)
+  if (!p.allFinite() || p.norm() > kMaxSensorDistance)
     fail("stands " + number(p.norm()) +
          " m from the world's origin; positions are in metres, no farther than " +
-         number(kFarthestSensor));
+         number(kMaxSensorDistance));
   if (in.has_orientation() && in.rotation_size() > 0)
     fail("has an orientation and a rotation; it must be one of them");
   if (in.rotation_size() > 0) {
@@ -47,17 +47,17 @@ Pose read(const config::Rigid& in, const Fail& fail) {
            " numbers; it must be nine, row by row");
     Eigen::Matrix3d R;
     for (int i = 0; i < 9; ++i) R(i / 3, i % 3) = in.rotation(i);
-    const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(off <= kUnit))
+    const double error = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (!(error <= kMaxRotationError))
       fail("has a rotation whose rows are not at right angles and of length 1 (off by " +
-           number(off) + ")");
+           number(error) + ")");
     if (R.determinant() < 0) fail("has a rotation that mirrors; its determinant must be 1");
     return make_pose(p, Eigen::Quaterniond(R));
   }
   if (!in.has_orientation()) return make_pose(p);
   const Eigen::Quaterniond q(in.orientation().w(), in.orientation().x(), in.orientation().y(),
                              in.orientation().z());
-  if (!(std::abs(q.norm() - 1) <= kUnit))
+  if (!(std::abs(q.norm() - 1) <= kMaxRotationError))
     fail("has an orientation of norm " + number(q.norm()) +
          "; a rotation is a quaternion x y z w of norm 1");
   return make_pose(p, q);
@@ -74,11 +74,11 @@ Coverage inscribed(const Coverage& box, const Pose& T_world_box) {
   const Vector3 half = (box.high - box.low) / 2,
                 middle = T_world_box * Vector3((box.low + box.high) / 2);
   const Eigen::Matrix3d R = T_world_box.linear().cwiseAbs();
-  const Vector3 around = R * half, needs = R.transpose() * around;
-  double share = 1;
+  const Vector3 half_bounding = R * half, half_needed = R.transpose() * half_bounding;
+  double scale = 1;
   for (int i = 0; i < 3; ++i)
-    if (needs[i] > 0) share = std::min(share, half[i] / needs[i]);
-  return {middle - share * around, middle + share * around};
+    if (half_needed[i] > 0) scale = std::min(scale, half[i] / half_needed[i]);
+  return {middle - scale * half_bounding, middle + scale * half_bounding};
 }
 
 Calibration::Calibration(const std::filesystem::path& file) {

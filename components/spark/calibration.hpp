@@ -1,4 +1,4 @@
-// Where sources and robots stand in the world (deploy/config/calibration.txtpb). Pure but for
+// Poses of sources and robots in the world (deploy/config/calibration.txtpb). Pure except for
 // reading the file.
 #pragma once
 
@@ -15,27 +15,26 @@ namespace handsel::spark {
 class Calibration {
  public:
   struct Source {
-    bool own_frame{};                       ///< what it reports is in its camera's frame
-    Pose T_world_camera{Pose::Identity()};  ///< pose of its camera in the world [m]
-    std::optional<Coverage> coverage;       ///< world, instead of the one it reports
-    std::string measured;                   ///< YYYY-MM-DD, or empty
+    bool own_frame{};                       ///< whether observations are in the camera's frame
+    Pose T_world_camera{Pose::Identity()};  ///< pose of the camera in the world [m]
+    std::optional<Coverage> coverage;       ///< replaces the reported coverage, world [m]
+    std::string measured;                   ///< day of measurement YYYY-MM-DD, or empty
   };
   struct Robot {
-    Pose T_world_base{Pose::Identity()};  ///< pose of its root link in the world [m]
-    std::string measured;                 ///< YYYY-MM-DD, or empty
+    Pose T_world_base{Pose::Identity()};  ///< pose of the root link in the world [m]
+    std::string measured;                 ///< day of measurement YYYY-MM-DD, or empty
   };
 
-  /// Nothing is calibrated: every source speaks in frame world.
+  /// Creates an empty calibration: every source reports in frame world.
   Calibration() = default;
-  /// A file that is not there calibrates nothing. Throws ConfigError "file:line: what": an
-  /// orientation that is no rotation, a place that cannot be, something named twice, a date that is
-  /// none.
+  /// Reads a calibration; a missing file gives an empty one. Throws ConfigError "file:line: what"
+  /// for an invalid orientation, an impossible position, a duplicate name or an invalid date.
   explicit Calibration(const std::filesystem::path& file);
 
-  /// Brings what a source reports to the world. Of a turned coverage the largest upright box of the
-  /// same proportions inside it counts: never more than the source observes.
+  /// Converts the observation of a source to the world frame. A turned coverage becomes the largest
+  /// axis-aligned box of the same proportions inside: never more than the source observes.
   void to_world(HumanObservation& observation) const;
-  /// Brings the objects and grips of a source that reports in its own frame to the world.
+  /// Converts objects and grips of a source that reports in its own frame to the world frame.
   void to_world(ObjectObservation& observation) const;
 
   /// Returns the calibrated sources by name.
@@ -51,11 +50,11 @@ class Calibration {
   double valid_days_{0};
 };
 
-/// The upright box inside `box`, whose frame is T_world_box, with the same middle and the
-/// proportions of what stands around it.
+/// Returns the max axis-aligned box inside `box`, whose frame is T_world_box, with the same centre
+/// and the proportions of the axis-aligned bounding box.
 Coverage inscribed(const Coverage& box, const Pose& T_world_box);
 
-/// Days from the first day to the second, both YYYY-MM-DD; nullopt: one of them is no date.
+/// Returns the days from the first day to the second, both YYYY-MM-DD; nullopt: an invalid date.
 std::optional<double> days_between(const std::string& first, const std::string& second);
 
 }  // namespace handsel::spark

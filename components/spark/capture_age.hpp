@@ -1,4 +1,4 @@
-// How old a picture is: its capture stamp against the system clock. Pure.
+// Computes the age of a sample from its capture stamp and the system clock. Pure.
 #pragma once
 
 #include <optional>
@@ -9,30 +9,29 @@
 
 namespace handsel::spark {
 
-/// The clock that stamps a source's pictures.
+/// The clock that stamps the samples of a source.
 struct SourceClock {
-  double error{};  ///< bound of its offset from the system clock here [s]
-  /// Of pictures without a stamp [s]; none: their age is unknown.
+  double error{};  ///< bound of its offset from the local system clock [s]
+  /// Latency of samples without a stamp [s]; nullopt: their age is unknown.
   std::optional<double> assumed_latency;
 };
-/// Returns the settings of the source's clock; those it does not have are the general ones.
+/// Returns the settings of the source's clock, with the general settings as default.
 SourceClock clock_of(const settings::SparkSettings& settings, const std::string& source);
 
 struct CaptureAge {
-  double age{};         ///< since the capture, at arrival: never less than it is [s]
-  std::string unknown;  ///< why the age is not known, one sentence; empty: it is
+  double age{};         ///< upper bound of the time from capture to arrival [s]
+  std::string unknown;  ///< why the age is unknown, one sentence; empty: known
 };
 
-/// Returns the age of a picture at its arrival. `stamp`: of its capture, 0: none. `arrival`: the
-/// system clock then. `relative`: by how much it took longer than the fastest one of its source
-/// [s]: of a delay that is always there this shows nothing, of a system clock that was set nothing
-/// either. The fourth argument: the smallest latency of any tracker [s], added to `relative` as a
-/// lower bound of the age.
+/// Returns the age of a sample at its arrival. `stamp`: of the capture; 0: none. `arrival`: system
+/// clock. `relative`: delay beyond the fastest sample of the source [s], independent of constant
+/// delays and of changes of the system clock. `min_latency`: min latency of any tracker [s]; its
+/// sum with `relative` is a lower bound of the age.
 CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency,
                        const SourceClock& clock);
 
-/// Returns the age of a transient local sample, which may be larger than the age that its receipt
-/// states. A clock that differs only makes the sample older. `stamp`: 0 for none.
+/// Returns the age of a transient local sample, at least the age `of_receipt`. A clock offset can
+/// only increase the result. `stamp`: 0: none.
 Duration age_of(Stamp stamp, Stamp now, Duration of_receipt);
 
 }  // namespace handsel::spark

@@ -1,4 +1,4 @@
-// Joints by name, and how fast something moves toward something.
+// Joints by name, and directed speeds.
 #pragma once
 
 #include "common/messages/world.hpp"
@@ -6,12 +6,12 @@
 
 namespace handsel::spark {
 
-/// Of a complete body.
+/// Returns a joint of a complete body.
 inline const BodyJoint& joint_of(const Person& person, const char* name) {
   return person.joints[static_cast<std::size_t>(body_joint_index(name))];
 }
 
-/// [m/s]; 0 when it is there.
+/// Returns the speed from `from` toward `to` [m/s]; 0 if both coincide.
 inline double speed_toward(const Vector3& from, const Vector3& velocity, const Vector3& to) {
   const Vector3 gap = to - from;
   const double distance = gap.norm();

@@ -1,4 +1,4 @@
-// Reports what the quotas have left out: counts on the bus, and a sentence when it matters.
+// Reports the elements left out by quotas: counts on the bus, and a sentence about people in reach.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,24 @@
 
 namespace handsel::spark {
 
-/// Counts, by cause, what was left out of observations and messages.
+/// Counts, by cause, the elements left out of observations and messages.
 class LeftOutReport {
  public:
-  /// Receives what was left out, and how many of that.
+  /// Receives the kind and the number of elements left out.
   using Count = std::function<void(const std::string& what, std::uint64_t count)>;
   LeftOutReport(Count count, const Quotas& quotas) : count_(std::move(count)), quotas_(quotas) {}
 
-  /// Counts the bodies of an observation that became nobody.
+  /// Counts the bodies of an observation that did not become a person.
   void add_bodies(std::uint32_t count, TimePoint arrival);
-  /// Counts the tracks that were forgotten, and observations of too many sources so far.
+  /// Counts the deleted tracks, and the observations of sources beyond the quota.
   void add_tracks(const LeftOut& tracks, const PeopleTracker& tracker);
-  /// Adds the bodies left out lately to the state and counts. `people`: left out of the state.
+  /// Adds the bodies left out recently to the state and counts. `people`: left out of the state.
   void add_people(const LeftOut& people, TimePoint now, HumanState& state);
-  /// Counts what was left out of the last scene.
+  /// Counts the elements left out of the last scene.
   void add_scene(const SceneModel& scene);
   /// Counts the facts left out of the last message.
   void add_facts(const Facts& facts);
-  /// One sentence when people are left out within reach of the arm; empty: none.
+  /// Returns one sentence if people within reach of the arm are left out; empty: none.
   std::string people_in_reach(const Coverage& reach) const;
 
  private:
@@ -36,8 +36,8 @@ class LeftOutReport {
 
   Count count_;
   Quotas quotas_;
-  RecentCount bodies_;  // of an observation
-  LeftOut people_;      // of the last HumanState
+  RecentCount bodies_;  // left out of observations
+  LeftOut people_;      // left out of the last HumanState
   std::uint64_t observations_counted_{0}, objects_counted_{0};
 };
 

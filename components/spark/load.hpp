@@ -1,4 +1,4 @@
-// The files that SPARK reads when it starts.
+// Reads the files that SPARK needs at its start.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 namespace handsel::spark {
 
 /// Returns the settings of spark.txtpb in `folder`, with the profiles of the people. Throws
-/// ConfigError when a value is out of range.
+/// ConfigError if a value is out of range.
 settings::SparkSettings load_settings(const std::filesystem::path& folder);
 
 }  // namespace handsel::spark

@@ -50,7 +50,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       },
       {.wakes = false});
   bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
-    scene_.want(goal.object);
+    scene_.request(goal.object);
     if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0)
       publish_people(bus_.now());
   });
@@ -93,8 +93,8 @@ void Node::observe(const HumanObservation& observation, const Receipt& receipt) 
   publish_people(bus_.now());
 }
 
-/// Returns everybody as of now. Before the safety state was received "nobody is there" is no fact:
-/// somebody may have been lost before.
+/// Returns the present state of all people. Before the safety state is received, `covered` is
+/// false: a person may have been lost before the start.
 HumanState Node::people(TimePoint now, LeftOut* left_out) const {
   HumanState state = tracker_.state(now, scene_.reach(), left_out);
   state.covered = state.covered && knows_lost_;

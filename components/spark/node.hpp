@@ -1,4 +1,4 @@
-// SPARK on a Bus.
+// Binds SPARK to a bus.
 #pragma once
 
 #include <memory>
@@ -31,8 +31,8 @@ class Node {
   void publish_people(TimePoint now);
   std::string trouble(TimePoint now) const;
   void publish(const Scene& scene, TimePoint now);
-  void publish_news(TimePoint now);  // the scene, when it has news
-  void interpret(TimePoint now);     // facts and scene, each when it is due
+  void publish_news(TimePoint now);  // publishes the scene if it has news
+  void interpret(TimePoint now);     // publishes facts and scene when due
 
   Bus& bus_;
   settings::SparkSettings settings_;
@@ -48,7 +48,7 @@ class Node {
   RobotsLink robots_;
   LeftOutReport left_out_;
   TimePoint started_, people_published_{};
-  // the safety state was received: the people lost before the start are known
+  // whether the safety state was received, which names the people lost before the start
   bool knows_lost_{false};
   SceneNews news_;
 };

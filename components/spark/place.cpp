@@ -5,11 +5,14 @@
 namespace handsel::spark {
 namespace {
 
-/// The floor of every place, z = 0 in the world: no arm goes there. What stands on it, the robot's
-/// own feet too, does not touch the floor.
+/// Returns the floor, z = 0 in the world. Its top is slightly lower, so that standing bodies and
+/// the robot's feet do not touch it.
 SceneBox floor() {
-  constexpr double kSize = 12.0, kThick = 0.1, kBelow = 0.002;  // [m]
-  return {"floor", make_pose({0, 0, -kBelow - 0.5 * kThick}), {kSize, kSize, kThick}, false};
+  constexpr double kSize = 12.0;      // side length [m]
+  constexpr double kThickness = 0.1;  // [m]
+  constexpr double kBelow = 0.002;    // depth of the top below z = 0 [m]
+  return {
+      "floor", make_pose({0, 0, -kBelow - 0.5 * kThickness}), {kSize, kSize, kThickness}, false};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a scenario says about the place: its fixed boxes and the viewpoints of the sources. Pure.
+// Reads fixed boxes and viewpoints of the sources from a scenario. Pure.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace handsel::spark {
 /// Returns the floor and the boxes of the scenario, in this order.
 std::vector<SceneBox> boxes_of(const config::Scenario& scenario);
 /// Returns the viewpoint of each source that has one, by the name of the source, world [m]:
-/// calibrated cameras, and sensors of the scenario whose view objects can occlude.
+/// calibrated cameras, and sensors of the scenario with occlusion.
 std::map<std::string, Vector3> viewpoints_of(const config::Scenario& scenario,
                                              const Calibration& calibration);
 

@@ -14,8 +14,8 @@ Vector3 axis(const Coverage& reach, double z) {
           std::clamp(z, reach.low.z(), reach.high.z())};
 }
 
-/// Order of a fact by its kind: 0 safety and exchange, 1 what a task plans with, 2 what people do,
-/// 3 the rest.
+/// Returns the class of a fact by its kind: 0 safety and handover, 1 facts for task planning, 2
+/// activities of people, 3 all others.
 int order_of(FactKind kind) {
   switch (kind) {
     case FactKind::in_contact_zone:
@@ -71,36 +71,37 @@ double distance_to_arm(const Vector3& point, const Coverage& reach) {
 }
 
 double distance_to_arm(const Person& person, const Coverage& reach) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const BodyJoint& joint : person.joints)
-    least = std::min(least, distance_to_arm(joint.position, reach));
-  return least - person.inflation;
+    min_distance = std::min(min_distance, distance_to_arm(joint.position, reach));
+  return min_distance - person.inflation;
 }
 
 double distance_to_arm(const ObservedPerson& person, const Coverage& reach) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const ObservedJoint& joint : person.joints)
-    least = std::min(least, distance_to_arm(joint.position, reach));
+    min_distance = std::min(min_distance, distance_to_arm(joint.position, reach));
   return person.joints.empty() && person.has_gaze ? distance_to_arm(person.gaze_origin, reach)
-                                                  : least;
+                                                  : min_distance;
 }
 
 double distance_to_arm(const SceneBox& box, const Coverage& reach) {
   constexpr int kSamples = 5;  // points of the axis
   const Eigen::AlignedBox3d extent(-box.size / 2, box.size / 2);
   const Pose T_box_world = box.T_world_box.inverse();
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kSamples; ++i) {
     const double z = reach.low.z() + (reach.high.z() - reach.low.z()) * i / (kSamples - 1);
-    least = std::min(least, extent.exteriorDistance(Vector3(T_box_world * axis(reach, z))));
+    min_distance =
+        std::min(min_distance, extent.exteriorDistance(Vector3(T_box_world * axis(reach, z))));
   }
-  return least;
+  return min_distance;
 }
 
-Rank rank_of(const SceneObject& object, bool wanted, const Coverage& reach) {
+Rank rank_of(const SceneObject& object, bool requested, const Coverage& reach) {
   const int order = object.holder == Holder::robot   ? 0
                     : object.holder == Holder::human ? 1
-                    : wanted                         ? 2
+                    : requested                      ? 2
                                                      : 3;
   return {order, distance_to_arm(object.T_world_object.translation(), reach)};
 }
@@ -131,7 +132,7 @@ LeftOut keep_most_relevant(std::vector<Fact>& facts, std::size_t max, const Scen
       if (found == named.end()) continue;
       out.distance = std::min(out.distance, found->second.distance);
       if (found->second.order < 2)
-        out.order = std::min(out.order, 1);  // it is about something that is held
+        out.order = std::min(out.order, 1);  // the fact is about a held object
     }
     return out;
   };

@@ -1,5 +1,5 @@
-// How many people, objects, boxes and facts SPARK keeps, and which when there are more: the nearest
-// and most relevant. Pure.
+// Quotas of people, objects, boxes and facts; beyond a quota the nearest and most relevant are
+// kept. Pure.
 #pragma once
 
 #include <algorithm>
@@ -18,52 +18,52 @@ class SettingsText;
 
 namespace handsel::spark {
 
-/// Settings of the same names.
+/// Quotas by the settings of the same names.
 struct Quotas {
-  /// Largest numbers: bodies of an observation that become new people, tracks of people, people of
-  /// a HumanState, sources of people, objects remembered, objects, boxes of a Scene, facts of
+  /// Max numbers: bodies of an observation that become new people, tracks of people, people of a
+  /// HumanState, sources of people, remembered objects, objects and boxes of a Scene, facts of
   /// Facts.
   std::size_t bodies{32}, tracks{64}, people{16}, sources{16}, known_objects{128}, objects{64},
       boxes{64}, facts{256};
 };
 /// Returns the quotas of the settings; their ranges are not checked.
 Quotas quotas_of(const settings::SparkSettings& settings);
-/// Refuses quotas that contradict each other. Throws ConfigError "file:line:key: ...".
+/// Checks the consistency of the quotas. Throws ConfigError "file:line:key: ...".
 void check_quotas(const settings::SparkSettings& settings, const SettingsText& text);
 
-/// What a quota has left out.
+/// The elements left out by a quota.
 struct LeftOut {
-  std::uint32_t count{};  ///< 0: nothing
-  /// Distance of the nearest one from the axis of the arm [m].
+  std::uint32_t count{};  ///< number of elements
+  /// Distance of the nearest element from the axis of the arm [m].
   double nearest{std::numeric_limits<double>::infinity()};
 };
 
-/// Horizontal distance from the axis to the sides of what the arm reaches [m].
+/// Returns the horizontal distance from the arm's axis to the sides of its reach [m].
 double arm_radius(const Coverage& reach);
-/// Distance of a point from the vertical axis in the middle of `reach` [m]; below and above the
-/// axis from its end.
+/// Returns the distance of a point from the vertical axis segment in the middle of `reach` [m].
 double distance_to_arm(const Vector3& point, const Coverage& reach);
-/// Of the nearest joint, less the inflation of a lost person [m]; negative inside the inflated
-/// body.
+/// Returns the distance of the nearest joint, less the inflation of a lost person [m]; negative
+/// inside the inflated body.
 double distance_to_arm(const Person& person, const Coverage& reach);
-/// Of the nearest joint, of the gaze origin for a body without joints [m]; infinity without either.
+/// Returns the distance of the nearest joint, or of the gaze origin of a body without joints [m];
+/// infinity without either.
 double distance_to_arm(const ObservedPerson& person, const Coverage& reach);
-/// Of the box from the nearest of five points on the axis [m]; 0 when one is inside.
+/// Returns the min distance of the box from five points on the axis [m]; 0 if one is inside.
 double distance_to_arm(const SceneBox& box, const Coverage& reach);
 
-/// Place of something in the order in which it is kept: lower first.
+/// Rank of an element; elements of lower rank are kept first.
 struct Rank {
-  int order{};        ///< kept in this order, then by distance
+  int order{};        ///< class of the element; compared before the distance
   double distance{};  ///< to the arm [m]
   friend auto operator<=>(const Rank&, const Rank&) = default;
 };
 
-/// Of an object: held by the robot, held by a person, wanted by the task, any other; the nearest
-/// first.
-Rank rank_of(const SceneObject& object, bool wanted, const Coverage& reach);
+/// Returns the rank of an object: held by the robot, held by a person, requested by the task, any
+/// other; then by distance.
+Rank rank_of(const SceneObject& object, bool requested, const Coverage& reach);
 
-/// Keeps the `max` items of the lowest rank, in the order they have; of equal ranks the first.
-/// `rank`: Rank of an item.
+/// Keeps the `max` items of lowest rank in their order; of equal ranks the first. `rank` returns
+/// the Rank of an item.
 template <class T, class RankOf>
 LeftOut keep_lowest(std::vector<T>& items, std::size_t max, RankOf&& rank) {
   LeftOut out;
@@ -96,29 +96,30 @@ LeftOut keep_nearest(std::vector<SomePerson>& people, std::size_t max, const Cov
   });
 }
 
-/// Which of the bodies are the `max` nearest to the arm; all of them when `reach` is null.
+/// Returns for each body whether it is among the `max` nearest to the arm; all true without
+/// `reach`.
 std::vector<bool> nearest_of(const std::vector<ObservedPerson>& bodies, std::size_t max,
                              const Coverage* reach);
 
-/// Keeps the facts about safety and exchanges first, then those about what is held, then the
-/// others; of each kind those about the nearest.
+/// Keeps first the facts about safety and handovers, then about held objects, then all others;
+/// within each class those about the nearest.
 LeftOut keep_most_relevant(std::vector<Fact>& facts, std::size_t max, const Scene& scene,
                            const HumanState& people, const Coverage& reach);
 
-/// A count that sources report one after the other: the largest of the last second.
+/// The max of the counts reported by all sources within the last second.
 class RecentCount {
  public:
-  /// Takes a count; a smaller one replaces the largest only after a second.
+  /// Adds a count; a smaller count replaces the max only after one second.
   void add(std::uint32_t count, TimePoint now) {
     if (count < count_ && to_seconds(now - at_) < kMemory) return;
     count_ = count;
     at_ = now;
   }
-  /// Returns the count kept, 0 when it is a second old.
+  /// Returns the max count; 0 if it is one second old.
   std::uint32_t get(TimePoint now) const { return to_seconds(now - at_) < kMemory ? count_ : 0; }
 
  private:
-  static constexpr double kMemory = 1;  // [s]
+  static constexpr double kMemory = 1;  // duration for which a count is kept [s]
   std::uint32_t count_{};
   TimePoint at_{};
 };

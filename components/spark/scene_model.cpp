@@ -9,9 +9,9 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kRevisionMove = 0.005;  // [m] an object that moved this far makes a new revision
-constexpr double kRevisionDoubt = 0.02;  // [m] so does one whose place is more or less sure by this
-constexpr double kRefusalTime = 5;       // [s] a refusal is reported for so long
+constexpr double kRevisionMove = 0.005;        // min motion of an object for a new revision [m]
+constexpr double kRevisionUncertainty = 0.02;  // min change of uncertainty for a new revision [m]
+constexpr double kRefusalTime = 5;             // duration for which a refusal is reported [s]
 
 bool differs(const Scene& a, const Scene& b) {
   if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() ||
@@ -24,8 +24,8 @@ bool differs(const Scene& a, const Scene& b) {
     if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id)
       return true;
     if (x.primitive.kind != y.primitive.kind || x.primitive.size != y.primitive.size) return true;
-    if (std::abs(x.uncertainty - y.uncertainty) > kRevisionDoubt) return true;
-    const bool carried = x.holder == Holder::robot;  // it moves with the hand that everybody knows
+    if (std::abs(x.uncertainty - y.uncertainty) > kRevisionUncertainty) return true;
+    const bool carried = x.holder == Holder::robot;  // the pose follows from the hand's
     if (!carried &&
         (x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove)
       return true;
@@ -59,7 +59,7 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
                                              ", which is not described, and has no primitive") +
                " with a size above 0";
   }
-  shorten(samples);
+  apply_quota(samples);
   correct_swapped_ids(samples, objects_, seen);
   for (const ObservedObject& observed : samples) {
     ObjectTrack& track = objects_[observed.id];
@@ -74,20 +74,22 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
   forget_least_relevant();
 }
 
-void SceneModel::want(const std::string& object) {
-  constexpr std::size_t kMaxWanted = 8;
-  if (object.empty() || std::find(wanted_.begin(), wanted_.end(), object) != wanted_.end()) return;
-  wanted_.push_back(object);
-  if (wanted_.size() > kMaxWanted) wanted_.pop_front();
+void SceneModel::request(const std::string& object) {
+  constexpr std::size_t kMaxRequests = 8;
+  if (object.empty() || std::find(requested_.begin(), requested_.end(), object) != requested_.end())
+    return;
+  requested_.push_back(object);
+  if (requested_.size() > kMaxRequests) requested_.pop_front();
 }
 
 Rank SceneModel::rank(const SceneObject& object) const {
-  return rank_of(object, std::find(wanted_.begin(), wanted_.end(), object.id) != wanted_.end(),
+  return rank_of(object,
+                 std::find(requested_.begin(), requested_.end(), object.id) != requested_.end(),
                  reach());
 }
 
-/// Of an observation as many as are remembered.
-void SceneModel::shorten(std::vector<ObservedObject>& seen) {
+/// Reduces an observation to the quota of remembered objects.
+void SceneModel::apply_quota(std::vector<ObservedObject>& seen) {
   const LeftOut left_out =
       keep_lowest(seen, quotas_of(settings_).known_objects, [&](const ObservedObject& observed) {
         SceneObject object;
@@ -126,10 +128,10 @@ std::string SceneModel::left_out_in_reach() const {
 }
 
 std::string SceneModel::trouble(TimePoint now) const {
-  const std::string crowded = left_out_in_reach();
-  if (refused_ == 0 || to_seconds(now - refused_at_) > kRefusalTime) return crowded;
+  const std::string left_out = left_out_in_reach();
+  if (refused_ == 0 || to_seconds(now - refused_at_) > kRefusalTime) return left_out;
   return refusal_ + ": refused, " + std::to_string(refused_) + " so far" +
-         (crowded.empty() ? "" : "; ") + crowded;
+         (left_out.empty() ? "" : "; ") + left_out;
 }
 
 Scene SceneModel::scene(TimePoint now, const HumanState& people) {

@@ -1,5 +1,5 @@
-// What stands where and who holds it: objects from observations, fixed boxes from the place, the
-// robot's own configuration. Pure.
+// Models objects, their poses and holders, from observations, fixed boxes and the robot's
+// configuration. Pure.
 #pragma once
 
 #include <cstdint>
@@ -22,37 +22,38 @@
 
 namespace handsel::spark {
 
-/// An object stays when nobody sees it: `uncertainty` grows from then on, faster where somebody's
-/// hand could reach it, until it is seen again. In a hand out of sight it moves with the hand, and
-/// leaves with the person. Of several sources that see it one is believed as long as it reports;
-/// what another reports makes the place more uncertain when it differs. Two things of a kind that
-/// change places faster than anybody could have carried them have changed names. An object nobody
-/// has described enters as its primitive. Own method: an object out of sight may have been moved.
+/// An unobserved object remains in the scene; its `uncertainty` grows until the next observation,
+/// faster near a person's hand. An unobserved object in a person's hand moves with the hand and
+/// disappears with the person. One source of an object is used as long as that source reports; a
+/// deviation of another source increases the uncertainty. If two objects of a kind exchange places
+/// faster than a person can carry them, their ids are exchanged back. An object without a model is
+/// represented by its primitive. Own method: an unobserved object may have been moved.
 class SceneModel {
  public:
   SceneModel(const settings::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
              ObjectLibrary objects, std::vector<SceneBox> boxes);
 
-  /// What is neither described nor a primitive of a size is refused and counted.
+  /// Takes an observation captured at `seen`. Refuses and counts objects with neither a model nor a
+  /// primitive of a size.
   void observe(const ObjectObservation& observation, TimePoint seen);
   /// Returns how many objects of observations were refused so far.
   std::uint64_t refused() const { return refused_; }
-  /// The task wants this object: it is kept before others when there are too many. The last few
-  /// count.
-  void want(const std::string& object);
-  /// Objects and boxes left out of the last scene.
+  /// Notes that the task requests an object, which is then kept before others beyond the quota; the
+  /// last 8 requests count.
+  void request(const std::string& object);
+  /// Returns the number of objects left out of the last scene.
   std::uint32_t objects_left_out() const { return objects_left_out_.count; }
-  /// Returns how many boxes were left out of the last scene.
+  /// Returns the number of boxes left out of the last scene.
   std::uint32_t boxes_left_out() const { return boxes_left_out_.count; }
-  /// Observations of objects beyond what is remembered.
+  /// Returns the number of observations of objects beyond the quota of remembered objects.
   std::uint64_t forgotten() const { return forgotten_; }
-  /// One sentence about the objects refused lately and what is left out within reach of the arm;
-  /// empty: none.
+  /// Returns one sentence about recently refused objects and elements left out within reach of the
+  /// arm; empty: none.
   std::string trouble(TimePoint now) const;
-  /// Takes the state of the robot, which must be this one's: configuration, base pose, payload of
-  /// each hand.
+  /// Takes the state of the same robot: configuration, base pose, payload of each hand.
   void update(const RobotState& state) { robot_.update(state); }
-  /// Decides who holds what from geometry, the hand's load and the people's hands.
+  /// Returns the scene at `now`; holders are decided from geometry, the load of the robot's hands
+  /// and the hands of people.
   Scene scene(TimePoint now, const HumanState& people);
 
   /// Returns whether update() was called.
@@ -62,14 +63,15 @@ class SceneModel {
   /// Returns the pose of the first hand's palm as of the last observe(), scene() or obstacles();
   /// identity before the robot is known.
   const Pose& T_world_tool() const { return robot_.hands().front().T_world_palm; }
-  /// The box around everything the robot can reach: what must be covered for "nobody" to be a fact.
+  /// Returns the box around all points within the robot's reach, which sources must cover.
   Coverage reach() const { return robot_.reach(); }
-  /// What hides people from a source: the robot as it stands and the fixed boxes.
+  /// Returns the bodies that occlude people: the robot in its present configuration and fixed
+  /// boxes.
   const Obstacles& obstacles();
 
  private:
   Rank rank(const SceneObject& object) const;
-  void shorten(std::vector<ObservedObject>& seen);
+  void apply_quota(std::vector<ObservedObject>& seen);
   void forget_least_relevant();
   std::string left_out_in_reach() const;
 
@@ -85,7 +87,7 @@ class SceneModel {
   std::uint64_t refused_{0};
   std::string refusal_;
   TimePoint refused_at_{};
-  std::deque<std::string> wanted_;
+  std::deque<std::string> requested_;
   LeftOut objects_left_out_, boxes_left_out_;
   std::uint64_t forgotten_{0};
 };

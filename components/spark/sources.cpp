@@ -26,7 +26,7 @@ std::string why_not_active(const Source& source, TimePoint now, double max_age) 
 
 std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
                                  double max_age) {
-  constexpr double kMaxAge = 1e9;  // HumanState has room for [s]
+  constexpr double kMaxAge = 1e9;  // max age in HumanState [s]
   std::vector<SourceView> out;
   for (const auto& [name, source] : sources) {
     const std::string why = why_not_active(source, now, max_age);
@@ -37,8 +37,8 @@ std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, T
 }
 
 bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {
-  std::array<std::vector<double>, 3>
-      cuts;  // the box falls into cells that lie wholly inside or outside of each of the others
+  // Cuts the box into cells, each entirely inside or outside of every other box.
+  std::array<std::vector<double>, 3> cuts;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     cuts[i] = {box.low[k], box.high[k]};
@@ -59,7 +59,7 @@ bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {
   return true;
 }
 
-bool looks_at(const Source& source, const Obstacles& obstacles, const Vector3& point) {
+bool observes(const Source& source, const Obstacles& obstacles, const Vector3& point) {
   if (!contains(source.coverage, point, 0)) return false;
   if (!source.eye) return true;
   const auto between = [&](const auto& thing) { return hides(thing, *source.eye, point); };

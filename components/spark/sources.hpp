@@ -1,5 +1,4 @@
-// What the sources of people have observed: their coverage, less what is hidden from where they
-// stand. Pure.
+// Sources of people: coverage, newest observation and visibility. Pure.
 #pragma once
 
 #include <map>
@@ -14,51 +13,51 @@
 
 namespace handsel::spark {
 
-/// What hides things from a source.
+/// Bodies that occlude points from a source.
 struct Obstacles {
-  std::vector<SightCapsule> robot;  ///< of its links, world [m]
-  std::vector<SightBox> boxes;      ///< fixed ones of the scene, world [m]
+  std::vector<SightCapsule> robot;  ///< capsules of the robot's links, world [m]
+  std::vector<SightBox> boxes;      ///< fixed boxes of the scene, world [m]
 };
 
 struct Source {
-  Coverage coverage;  ///< box it reports to observe, world [m]
-  bool ever{};        ///< an observation of known age has come
-  TimePoint seen{};   ///< when its newest new observation was captured
-  /// Since when it has looked without a gap longer than coverage_memory.
-  TimePoint unbroken{};
-  std::optional<Vector3> eye;          ///< viewpoint, world [m]; none: it sees all of its coverage
-  std::vector<ObservedPerson> people;  ///< of its newest observation
-  bool repeats{};                      ///< its last observation was the same as the one before
-  Stamp stamp{};                       ///< of its newest observation
-  /// From the capture of its newest observation to the arrival [s].
+  Coverage coverage;    ///< box that the source claims to observe, world [m]
+  bool has_observed{};  ///< whether an observation of known age has arrived
+  TimePoint seen{};     ///< capture time of the newest distinct observation
+  /// Begin of the present observation without a gap longer than coverage_memory.
+  TimePoint continuous_since{};
+  std::optional<Vector3> eye;          ///< viewpoint, world [m]; nullopt: no occlusion
+  std::vector<ObservedPerson> people;  ///< people of the newest observation
+  bool repeats{};                      ///< whether the last observation equals the previous
+  Stamp stamp{};                       ///< stamp of the newest observation
+  /// Time from capture to arrival of the newest observation [s].
   double latency{};
-  /// Why the age of its last observation is not known; empty: it is.
+  /// Why the age of the last observation is unknown; empty: known.
   std::string unknown_age;
 
-  /// Since the capture of its newest new picture [s]; 1e9: there was none.
-  double age(TimePoint now) const { return ever ? to_seconds(now - seen) : 1e9; }
+  /// Returns the time since the capture of the newest distinct observation [s]; 1e9: none.
+  double age(TimePoint now) const { return has_observed ? to_seconds(now - seen) : 1e9; }
 };
 
-/// Returns why the source is not live now, one sentence without its name; empty: it is. `max_age`:
-/// of its newest new picture [s].
+/// Returns why the source is not live, one sentence without its name; empty: live. `max_age`: max
+/// age of the newest distinct observation [s].
 std::string why_not_active(const Source& source, TimePoint now, double max_age);
 
-/// Returns what every source observes now; `max_age` as for why_not_active().
+/// Returns the present views of all sources; `max_age` as for why_not_active().
 std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
                                  double max_age);
 
-/// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the
-/// floor: the margin is horizontal.
+/// Returns whether the point is inside with at least a horizontal `margin` to the sides [m].
 bool contains(const Coverage&, const Vector3& point, double margin);
 
-/// Whether the union of the boxes contains the whole of `box`. Exact.
+/// Returns whether the union of the boxes contains the whole of `box`; exact.
 bool covers(const std::vector<Coverage>& boxes, const Coverage& box);
 
-/// Whether the source looked at this point and nothing fixed or of the robot stood between.
-bool looks_at(const Source&, const Obstacles&, const Vector3& point);
+/// Returns whether the source observes the point: covered, and not occluded by fixed boxes or
+/// robot.
+bool observes(const Source&, const Obstacles&, const Vector3& point);
 
-/// Returns whether a place is nearer the sides of what the source observes than `margin` [m], or
-/// beyond; false for a source that observes nothing.
+/// Returns whether a place is nearer to the sides of the source's coverage than `margin` [m], or
+/// outside; false for a source without coverage.
 bool at_boundary(const Source& source, const Vector3& place, double margin);
 
 }  // namespace handsel::spark

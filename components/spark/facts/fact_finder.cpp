@@ -17,19 +17,19 @@
 namespace handsel::spark {
 namespace {
 
-constexpr std::array kZoneLimits = {0.1, 0.45, 1.2,
-                                    3.6};  // contact, danger, interaction, social [m]
+// Max distances of the zones contact, danger, interaction and social [m].
+constexpr std::array kZoneLimits = {0.1, 0.45, 1.2, 3.6};
 constexpr std::array kZoneFacts = {FactKind::in_contact_zone, FactKind::in_danger_zone,
                                    FactKind::in_interaction_zone, FactKind::in_social_zone};
-constexpr double kLoosely = 1.2;          // what began within a limit stays up to this times it
-constexpr double kLooselyReached = 1.02;  // the same of the reach, which is an upper bound
-constexpr double kFieldOfView =
-    1.05;  // [rad] to either side of where the eyes or, unknown, the body points
-constexpr double kUnknownExtent = 0.1;  // [m] of a thing without a model
+constexpr double kHysteresis = 1.2;        // ratio of the limits at which a fact ends and begins
+constexpr double kReachHysteresis = 1.02;  // the same ratio for the reach
+// Half angle of the field of view about the gaze, or about the body's direction without gaze [rad].
+constexpr double kFieldOfView = 1.05;
+constexpr double kUnknownExtent = 0.1;  // side length of an object without a model [m]
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
-/// Returns the reach of each arm that has a hand.
+/// Returns the reach of each arm with a hand.
 std::vector<ArmReach> reaches_of(const RobotModel& robot) {
   std::vector<ArmReach> out;
   for (const Manipulator& hand : hands_of(robot)) {
@@ -89,19 +89,19 @@ RobotPartner FactFinder::partner(const Scene& scene) const {
 
 void FactFinder::robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot,
                              TimePoint now, std::vector<Candidate>& out) {
-  HumanState alone;
-  alone.people = {person};
-  const Separation gap = separation(capsules_, links_, scene.T_world_base, alone);
+  HumanState one_person;
+  one_person.people = {person};
+  const Separation gap = separation(capsules_, links_, scene.T_world_base, one_person);
   const double approach = speed_toward(joint_of(person, "torso").position,
                                        joint_of(person, "torso").velocity, gap.on_robot);
   const double limit = settings_.approach_speed;
   out.push_back({FactKind::approaching, person.id, "", approach, approach > limit,
-                 approach > limit / kLoosely,
+                 approach > limit / kHysteresis,
                  evidence("%.2f m/s toward the robot, %.2f m away", approach, gap.distance)});
   if (person.gaze_known) {
     const double angle = std::min(angle_to(person, robot.tool), angle_to(person, robot.body));
     out.push_back({FactKind::attentive, person.id, "", angle, angle < settings_.attentive_angle,
-                   angle < kLoosely * settings_.attentive_angle,
+                   angle < kHysteresis * settings_.attentive_angle,
                    evidence("gaze %.0f degrees off the robot", degrees(angle))});
   }
   const int level = zone_level(zones_[person.id], gap.distance, now);
@@ -113,19 +113,19 @@ void FactFinder::robot_facts(const Scene& scene, const Person& person, const Rob
 void FactFinder::gaze_facts(const Scene& scene, const HumanState& people, const Person& person,
                             const RobotPartner& robot, std::vector<Candidate>& out) const {
   if (!person.gaze_known) return;
-  const auto look = [&](const std::string& at, const Vector3& where, double radius) {
-    const double distance = (where - person.gaze_origin).norm();
-    const double beside = angle_to(person, where) - std::atan2(radius, distance);
+  const auto add_gaze_fact = [&](const std::string& at, const Vector3& p_world, double radius) {
+    const double distance = (p_world - person.gaze_origin).norm();
+    const double beside = angle_to(person, p_world) - std::atan2(radius, distance);
     out.push_back({FactKind::looking_at, person.id, at, std::max(0.0, beside),
-                   beside < settings_.looking_angle, beside < kLoosely * settings_.looking_angle,
+                   beside < settings_.looking_angle, beside < kHysteresis * settings_.looking_angle,
                    evidence("gaze %.0f degrees beside it, %.1f m away",
                             degrees(std::max(0.0, beside)), distance)});
   };
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    look(scene.objects[i].id, extents_[i].box.center(), extents_[i].radius);
+    add_gaze_fact(scene.objects[i].id, extents_[i].box.center(), extents_[i].radius);
   for (const Person& other : people.people)
-    if (other.id != person.id) look(other.id, joint_of(other, "head").position, 0.12);
-  if (scene.robot_known) look(kRobotName, robot.tool, 0.1);
+    if (other.id != person.id) add_gaze_fact(other.id, joint_of(other, "head").position, 0.12);
+  if (scene.robot_known) add_gaze_fact(kRobotName, robot.tool, 0.1);
 }
 
 void FactFinder::hand_facts(const Scene& scene, const Person& person,
@@ -134,13 +134,15 @@ void FactFinder::hand_facts(const Scene& scene, const Person& person,
   out.push_back({FactKind::moving, person.id, "", torso, torso > 2 * settings_.moving_speed,
                  torso > settings_.moving_speed, evidence("body at %.2f m/s", torso)});
   for (const SceneObject& object : scene.objects) {
-    double nearest = 1e9;
+    double min_distance = 1e9;
     for (const char* hand : {"l_hand", "r_hand"})
-      nearest = std::min(
-          nearest, (object.T_world_object.translation() - joint_of(person, hand).position).norm());
-    out.push_back({FactKind::hand_near_object, person.id, object.id, nearest,
-                   nearest < settings_.near_distance, nearest < kLoosely * settings_.near_distance,
-                   evidence("hand %.2f m from its middle", nearest)});
+      min_distance =
+          std::min(min_distance,
+                   (object.T_world_object.translation() - joint_of(person, hand).position).norm());
+    out.push_back({FactKind::hand_near_object, person.id, object.id, min_distance,
+                   min_distance < settings_.near_distance,
+                   min_distance < kHysteresis * settings_.near_distance,
+                   evidence("hand %.2f m from its middle", min_distance)});
   }
 }
 
@@ -179,26 +181,27 @@ void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k,
   const bool nested = inside(a, ea, b, eb) | inside(b, eb, a, ea);
   const double limit = settings_.next_distance;
   out.push_back({FactKind::next_to, a.id, b.id, apart, !nested && apart < limit,
-                 !nested && apart < kLoosely * limit, evidence("%.2f m apart", apart)});
+                 !nested && apart < kHysteresis * limit, evidence("%.2f m apart", apart)});
 }
 
 Candidate FactFinder::reach_fact(const Scene& scene, const SceneObject& object) const {
-  double away = 0, length = 0;  // of the arm that has to stretch least
+  // Of the arm with the min ratio of distance and length.
+  double distance_to_shoulder = 0, length = 0;
   for (const ArmReach& arm : arms_) {
     const Vector3 p_shoulder =
         scene.T_world_base * links_[static_cast<std::size_t>(arm.shoulder)].translation();
     const double distance = (object.T_world_object.translation() - p_shoulder).norm();
-    if (length > 0 && distance / arm.length >= away / length) continue;
-    away = distance;
+    if (length > 0 && distance / arm.length >= distance_to_shoulder / length) continue;
+    distance_to_shoulder = distance;
     length = arm.length;
   }
   return {FactKind::reachable_by_robot,
           object.id,
           "",
-          away,
-          away < length,
-          away < kLooselyReached * length,
-          evidence("%.2f m from the shoulder of an arm of %.2f m", away, length)};
+          distance_to_shoulder,
+          distance_to_shoulder < length,
+          distance_to_shoulder < kReachHysteresis * length,
+          evidence("%.2f m from the shoulder of an arm of %.2f m", distance_to_shoulder, length)};
 }
 
 void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
@@ -206,7 +209,7 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     const Vector3 middle = extents_[i].box.center();
-    const Vector3 where = object.T_world_object.translation();
+    const Vector3 p_world = object.T_world_object.translation();
     const double speed = object.velocity.norm();
     out.push_back({FactKind::moving, object.id, "", speed, speed > settings_.moving_speed,
                    speed > settings_.moving_speed / 2, evidence("at %.2f m/s", speed)});
@@ -215,10 +218,10 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
                      "its bottom on the top of " + object.holder_id});
     if (scene.robot_known && !arms_.empty()) out.push_back(reach_fact(scene, object));
     for (const Person& person : people.people) {
-      const bool reach = within_reach(person, where);
+      const bool reach = within_reach(person, p_world);
       out.push_back({FactKind::reachable_by_human, object.id, person.id, 1, reach, reach,
                      evidence("%.2f m from the shoulders' middle",
-                              (where - joint_of(person, "neck").position).norm())});
+                              (p_world - joint_of(person, "neck").position).norm())});
       const Vector3 eyes =
           person.gaze_known ? person.gaze_origin : joint_of(person, "head").position;
       const double aside = angle_to(person, middle);
@@ -231,7 +234,7 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
         hidden = hides(SightCapsule{T * c.a, T * c.b, c.radius}, eyes, middle);
       }
       out.push_back({FactKind::visible_to, object.id, person.id, aside,
-                     !hidden && aside < kFieldOfView, !hidden && aside < kLoosely * kFieldOfView,
+                     !hidden && aside < kFieldOfView, !hidden && aside < kHysteresis * kFieldOfView,
                      evidence("%.0f degrees from where they look", degrees(aside))});
     }
     for (std::size_t k = i + 1; k < scene.objects.size(); ++k) pair_facts(scene, i, k, out);
@@ -247,17 +250,17 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
                         [&](const Person& person) { return person.id == zone.first; });
   });
   const RobotPartner robot = partner(scene);
-  std::vector<Candidate> judged, remembered;
+  std::vector<Candidate> candidates, remembered;
   for (const Person& person : people.people) {
-    if (scene.robot_known) robot_facts(scene, person, robot, now, judged);
-    gaze_facts(scene, people, person, robot, judged);
-    hand_facts(scene, person, judged);
+    if (scene.robot_known) robot_facts(scene, person, robot, now, candidates);
+    gaze_facts(scene, people, person, robot, candidates);
+    hand_facts(scene, person, candidates);
   }
-  thing_facts(scene, people, judged);
-  handover_.find(scene, people, robot, now, judged);
+  thing_facts(scene, people, candidates);
+  handover_.find(scene, people, robot, now, candidates);
 
-  // Zones, holders, supports and what happened a moment ago come with a memory of their own.
-  const auto own = [](const Candidate& c) {
+  // Zones, holders, supports and recent events have their own hysteresis.
+  const auto has_own_hysteresis = [](const Candidate& c) {
     switch (c.kind) {
       case FactKind::in_contact_zone:
       case FactKind::in_danger_zone:
@@ -273,12 +276,13 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
         return false;
     }
   };
-  const auto middle = std::stable_partition(judged.begin(), judged.end(),
-                                            [&](const Candidate& c) { return !own(c); });
-  remembered.assign(std::make_move_iterator(middle), std::make_move_iterator(judged.end()));
-  judged.erase(middle, judged.end());
-  Facts out{0, lasting_.settle(judged, now)};
-  for (Fact& fact : instant_.settle(remembered, now)) out.facts.push_back(std::move(fact));
+  const auto middle =
+      std::stable_partition(candidates.begin(), candidates.end(),
+                            [&](const Candidate& c) { return !has_own_hysteresis(c); });
+  remembered.assign(std::make_move_iterator(middle), std::make_move_iterator(candidates.end()));
+  candidates.erase(middle, candidates.end());
+  Facts out{0, lasting_.update(candidates, now)};
+  for (Fact& fact : instant_.update(remembered, now)) out.facts.push_back(std::move(fact));
   const Coverage reach = reach_of(*robot_, p_world_robot(scene));
   out.left_out =
       keep_most_relevant(out.facts, quotas_of(settings_).facts, scene, people, reach).count;

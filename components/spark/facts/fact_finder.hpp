@@ -1,5 +1,5 @@
-// From geometry to facts: zones, who moves, looks, sees and reaches, what is on, in and next to
-// what, and the exchange. Pure.
+// Computes facts from geometry: zones, motion, gaze, visibility, reach, support, containment,
+// proximity and handover. Pure.
 #pragma once
 
 #include <map>
@@ -25,18 +25,17 @@ class FactFinder {
   FactFinder(const settings::SparkSettings& settings, std::shared_ptr<const RobotModel> robot,
              ObjectLibrary objects);
 
-  /// The facts that hold now, with how long they have held and what they rest on. Those of the
-  /// robot need its state to be known.
+  /// Returns the present facts with duration and evidence. Facts about the robot require its state.
   Facts find(const Scene& scene, const HumanState& people, TimePoint now);
 
  private:
   struct Zone {
-    int level{4};             // 0 contact ... 4 far
-    TimePoint last_inside{};  // when the distance last confirmed this level
+    int level{4};             // 0 contact to 4 far
+    TimePoint last_inside{};  // time of the last distance within this level
   };
   struct Extent {
     Eigen::AlignedBox3d box;  // world
-    double radius{};          // around its centre
+    double radius{};          // of a sphere about the centre of the box [m]
   };
   int zone_level(Zone& zone, double distance, TimePoint now) const;
   void robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot,
@@ -57,11 +56,11 @@ class FactFinder {
   ObjectLibrary library_;
   std::vector<LinkCapsule> capsules_;
   std::vector<Pose> links_;
-  std::vector<Extent> extents_;  // of the scene's objects
+  std::vector<Extent> extents_;  // extents of the scene's objects
   std::vector<ArmReach> arms_;
   std::map<std::string, Zone> zones_;
   HandoverFacts handover_;
-  FactMemory lasting_, instant_;  // what is found here; what was found with a memory of its own
+  FactMemory lasting_, instant_;  // with dwell time; for candidates with their own hysteresis
 };
 
 }  // namespace handsel::spark

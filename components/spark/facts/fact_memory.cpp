@@ -14,7 +14,7 @@ std::string evidence(const char* format, ...) {
   return line;
 }
 
-std::vector<Fact> FactMemory::settle(const std::vector<Candidate>& candidates, TimePoint now) {
+std::vector<Fact> FactMemory::update(const std::vector<Candidate>& candidates, TimePoint now) {
   for (const Candidate& c : candidates) {
     const auto known = states_.find({c.kind, c.subject, c.object});
     if (known == states_.end() ? !c.begins : !c.begins && !c.stays) continue;

@@ -1,5 +1,4 @@
-// What holds begins at one limit and ends at another, and what has only just ended still holds for
-// a moment. Pure.
+// Hysteresis of facts: a fact begins at one limit and ends at another, after a dwell time. Pure.
 #pragma once
 
 #include <map>
@@ -12,27 +11,28 @@
 
 namespace handsel::spark {
 
-/// Something that may be a fact.
+/// A possible fact.
 struct Candidate {
-  FactKind kind{};              ///< kind, subject and object together are its identity
-  std::string subject, object;  ///< ids; of the robot kRobotName or empty, as the kind has it
-  double value{};               ///< measure of the kind, as in Fact
-  bool begins{};                ///< is a fact, also when it was none before
-  bool stays{};                 ///< remains one when it was
-  std::string evidence;         ///< what was measured, one line for people
+  FactKind kind{};              ///< kind, subject and object identify a fact
+  std::string subject, object;  ///< ids; the robot is kRobotName or empty, depending on the kind
+  double value{};               ///< measured value, as in Fact
+  bool begins{};                ///< whether the fact holds, even if it did not before
+  bool stays{};                 ///< whether the fact continues to hold
+  std::string evidence;         ///< measurement as one line of text
 };
 
-/// A line of evidence, printf style.
+/// Returns a line of evidence, printf style.
 std::string evidence(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 class FactMemory {
  public:
-  /// A fact whose candidate neither begins nor stays, or is not there, holds for `dwell` [s] more.
+  /// `dwell`: time for which a fact holds after its candidate neither begins nor stays, or is
+  /// absent [s].
   explicit FactMemory(double dwell) : dwell_(dwell) {}
 
-  /// To be called once per sample with all candidates of that sample, each kind, subject and object
-  /// at most once.
-  std::vector<Fact> settle(const std::vector<Candidate>& candidates, TimePoint now);
+  /// Returns the facts of a sample, from all its candidates with distinct kind, subject and object;
+  /// to be called once per sample.
+  std::vector<Fact> update(const std::vector<Candidate>& candidates, TimePoint now);
 
  private:
   struct State {

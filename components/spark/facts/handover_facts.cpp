@@ -10,11 +10,12 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kTowardPartner = 0.0;  // cosine: what is held out is not held away from somebody
-constexpr double kReachBeyond =
-    0.5;  // [m] a hand reaches for what is no farther than this beyond the arm
+// Min cosine of the angle between an offered object and its receiver.
+constexpr double kMinOfferCosine = 0.0;
+// Max distance of a reached-for target beyond the length of the arm [m].
+constexpr double kMaxBeyondArm = 0.5;
 
-/// How far the hand is before its shoulder, as a share of the arm's length.
+/// Returns the distance of the hand in front of its shoulder, divided by the length of the arm.
 double stretch(const Person& person, Side side) {
   const bool left = side == Side::left;
   const Vector3 from_shoulder = joint_of(person, left ? "l_hand" : "r_hand").position -
@@ -46,20 +47,20 @@ std::set<std::string> HandoverFacts::holders(const SceneObject& object) {
 void HandoverFacts::held_and_released(const SceneObject& object, TimePoint now,
                                       std::vector<Candidate>& out) {
   const std::set<std::string> hold = holders(object), before = holders_[object.id];
-  for (const std::string& who : hold) {
+  for (const std::string& holder : hold) {
     const auto grip = std::find_if(object.grips.begin(), object.grips.end(),
-                                   [&](const ObjectGrip& g) { return g.person == who; });
-    const bool robot = who == kRobotName;
+                                   [&](const ObjectGrip& g) { return g.person == holder; });
+    const bool robot = holder == kRobotName;
     out.push_back({robot ? FactKind::held_by_robot : FactKind::held_by_human, object.id,
-                   robot ? "" : who, 1, true, true,
+                   robot ? "" : holder, 1, true, true,
                    grip != object.grips.end() ? evidence("grip %.1f N", grip->force)
                    : robot                    ? "load on the hand that is there"
                                               : "in the hand, on nothing else"});
   }
-  for (const std::string& who : before)
-    if (!hold.empty() && !hold.count(who))
-      released_[{object.id, who}] = {now, "released while " + *hold.begin() + " holds it"};
-  for (const std::string& who : hold) released_.erase({object.id, who});
+  for (const std::string& holder : before)
+    if (!hold.empty() && !hold.count(holder))
+      released_[{object.id, holder}] = {now, "released while " + *hold.begin() + " holds it"};
+  for (const std::string& holder : hold) released_.erase({object.id, holder});
   holders_[object.id] = hold;
 }
 
@@ -71,34 +72,37 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
     const auto level = [](const Vector3& v) { return Vector3(v.x(), v.y(), 0).stableNormalized(); };
     const Vector3 held = level(object.T_world_object.translation() - torso.position);
     Vector3 partner = robot.body;
-    std::string whom = kRobotName;
-    double aim = held.dot(level(robot.body - torso.position));  // cosine: it is held toward them
+    std::string receiver = kRobotName;
+    // Cosine of the angle to the receiver.
+    double cosine = held.dot(level(robot.body - torso.position));
     for (const Person& other : people.people) {
-      const Vector3& there = joint_of(other, "torso").position;
-      const double to_them = held.dot(level(there - torso.position));
-      if (other.id == giver.id || to_them < aim ||
-          (there - torso.position).norm() > settings_.offer_range)
+      const Vector3& p_other = joint_of(other, "torso").position;
+      const double cosine_to_other = held.dot(level(p_other - torso.position));
+      if (other.id == giver.id || cosine_to_other < cosine ||
+          (p_other - torso.position).norm() > settings_.offer_range)
         continue;
-      partner = there;
-      whom = other.id;
-      aim = to_them;
+      partner = p_other;
+      receiver = other.id;
+      cosine = cosine_to_other;
     }
     const double away = (partner - object.T_world_object.translation()).norm();
     const double toward = speed_toward(object.T_world_object.translation(),
                                        object.velocity - torso.velocity, partner);
     const bool near = away < settings_.offer_range;
-    const bool goes_over = holders_[object.id].size() > 1 ||
-                           std::any_of(released_.begin(), released_.end(),
-                                       [&](const auto& r) { return r.first.first == object.id; });
-    const bool held_out = !goes_over && std::abs(toward) < settings_.offer_speed &&
-                          aim > kTowardPartner &&
-                          stretch(giver, nearer_hand(giver, object.T_world_object.translation())) >
-                              settings_.stretched;
-    const bool begins = near && (toward > settings_.offer_speed || held_out);
+    const bool is_changing_hands =
+        holders_[object.id].size() > 1 ||
+        std::any_of(released_.begin(), released_.end(),
+                    [&](const auto& r) { return r.first.first == object.id; });
+    const bool is_at_rest_offer =
+        !is_changing_hands && std::abs(toward) < settings_.offer_speed &&
+        cosine > kMinOfferCosine &&
+        stretch(giver, nearer_hand(giver, object.T_world_object.translation())) >
+            settings_.stretched;
+    const bool begins = near && (toward > settings_.offer_speed || is_at_rest_offer);
     const bool back = toward < -settings_.offer_speed;
     const Pair pair{giver.id, object.id};
     const std::string seen =
-        evidence("toward %.40s at %.2f m/s, %.2f m away", whom.c_str(), toward, away);
+        evidence("toward %.40s at %.2f m/s, %.2f m away", receiver.c_str(), toward, away);
     out.push_back({FactKind::offering, giver.id, object.id, toward, begins, near && !back, seen});
     if (begins)
       offering_[pair] = now;
@@ -112,17 +116,18 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
 }
 
 void HandoverFacts::reached_for(const Person& person, const std::string& target,
-                                const Vector3& where, TimePoint now, std::vector<Candidate>& out) {
+                                const Vector3& p_world, TimePoint now,
+                                std::vector<Candidate>& out) {
   const BodyJoint& torso = joint_of(person, "torso");
   double toward = -1e9, distance = 0, back = 1e9;
   for (const char* side : {"l_hand", "r_hand"}) {
     const BodyJoint& hand = joint_of(person, side);
-    if ((where - hand.position).norm() > arm_length(person) + kReachBeyond) continue;
-    const double speed = speed_toward(hand.position, hand.velocity - torso.velocity, where);
+    if ((p_world - hand.position).norm() > arm_length(person) + kMaxBeyondArm) continue;
+    const double speed = speed_toward(hand.position, hand.velocity - torso.velocity, p_world);
     back = std::min(back, speed);
     if (speed <= toward) continue;
     toward = speed;
-    distance = (where - hand.position).norm();
+    distance = (p_world - hand.position).norm();
   }
   const Pair pair{person.id, target};
   if (toward > -1e9)
@@ -141,13 +146,13 @@ void HandoverFacts::reached_for(const Person& person, const std::string& target,
 
 void HandoverFacts::waited_for(const Person& person, const Scene& scene,
                                std::vector<Candidate>& out) {
-  double most = 0, speed = 0;
+  double max_stretch = 0, speed = 0;
   Vector3 hand = Vector3::Zero();
   for (const Side side : {Side::left, Side::right}) {
     const BodyJoint& h = joint_of(person, side == Side::left ? "l_hand" : "r_hand");
     const double forward = stretch(person, side);
-    if (forward <= most) continue;
-    most = forward;
+    if (forward <= max_stretch) continue;
+    max_stretch = forward;
     hand = h.position;
     speed = (h.velocity - joint_of(person, "torso").velocity).norm();
   }
@@ -155,24 +160,23 @@ void HandoverFacts::waited_for(const Person& person, const Scene& scene,
     const std::set<std::string>& hold = holders_[object.id];
     const double distance = (object.T_world_object.translation() - hand).norm();
     if (hold.empty() || hold.count(person.id) || distance > arm_length(person)) continue;
-    const bool waits = most > settings_.stretched && speed < settings_.reach_speed;
-    const bool still = most > 0.9 * settings_.stretched && speed < 3 * settings_.reach_speed;
+    const bool waits = max_stretch > settings_.stretched && speed < settings_.reach_speed;
+    const bool still = max_stretch > 0.9 * settings_.stretched && speed < 3 * settings_.reach_speed;
     out.push_back({FactKind::waiting_to_receive, person.id, object.id, distance, waits, still,
-                   evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s", 100 * most,
-                            distance, speed)});
+                   evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s",
+                            100 * max_stretch, distance, speed)});
   }
 }
 
-/// What is remembered of objects that are no longer in the scene, and of people and moments that
-/// are over.
+/// Deletes the memory of objects and people that are absent, and of events that are over.
 void HandoverFacts::forget(const Scene& scene, const HumanState& people, TimePoint now) {
-  std::set<std::string> there{kRobotName};
-  for (const SceneObject& object : scene.objects) there.insert(object.id);
-  std::erase_if(holders_, [&](const auto& entry) { return !there.contains(entry.first); });
-  for (const Person& person : people.people) there.insert(person.id);
+  std::set<std::string> known_ids{kRobotName};
+  for (const SceneObject& object : scene.objects) known_ids.insert(object.id);
+  std::erase_if(holders_, [&](const auto& entry) { return !known_ids.contains(entry.first); });
+  for (const Person& person : people.people) known_ids.insert(person.id);
   const auto over = [&](const auto& entry) {
     return to_seconds(now - entry.second) > settings_.memory &&
-           (!there.contains(entry.first.first) || !there.contains(entry.first.second));
+           (!known_ids.contains(entry.first.first) || !known_ids.contains(entry.first.second));
   };
   std::erase_if(offering_, over);
   std::erase_if(reaching_, over);
@@ -188,21 +192,21 @@ void HandoverFacts::find(const Scene& scene, const HumanState& people, const Rob
                     [&](const SceneObject& o) { return holders_[o.id].count(person.id) > 0; }))
       std::erase_if(reaching_, [&](const auto& reached) {
         return reached.first.first == person.id;
-      });  // a hand that has it comes back
+      });  // the hand returns with an object
     for (const SceneObject& object : scene.objects)
       if (!holders_[object.id].count(person.id))
         reached_for(person, object.id, object.T_world_object.translation(), now, out);
     reached_for(person, kRobotName, robot.tool, now, out);
     waited_for(person, scene, out);
   }
-  const auto tell = [&](FactKind kind, std::map<Pair, Moment>& moments) {
+  const auto add_events = [&](FactKind kind, std::map<Pair, Moment>& moments) {
     std::erase_if(moments,
                   [&](const auto& m) { return to_seconds(now - m.second.at) > settings_.memory; });
     for (const auto& [pair, moment] : moments)
       out.push_back({kind, pair.first, pair.second, 1, true, true, moment.evidence});
   };
-  tell(FactKind::released, released_);
-  tell(FactKind::withdrawn, withdrawn_);
+  add_events(FactKind::released, released_);
+  add_events(FactKind::withdrawn, withdrawn_);
 }
 
 }  // namespace handsel::spark

@@ -1,5 +1,5 @@
-// Who holds, offers, waits for, takes back and releases what: the facts of a handover between any
-// two, person or robot. Pure.
+// Computes the facts of a handover between any two of people and robot: holding, offering, waiting,
+// withdrawing and releasing objects. Pure.
 #pragma once
 
 #include <map>
@@ -16,17 +16,18 @@ namespace handsel::spark {
 
 /// The robot as a partner.
 struct RobotPartner {
-  Vector3 body{Vector3::Zero()};  ///< world [m]
-  Vector3 tool{Vector3::Zero()};  ///< world [m]
+  Vector3 body{Vector3::Zero()};  ///< position of the body, world [m]
+  Vector3 tool{Vector3::Zero()};  ///< position of the tool, world [m]
 };
 
 class HandoverFacts {
  public:
   explicit HandoverFacts(const settings::SparkSettings& settings) : settings_(settings) {}
 
-  /// Adds the candidates of this sample. An object with force sensors is held by everybody whose
-  /// grip exceeds `grip_force` until it falls below `grip_lost`, so that both have it during the
-  /// handover; any other by its one holder. Only what another still holds counts as released.
+  /// Adds the candidates of this sample. An object with force sensors is held by all whose grip
+  /// force exceeds `grip_force`, until it falls below `grip_lost`; so both hold the object during
+  /// the handover. Any other object has one holder. An object counts as released only if another
+  /// holds it.
   void find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now,
             std::vector<Candidate>& out);
 
@@ -46,10 +47,11 @@ class HandoverFacts {
   void waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out);
 
   settings::SparkSettings settings_;
-  std::map<std::string, std::set<std::string>> holders_;  // of each object
-  // object and its last holder; person and what they withdrew from
+  std::map<std::string, std::set<std::string>> holders_;  // by object
+  // by object and last holder; by person and what the person withdrew from
   std::map<Pair, Moment> released_, withdrawn_;
-  std::map<Pair, TimePoint> offering_, reaching_;  // person and thing, when last so
+  // By person and target: time of the last such sample.
+  std::map<Pair, TimePoint> offering_, reaching_;
 };
 
 }  // namespace handsel::spark

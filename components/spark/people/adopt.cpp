@@ -1,4 +1,4 @@
-// People whom a SPARK before this one had lost from sight.
+// Adopts people who were lost by a previous SPARK process.
 #include <algorithm>
 
 #include "components/spark/people/people_tracker.hpp"
@@ -14,8 +14,8 @@ bool is_complete(const Person& person) {
 
 }  // namespace
 
-/// Returns the track of the same person: the same id, or a body seen where they were last seen;
-/// nullptr: there is none.
+/// Returns the track of the same person: with the same id, or at the person's last position;
+/// nullptr: none.
 Track* PeopleTracker::same_as(const Person& lost) {
   ObservedPerson body;
   for (const BodyJoint& joint : lost.joints)
@@ -24,37 +24,38 @@ Track* PeopleTracker::same_as(const Person& lost) {
   double min_distance = settings_.association_distance;
   for (Track& track : tracks_) {
     if (track.person.joints.empty()) continue;
-    const double away = distance(track, body);
-    const double walked = settings_.association_distance + settings_.lost_speed * lost.age;
-    if (track.person.id == lost.id && away <= walked) return &track;
-    const bool taken =
+    const double d = distance(track, body);
+    const double max_walk = settings_.association_distance + settings_.lost_speed * lost.age;
+    if (track.person.id == lost.id && d <= max_walk) return &track;
+    const bool is_assigned =
         track.adopted || std::any_of(tracks_.begin(), tracks_.end(),
                                      [&](const Track& t) { return t.person.id == lost.id; });
-    if (taken || away > min_distance) continue;
+    if (is_assigned || d > min_distance) continue;
     nearest = &track;
-    min_distance = away;
+    min_distance = d;
   }
   return nearest;
 }
 
 void PeopleTracker::adopt(const std::vector<Person>& lost, TimePoint now, TimePoint started) {
   for (const Person& person : lost) {
-    const bool own = now - from_seconds(person.age) > started;  // this process has seen them
-    if (own || !is_complete(person) || !adopted_.insert(person.id).second) continue;
+    // This process has observed the person.
+    const bool is_observed_here = now - from_seconds(person.age) > started;
+    if (is_observed_here || !is_complete(person) || !adopted_.insert(person.id).second) continue;
     if (Track* track = same_as(person)) {
       if (!track->adopted) track->person.id = person.id;
       continue;
     }
-    Track gone;
-    gone.person = person;
-    gone.person.hands.clear();
-    gone.person.gaze_known = false;
+    Track lost_track;
+    lost_track.person = person;
+    lost_track.person.hands.clear();
+    lost_track.person.gaze_known = false;
     if (std::any_of(tracks_.begin(), tracks_.end(),
                     [&](const Track& t) { return t.person.id == person.id; }))
-      gone.person.id = "person" + std::to_string(++unnamed_);  // somebody else is called so by now
-    gone.born = gone.seen = now - from_seconds(person.age);
-    gone.adopted = true;
-    tracks_.push_back(std::move(gone));
+      lost_track.person.id = "person" + std::to_string(++unnamed_);  // the id is in use
+    lost_track.born = lost_track.seen = now - from_seconds(person.age);
+    lost_track.adopted = true;
+    tracks_.push_back(std::move(lost_track));
   }
 }
 

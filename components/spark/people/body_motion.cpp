@@ -6,7 +6,7 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kGap = 0.5;  // beyond this a velocity is found anew [s]
+constexpr double kMaxGap = 0.5;  // max gap of samples before a velocity restarts at 0 [s]
 
 std::array<std::size_t, 7> trunk_joints() {
   std::array<std::size_t, 7> out{};
@@ -25,8 +25,8 @@ bool of_trunk(std::size_t joint) {
 }
 
 void BodyMotion::Point::add(const Vector3& position, double noise, TimePoint at) {
-  const double since = sampled ? to_seconds(at - *sampled) : 2 * kGap;
-  if (since > kGap)
+  const double since = sampled ? to_seconds(at - *sampled) : 2 * kMaxGap;
+  if (since > kMaxGap)
     motion.reset(position, noise);
   else if (since > 1e-4)
     motion.update(position, since, noise);
@@ -37,18 +37,18 @@ void BodyMotion::update(std::vector<BodyJoint>& body,
                         const std::array<double, kBodyJoints.size()>& noise, TimePoint at) {
   constexpr double kCount = static_cast<double>(kTrunkJoints.size());
   Vector3 middle = Vector3::Zero();
-  double noisiest = 0, variance = 0;
+  double max_noise = 0, variance = 0;
   for (const std::size_t i : kTrunkJoints) {
     middle += body[i].position / kCount;
-    noisiest = std::max(noisiest, noise[i]);
+    max_noise = std::max(max_noise, noise[i]);
   }
   for (const std::size_t i : kTrunkJoints)
-    variance += std::pow(noise[i] > 0 ? noise[i] : noisiest, 2);
-  const double of_middle = std::sqrt(variance) / kCount;
-  if (noisiest > 0) trunk_.add(middle, of_middle, at);
+    variance += std::pow(noise[i] > 0 ? noise[i] : max_noise, 2);
+  const double middle_noise = std::sqrt(variance) / kCount;
+  if (max_noise > 0) trunk_.add(middle, middle_noise, at);
   for (std::size_t i = 0; i < body.size(); ++i) {
     if (noise[i] > 0)
-      joints_[i].add(body[i].position - middle, std::hypot(noise[i], of_middle), at);
+      joints_[i].add(body[i].position - middle, std::hypot(noise[i], middle_noise), at);
     body[i].velocity = trunk_.motion.velocity() + joints_[i].motion.velocity();
   }
 }

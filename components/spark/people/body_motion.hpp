@@ -1,5 +1,5 @@
-// How the joints of one body move: the trunk, from all of its joints at once, and every joint from
-// there. Pure.
+// Estimates the velocities of the joints of one body: the trunk from all of its joints, and every
+// joint relative to the trunk. Pure.
 #pragma once
 
 #include <array>
@@ -13,32 +13,31 @@
 
 namespace handsel::spark {
 
-bool of_trunk(std::size_t joint);  ///< index into kBodyJoints
+/// Returns whether a joint belongs to the trunk; `joint`: index into kBodyJoints.
+bool of_trunk(std::size_t joint);
 
-/// The mean of the trunk's joints is less noisy than any of them: a person who starts to walk shows
-/// in it two samples sooner than in each joint alone, and all joints start with it. Own method, for
-/// that earlier sight.
+/// Filters the trunk by the mean of its joints, which has less noise than each joint. Own method:
+/// this detects the start of a walk two samples earlier than separate joints do.
 class BodyMotion {
  public:
-  /// Takes in where the joints (kBodyJoints) were seen at `at`, never before the last such time,
-  /// and writes their velocities to `body`. `noise`: standard deviation of each coordinate [m], 0
-  /// for a joint of which there is no news.
+  /// Takes the positions of the joints (kBodyJoints) at time `at`, not before the last call, and
+  /// writes their velocities to `body`. `noise`: standard deviation of each coordinate [m]; 0: no
+  /// new observation of the joint.
   void update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise,
               TimePoint at);
 
  private:
   struct Point {
-    explicit Point(const JointMotion::Agility& agility) : motion(agility) {}
+    explicit Point(const JointMotion::Accelerations& accelerations) : motion(accelerations) {}
     void add(const Vector3& position, double noise, TimePoint at);
     JointMotion motion;
     std::optional<TimePoint> sampled;
   };
-  // A body starts to walk, and a hand to reach, at some m/s^2; a trunk bends slowly, and what was
-  // seen wrongly jumps.
-  static constexpr JointMotion::Agility kTrunk{2, 10}, kFromTrunk{1, 20};
+  // Accelerations of trunk, and of joints relative to the trunk, usual and sudden [m/s^2].
+  static constexpr JointMotion::Accelerations kTrunk{2, 10}, kFromTrunk{1, 20};
 
   Point trunk_{kTrunk};
-  std::vector<Point> joints_{kBodyJoints.size(), Point(kFromTrunk)};  // from the trunk
+  std::vector<Point> joints_{kBodyJoints.size(), Point(kFromTrunk)};  // relative to the trunk
 };
 
 }  // namespace handsel::spark

@@ -10,10 +10,10 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSureJoint = 0.3;                      // confidence of a joint that measures
-constexpr int kAverageOver = 60;                        // looks
-constexpr double kCorrection = 0.02;                    // [m]
-constexpr double kMinStature = 0.6, kMaxStature = 2.2;  // [m]
+constexpr double kMinJointConfidence = 0.3;             // min confidence of a measuring joint
+constexpr int kMaxAveraged = 60;                        // max number of averaged samples
+constexpr double kMinCorrection = 0.02;                 // min change of the stature [m]
+constexpr double kMinStature = 0.6, kMaxStature = 2.2;  // bounds of a sample [m]
 
 constexpr std::array<std::pair<const char*, const char*>, 13> kBones = {
     {{"l_shoulder", "l_elbow"},
@@ -32,7 +32,7 @@ constexpr std::array<std::pair<const char*, const char*>, 13> kBones = {
 
 struct Bone {
   int from, to;
-  double share;  // of the stature
+  double fraction;  // length divided by the stature
 };
 
 const std::array<Bone, kBones.size()>& bones() {
@@ -53,26 +53,26 @@ const std::array<Bone, kBones.size()>& bones() {
 
 }  // namespace
 
-void BodySize::see(const ObservedPerson& body) {
+void BodySize::add_sample(const ObservedPerson& body) {
   std::array<const ObservedJoint*, kBodyJoints.size()> seen{};
   for (const ObservedJoint& joint : body.joints)
     if (const int i = body_joint_index(joint.name);
-        i >= 0 && joint.confidence >= kSureJoint && joint.position.allFinite())
+        i >= 0 && joint.confidence >= kMinJointConfidence && joint.position.allFinite())
       seen[static_cast<std::size_t>(i)] = &joint;
-  std::vector<double> said;
+  std::vector<double> statures;
   for (const Bone& bone : bones()) {
     const ObservedJoint *a = seen[static_cast<std::size_t>(bone.from)],
                         *b = seen[static_cast<std::size_t>(bone.to)];
     if (a != nullptr && b != nullptr)
-      said.push_back((a->position - b->position).norm() / bone.share);
+      statures.push_back((a->position - b->position).norm() / bone.fraction);
   }
-  if (said.empty()) return;
-  const auto middle = said.begin() + static_cast<std::ptrdiff_t>(said.size() / 2);
-  std::nth_element(said.begin(), middle, said.end());
-  if (!(*middle >= kMinStature && *middle <= kMaxStature)) return;
-  samples_ = std::min(samples_ + 1, kAverageOver);
-  mean_ += (*middle - mean_) / samples_;
-  if (std::abs(mean_ - stature_) > kCorrection) stature_ = mean_;
+  if (statures.empty()) return;
+  const auto median = statures.begin() + static_cast<std::ptrdiff_t>(statures.size() / 2);
+  std::nth_element(statures.begin(), median, statures.end());
+  if (!(*median >= kMinStature && *median <= kMaxStature)) return;
+  samples_ = std::min(samples_ + 1, kMaxAveraged);
+  mean_ += (*median - mean_) / samples_;
+  if (std::abs(mean_ - stature_) > kMinCorrection) stature_ = mean_;
 }
 
 }  // namespace handsel::spark

@@ -5,11 +5,12 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSurprise = 2;    // standard deviations
-constexpr double kSudden = 3;      // times the usual acceleration, when it surprises
-constexpr double kFirstSpeed = 1;  // nothing is known at first [m/s]
+constexpr double kMaxInnovation = 2;  // max innovation of usual motion [standard deviations]
+constexpr double kSuddenFactor = 3;   // increase of the acceleration at a larger innovation
+constexpr double kInitialSpeed = 1;   // standard deviation of the first velocity [m/s]
 
-/// How an acceleration of now acts `h` later: on position, velocity and acceleration.
+/// Returns the effect of a present acceleration after `h` [s] on position, velocity and
+/// acceleration.
 Vector3 response(const FadingModel& m, double h) {
   const double v = std::exp(-h / m.velocity_time), a = std::exp(-h / m.acceleration_time);
   const double rate = 1 / m.acceleration_time - 1 / m.velocity_time;
@@ -24,8 +25,9 @@ Eigen::Matrix3d transition(const FadingModel& m, double h) {
   return out;
 }
 
-/// What pushes of this size add within `h`: Simpson's rule over when they came.
-Eigen::Matrix3d pushed(const FadingModel& m, double h, double acceleration) {
+/// Returns the covariance added by random accelerations within `h` [s], by Simpson's rule over
+/// time.
+Eigen::Matrix3d process_noise(const FadingModel& m, double h, double acceleration) {
   constexpr int kParts = 8;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int i = 0; i <= kParts; ++i) {
@@ -41,25 +43,26 @@ void FadingMotion::reset(const Vector3& position, double noise) {
   position_ = position;
   velocity_.setZero();
   acceleration_.setZero();
-  covariance_ =
-      Vector3(noise * noise, kFirstSpeed * kFirstSpeed, model_.acceleration * model_.acceleration)
-          .asDiagonal();
+  covariance_ = Vector3(noise * noise, kInitialSpeed * kInitialSpeed,
+                        model_.acceleration * model_.acceleration)
+                    .asDiagonal();
 }
 
 void FadingMotion::update(const Vector3& seen, double dt, double noise) {
   const Eigen::Matrix3d A = transition(model_, dt);
-  const double usual = model_.acceleration + model_.acceleration_per_speed * velocity_.norm();
+  const double acceleration =
+      model_.acceleration + model_.acceleration_per_speed * velocity_.norm();
   const Vector3 position = position_ + A(0, 1) * velocity_ + A(0, 2) * acceleration_;
   const Vector3 velocity = A(1, 1) * velocity_ + A(1, 2) * acceleration_,
-                surprise = seen - position;
-  const Eigen::Matrix3d moved = A * covariance_ * A.transpose();
-  Eigen::Matrix3d P = moved + pushed(model_, dt, usual);
-  if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (P(0, 0) + noise * noise))
-    P = moved + pushed(model_, dt, kSudden * usual);
+                innovation = seen - position;
+  const Eigen::Matrix3d propagated = A * covariance_ * A.transpose();
+  Eigen::Matrix3d P = propagated + process_noise(model_, dt, acceleration);
+  if (innovation.squaredNorm() > 3 * kMaxInnovation * kMaxInnovation * (P(0, 0) + noise * noise))
+    P = propagated + process_noise(model_, dt, kSuddenFactor * acceleration);
   const Vector3 gain = P.col(0) / (P(0, 0) + noise * noise);
-  position_ = position + gain.x() * surprise;
-  velocity_ = velocity + gain.y() * surprise;
-  acceleration_ = A(2, 2) * acceleration_ + gain.z() * surprise;
+  position_ = position + gain.x() * innovation;
+  velocity_ = velocity + gain.y() * innovation;
+  acceleration_ = A(2, 2) * acceleration_ + gain.z() * innovation;
   covariance_ = P - gain * P.row(0);
 }
 
@@ -67,8 +70,8 @@ FadingMotion::Expected FadingMotion::at(double horizon) const {
   const Eigen::Matrix3d A = transition(model_, horizon);
   const Eigen::Matrix3d P =
       A * covariance_ * A.transpose() +
-      pushed(model_, horizon,
-             model_.acceleration + model_.acceleration_per_speed * velocity_.norm());
+      process_noise(model_, horizon,
+                    model_.acceleration + model_.acceleration_per_speed * velocity_.norm());
   return {position_ + A(0, 1) * velocity_ + A(0, 2) * acceleration_, std::sqrt(P(0, 0))};
 }
 

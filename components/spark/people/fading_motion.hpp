@@ -1,35 +1,35 @@
-// Where a noisy point is, and where it will be: position, a velocity that fades and an acceleration
-// that fades faster. Pure.
+// Estimates and predicts the motion of a noisy point: position, a decaying velocity and a faster
+// decaying acceleration. Pure.
 #pragma once
 
 #include "common/geometry/pose.hpp"
 
 namespace handsel::spark {
 
-/// What a point is taken to do without further acceleration: a reach ends, a walk continues.
+/// The motion model of a point: time constants and accelerations.
 struct FadingModel {
-  double velocity_time{};           ///< the velocity fades within [s]
-  double acceleration_time{};       ///< the acceleration fades within [s]
-  double acceleration{};            ///< standard deviation, of each axis [m/s^2]
-  double acceleration_per_speed{};  ///< and more the faster it is [1/s]
+  double velocity_time{};           ///< time constant of the velocity [s]
+  double acceleration_time{};       ///< time constant of the acceleration [s]
+  double acceleration{};            ///< standard deviation on each axis [m/s^2]
+  double acceleration_per_speed{};  ///< increase per speed [1/s]
 };
 
-/// Singer's model of manoeuvring points (1970) with a velocity that fades as well, so that a
-/// prediction lands where a minimum-jerk motion of this speed would end, by a Kalman filter that is
-/// the same for every axis. Own method, for that end.
+/// Filters with Singer's model of manoeuvring points (1970), extended by a decaying velocity, in a
+/// Kalman filter that is the same for every axis. Own method: so a prediction ends where a
+/// minimum-jerk motion of this speed ends.
 class FadingMotion {
  public:
   struct Expected {
     Vector3 position{Vector3::Zero()};  ///< [m]
-    double deviation{};                 ///< standard deviation of each axis [m]
+    double deviation{};                 ///< standard deviation on each axis [m]
   };
 
   explicit FadingMotion(const FadingModel& model) : model_(model) {}
-  /// Starts at a position with standard deviation `noise` of each axis [m], at rest.
+  /// Restarts at a position with standard deviation `noise` on each axis [m], at rest.
   void reset(const Vector3& position, double noise);
-  /// `dt` > 0 [s] since the last sample, `noise` of this one [m].
+  /// Takes a sample. `dt`: time since the last sample, > 0 [s]; `noise`: standard deviation [m].
   void update(const Vector3& seen, double dt, double noise);
-  /// `horizon` >= 0 after the last sample [s].
+  /// Predicts the point at `horizon` >= 0 after the last sample [s].
   Expected at(double horizon) const;
 
  private:

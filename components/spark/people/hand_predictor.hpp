@@ -1,4 +1,4 @@
-// Where a person's hand will be in the next half second, and how sure that is. Pure.
+// Predicts a person's hand over the next half second, with its uncertainty. Pure.
 #pragma once
 
 #include <deque>
@@ -8,36 +8,38 @@
 
 namespace handsel::spark {
 
-/// The trunk continues as it moves, the hand moves relative to it and comes to rest. The ball is
-/// meant to hold the hand in 95 of 100 cases: it grows with time and speed, and with what came
-/// farther off lately than expected, for as long as memory lasts. Own method: that factor corrects
-/// a filter whose model does not fit.
+/// The trunk continues its motion; the hand moves relative to the trunk and comes to rest. The
+/// predicted sphere contains the hand with a nominal probability of 95 %: its radius grows with
+/// time, speed and recent prediction errors. Own method: the error factor corrects a filter with an
+/// inaccurate model.
 class HandPredictor {
  public:
   HandPredictor();
-  /// Starts with a first sample, or one after a gap. `trunk`: mean of several of its joints.
+  /// Restarts with a first sample, or after a gap. `trunk`: mean of several trunk joints, world
+  /// [m]; `noise`: standard deviation of a joint [m].
   void reset(const Vector3& hand, const Vector3& trunk, double noise);
-  /// `dt` > 0 [s] since the last sample, `noise` of a point [m]; world [m].
+  /// Takes a sample, world [m]. `dt`: time since the last sample, > 0 [s]; `noise`: standard
+  /// deviation of a joint [m].
   void update(const Vector3& hand, const Vector3& trunk, double dt, double noise);
 
   struct Ball {
     Vector3 centre{Vector3::Zero()};  ///< world [m]
     double radius{};                  ///< [m]
   };
-  /// `horizon` >= 0 after the last sample [s].
-  Ball at(double horizon) const { return at(horizon, misses_); }
+  /// Predicts the hand at `horizon` >= 0 after the last sample [s].
+  Ball at(double horizon) const { return at(horizon, error_factor_); }
 
  private:
-  struct Promise {
-    double due;  // on clock_
+  struct Prediction {
+    double due;  // predicted instant, by clock_ [s]
     Ball ball;
   };
   Ball at(double horizon, double factor) const;
 
-  FadingMotion hand_, trunk_;  // the hand's from the trunk
-  double clock_{0};            // [s] since the reset
-  double misses_{1};           // factor on the radius
-  std::deque<Promise> promises_;
+  FadingMotion hand_, trunk_;           // hand_: relative to the trunk
+  double clock_{0};                     // time since the reset [s]
+  double error_factor_{1};              // factor of the radius by recent errors
+  std::deque<Prediction> predictions_;  // waiting for comparison
 };
 
 }  // namespace handsel::spark

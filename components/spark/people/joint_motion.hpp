@@ -1,5 +1,5 @@
-// Velocity of one noisy point: a constant-velocity Kalman filter, quick when the point surprises
-// it. Pure.
+// Estimates the velocity of one noisy point: a constant-velocity Kalman filter with increased gain
+// at large innovations. Pure.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,13 @@ namespace handsel::spark {
 
 class JointMotion {
  public:
-  /// Standard deviations of its acceleration, on each axis [m/s^2]: as usual, and when it
-  /// surprises.
-  struct Agility {
-    double calm, sudden;  ///< as usual; when a position is off by two standard deviations
+  /// Standard deviations of the acceleration on each axis [m/s^2].
+  struct Accelerations {
+    double usual, sudden;  ///< for small and for large innovations
   };
-  explicit JointMotion(const Agility& agility) : agility_(agility) {}
+  explicit JointMotion(const Accelerations& accelerations) : accelerations_(accelerations) {}
   const Vector3& velocity() const { return velocity_; }  ///< world [m/s]
-  /// Starts at a position with standard deviation `noise` of each axis [m], at rest.
+  /// Restarts at a position with standard deviation `noise` on each axis [m], at rest.
   void reset(const Vector3& position, double noise) {
     position_ = position;
     velocity_.setZero();
@@ -27,7 +26,7 @@ class JointMotion {
     pv_ = 0;
     vv_ = 1.0;
   }
-  /// `dt` > 0 [s] since the last sample, `noise` of this one [m].
+  /// Takes a sample. `dt`: time since the last sample, > 0 [s]; `noise`: standard deviation [m].
   void update(const Vector3& seen, double dt, double noise) {
     const Vector3 expected = position_ + dt * velocity_;
     const double r = noise * noise;
@@ -36,21 +35,21 @@ class JointMotion {
       return std::array<double, 3>{pp_ + 2 * dt * pv_ + dt * dt * vv_ + q * dt * dt / 4,
                                    pv_ + dt * vv_ + q * dt / 2, vv_ + q};
     };
-    auto p = predicted(agility_.calm);
-    const Vector3 surprise = seen - expected;
-    if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (p[0] + r))
-      p = predicted(agility_.sudden);
+    auto p = predicted(accelerations_.usual);
+    const Vector3 innovation = seen - expected;
+    if (innovation.squaredNorm() > 3 * kMaxInnovation * kMaxInnovation * (p[0] + r))
+      p = predicted(accelerations_.sudden);
     const double gain = p[0] / (p[0] + r), gain_velocity = p[1] / (p[0] + r);
-    position_ = expected + gain * surprise;
-    velocity_ += gain_velocity * surprise;
+    position_ = expected + gain * innovation;
+    velocity_ += gain_velocity * innovation;
     pp_ = (1 - gain) * p[0];
     pv_ = (1 - gain) * p[1];
     vv_ = std::min(p[2] - gain_velocity * p[1], 25.0);
   }
 
  private:
-  static constexpr double kSurprise = 2;  // standard deviations
-  Agility agility_;
+  static constexpr double kMaxInnovation = 2;  // of usual motion [standard deviations]
+  Accelerations accelerations_;
   Vector3 position_{Vector3::Zero()}, velocity_{Vector3::Zero()};
   double pp_{0}, pv_{0}, vv_{1};
 };

@@ -9,12 +9,13 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameId = 0.15;  // a body with the id they had is preferred by this [m]
-constexpr double kPause = 0.3;    // under another id a person comes back no farther than walked [s]
-constexpr double kGrid = 0.3;     // places of a lost person are tried this far apart [m]
-constexpr double kFarthest = 5;   // and no farther than this [m]
-constexpr double kWidest = 4;     // max extent of a body: beyond, joints are not compared [m]
-constexpr double kMaxInflation = 1000;  // farther than any robot; HumanState has room for 10 km [m]
+constexpr double kSameIdBonus = 0.15;  // reduction of the distance to a body of the same id [m]
+// Max time without observation for which walking is assumed under another id [s].
+constexpr double kMaxOtherIdGap = 0.3;
+constexpr double kGridStep = 0.3;       // distance of the tested places of a lost person [m]
+constexpr double kMaxTestRadius = 5;    // max radius of the tested volume of a lost person [m]
+constexpr double kMaxBodyExtent = 4;    // max extent of a body; farther bodies are not compared [m]
+constexpr double kMaxInflation = 1000;  // max inflation, beyond any robot's reach [m]
 
 const int kHead = body_joint_index("head"), kTorso = body_joint_index("torso");
 
@@ -33,7 +34,7 @@ bool same(const std::vector<ObservedPerson>& a, const std::vector<ObservedPerson
       });
 }
 
-/// A body of which only the gaze is known is where its eyes are.
+/// Returns the body with a head at the gaze origin if only the gaze was observed.
 ObservedPerson with_head(const ObservedPerson& body) {
   ObservedPerson out = body;
   if (out.joints.empty() && out.has_gaze) out.joints.push_back({"head", body.gaze_origin, 0.5});
@@ -48,7 +49,7 @@ Vector3 middle_of(const ObservedPerson& body) {
 
 }  // namespace
 
-/// For every body of the observation the track it is of, or -1: the nearest pairs first.
+/// Returns the track of each body of the observation, or -1; assigns the nearest pairs first.
 std::vector<int> PeopleTracker::associate(const HumanObservation& observation,
                                           TimePoint seen) const {
   std::vector<std::tuple<double, int, int>> pairs;
@@ -61,126 +62,132 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation,
       const bool same_id = known != track.bodies.end() && known->second == body.body;
       const double gap = std::max(0.0, track.age(seen));
       const double reach = settings_.association_distance +
-                           settings_.lost_speed * (same_id ? gap : std::min(gap, kPause));
-      if ((middle - position(track.person, kTorso)).head<2>().norm() > reach + kWidest) continue;
+                           settings_.lost_speed * (same_id ? gap : std::min(gap, kMaxOtherIdGap));
+      if ((middle - position(track.person, kTorso)).head<2>().norm() > reach + kMaxBodyExtent)
+        continue;
       const double d = distance(track, body);
       if (d <= reach)
-        pairs.emplace_back(d - (same_id ? kSameId : 0.0), static_cast<int>(b), static_cast<int>(t));
+        pairs.emplace_back(d - (same_id ? kSameIdBonus : 0.0), static_cast<int>(b),
+                           static_cast<int>(t));
     }
   }
   std::sort(pairs.begin(), pairs.end());
   std::vector<int> of(observation.people.size(), -1);
-  std::vector<bool> taken(tracks_.size(), false);
+  std::vector<bool> assigned(tracks_.size(), false);
   for (const auto& [cost, b, t] : pairs) {
-    if (of[static_cast<std::size_t>(b)] >= 0 || taken[static_cast<std::size_t>(t)]) continue;
+    if (of[static_cast<std::size_t>(b)] >= 0 || assigned[static_cast<std::size_t>(t)]) continue;
     of[static_cast<std::size_t>(b)] = t;
-    taken[static_cast<std::size_t>(t)] = true;
+    assigned[static_cast<std::size_t>(t)] = true;
   }
   return of;
 }
 
 void PeopleTracker::add(const ObservedPerson& body, const std::string& source, TimePoint seen) {
   if (body.joints.empty()) return;
-  Track fresh;
+  Track track;
   const bool name_free =
       !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(),
                                          [&](const Track& t) { return t.person.id == body.body; });
-  fresh.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
-  fresh.born = fresh.seen = seen;
-  fresh.bodies[source] = body.body;
+  track.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
+  track.born = track.seen = seen;
+  track.bodies[source] = body.body;
   const auto from = sources_.find(source);
-  update(fresh, body, seen, 0, settings_);
-  if (fresh.person.joints.empty()) return;
-  fresh.came_in = from != sources_.end() &&
-                  at_boundary(from->second, position(fresh.person, kTorso), settings_.edge);
-  tracks_.push_back(std::move(fresh));
+  update(track, body, seen, 0, settings_);
+  if (track.person.joints.empty()) return;
+  track.entered_at_boundary =
+      from != sources_.end() &&
+      at_boundary(from->second, position(track.person, kTorso), settings_.edge);
+  tracks_.push_back(std::move(track));
 }
 
-/// Whether a person anywhere in the grown volume would show head or chest to a source.
+/// Returns whether sources observe head or torso at all tested places of the inflated volume, so
+/// that a person there would be observed.
 bool PeopleTracker::seen_empty(const Track& track, TimePoint now,
                                const Obstacles& obstacles) const {
   const double radius = settings_.lost_speed * track.age(now);
-  if (radius > kFarthest) return false;
-  const auto shows = [&](const Vector3& shift) {
+  if (radius > kMaxTestRadius) return false;
+  const auto is_observed_at = [&](const Vector3& shift) {
     return std::any_of(sources_.begin(), sources_.end(), [&](const auto& entry) {
       const Source& source = entry.second;
       return live(source, now) && source.seen > track.seen && !source.repeats &&
-             (looks_at(source, obstacles, position(track.person, kHead) + shift) ||
-              looks_at(source, obstacles, position(track.person, kTorso) + shift));
+             (observes(source, obstacles, position(track.person, kHead) + shift) ||
+              observes(source, obstacles, position(track.person, kTorso) + shift));
     });
   };
-  if (!shows(Vector3::Zero())) return false;
-  const int rings = std::max(1, static_cast<int>(std::ceil(radius / kGrid)));
+  if (!is_observed_at(Vector3::Zero())) return false;
+  const int rings = std::max(1, static_cast<int>(std::ceil(radius / kGridStep)));
   for (int ring = rings; ring > 0; --ring) {
     const double r = radius * ring / rings;
-    const int around = std::max(8, static_cast<int>(std::ceil(2 * M_PI * r / kGrid)));
-    for (int i = 0; i < around; ++i) {
-      const double angle = 2 * M_PI * i / around;
-      if (!shows(r * Vector3(std::cos(angle), std::sin(angle), 0))) return false;
+    const int count = std::max(8, static_cast<int>(std::ceil(2 * M_PI * r / kGridStep)));
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2 * M_PI * i / count;
+      if (!is_observed_at(r * Vector3(std::cos(angle), std::sin(angle), 0))) return false;
     }
   }
   return true;
 }
 
-/// Confines a person who was lost near the boundary of a source's coverage, or beyond, if the
-/// source has observed without a gap since. After a gap its coverage counts as seen empty of the
-/// person after empty_after.
+/// Confines a person lost near the boundary of a source's coverage, or outside, if the source has
+/// observed without a gap since. After a gap the coverage counts as empty after empty_after.
 void PeopleTracker::confine(Track& track, TimePoint now) const {
   for (const auto& [name, source] : sources_) {
     if (!track.left_by.empty()) break;
-    // An adopted person was lost before this process began to observe: empty_after without a
-    // gap stands for the time before.
-    const bool observed_on =
-        source.unbroken <= track.seen ||
-        (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after);
-    const bool watched = recent(source, now) && source.seen > track.seen && observed_on;
-    if (watched && at_boundary(source, position(track.person, kTorso), settings_.edge))
+    // An adopted person was lost before the start of this process: an observation of empty_after
+    // without a gap replaces the earlier time.
+    const bool is_continuous =
+        source.continuous_since <= track.seen ||
+        (track.adopted &&
+         to_seconds(source.seen - source.continuous_since) >= settings_.empty_after);
+    const bool is_observed = recent(source, now) && source.seen > track.seen && is_continuous;
+    if (is_observed && at_boundary(source, position(track.person, kTorso), settings_.edge))
       track.left_by = name, track.confined = source.seen;
   }
   const auto found = sources_.find(track.left_by);
   if (found == sources_.end()) return;
   const Source& source = found->second;
-  if (source.unbroken <= track.confined ||
-      to_seconds(source.seen - source.unbroken) >= settings_.empty_after)
+  if (source.continuous_since <= track.confined ||
+      to_seconds(source.seen - source.continuous_since) >= settings_.empty_after)
     track.confined = std::max(track.confined, source.seen);
 }
 
-/// Returns the person who appeared since, as near as the lost one may have come or with the same
-/// id.
-Track* PeopleTracker::successor(const Track& gone, TimePoint now) {
+/// Returns the nearest person who appeared after the loss, within the possible walking distance or
+/// with the same id.
+Track* PeopleTracker::successor(const Track& lost, TimePoint now) {
   Track* out = nullptr;
-  const double walked = settings_.association_distance + settings_.lost_speed * gone.age(now);
-  double nearest = std::numeric_limits<double>::infinity();
+  const double max_walk = settings_.association_distance + settings_.lost_speed * lost.age(now);
+  double min_distance = std::numeric_limits<double>::infinity();
   for (Track& other : tracks_) {
-    const double d = (position(other.person, kTorso) - position(gone.person, kTorso)).norm();
-    const bool called_so =
+    const double d = (position(other.person, kTorso) - position(lost.person, kTorso)).norm();
+    const bool same_id =
         std::any_of(other.bodies.begin(), other.bodies.end(), [&](const auto& body) {
-          const auto before = gone.bodies.find(body.first);
-          return before != gone.bodies.end() && before->second == body.second;
+          const auto before = lost.bodies.find(body.first);
+          return before != lost.bodies.end() && before->second == body.second;
         });
-    if (&other == &gone || other.born <= gone.seen || d >= nearest || (d > walked && !called_so))
+    if (&other == &lost || other.born <= lost.seen || d >= min_distance ||
+        (d > max_walk && !same_id))
       continue;
     out = &other;
-    nearest = d;
+    min_distance = d;
   }
   return out;
 }
 
-/// Returns the person who came in over a boundary since, as near as the one who left may have come.
-Track* PeopleTracker::re_entered(const Track& gone, TimePoint now) {
-  if (gone.left_by.empty() || gone.age(now) <= settings_.doubt_time) return nullptr;
-  Track* other = successor(gone, now);
-  if (other == nullptr || !other->came_in) return nullptr;
-  const double walked = settings_.association_distance + settings_.lost_speed * gone.age(now);
-  return (position(other->person, kTorso) - position(gone.person, kTorso)).norm() <= walked
+/// Returns the person who entered over a boundary after the loss, within the walking distance of
+/// the person who left.
+Track* PeopleTracker::re_entered(const Track& lost, TimePoint now) {
+  if (lost.left_by.empty() || lost.age(now) <= settings_.doubt_time) return nullptr;
+  Track* other = successor(lost, now);
+  if (other == nullptr || !other->entered_at_boundary) return nullptr;
+  const double max_walk = settings_.association_distance + settings_.lost_speed * lost.age(now);
+  return (position(other->person, kTorso) - position(lost.person, kTorso)).norm() <= max_walk
              ? other
              : nullptr;
 }
 
-void PeopleTracker::erase(std::size_t index, Track* name_goes_to) {
-  if (name_goes_to != nullptr) {
-    name_goes_to->person.id = tracks_[index].person.id;
-    name_goes_to->came_in = false;
+void PeopleTracker::erase(std::size_t index, Track* successor_track) {
+  if (successor_track != nullptr) {
+    successor_track->person.id = tracks_[index].person.id;
+    successor_track->entered_at_boundary = false;
   }
   tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(index));
 }
@@ -200,7 +207,7 @@ void PeopleTracker::forget(TimePoint now, const Obstacles& obstacles) {
   }
 }
 
-/// The source of the observation, known from now on; nullptr: there is no room for it.
+/// Returns the source of the observation, adding it if new; nullptr: the quota is reached.
 Source* PeopleTracker::find_source(const HumanObservation& observation, TimePoint seen) {
   if (!sources_.contains(observation.source) && !room_for_source(seen)) return nullptr;
   const auto [entry, first] = sources_.try_emplace(observation.source);
@@ -222,7 +229,7 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
   Source* const found = find_source(observation, seen);
   if (found == nullptr) return 0;
   Source& source = *found;
-  const bool first = !std::exchange(source.ever, true);
+  const bool first = !std::exchange(source.has_observed, true);
   source.unknown_age.clear();
   const bool same_stamp = observation.stamp != 0 && observation.stamp == source.stamp;
   if (!same_stamp && !first && seen < source.seen) return 0;
@@ -235,7 +242,7 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
   const bool moved = source.coverage.low != observation.coverage.low ||
                      source.coverage.high != observation.coverage.high;
   if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory)
-    source.unbroken = seen;
+    source.continuous_since = seen;
   source.coverage = observation.coverage;
   source.seen = seen;
   source.people = observation.people;
@@ -267,7 +274,7 @@ std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
   });
 }
 
-/// How far a lost or doubted person may be from the last body [m].
+/// Returns the max distance of a lost or uncertain person from the last body [m].
 double PeopleTracker::inflation(const Track& track, TimePoint now) const {
   double out = 0;
   const double unseen = std::max(0.0, track.age(now));
@@ -277,7 +284,7 @@ double PeopleTracker::inflation(const Track& track, TimePoint now) const {
       out = std::min(out, settings_.edge + settings_.lost_speed *
                                                std::max(0.0, to_seconds(now - track.confined)));
   }
-  return now < track.doubted_until ? std::max(out, track.doubt) : out;
+  return now < track.extra_until ? std::max(out, track.extra_inflation) : out;
 }
 
 LeftOut PeopleTracker::keep_nearest(TimePoint now, const Coverage& reach) {
@@ -287,8 +294,8 @@ LeftOut PeopleTracker::keep_nearest(TimePoint now, const Coverage& reach) {
   return keep_lowest(tracks_, quotas_of(settings_).tracks, rank);
 }
 
-/// Whether a new source is listened to: at the quota it takes the place of the one that has been
-/// silent for longest.
+/// Returns whether a new source may be added: at the quota it replaces the source that has been
+/// silent for the longest time.
 bool PeopleTracker::room_for_source(TimePoint seen) {
   if (sources_.size() < quotas_of(settings_).sources) return true;
   const auto oldest =
@@ -321,7 +328,7 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
   out.covered = covers(observed, reach);
   const LeftOut left_out = spark::keep_nearest(out.people, quotas_of(settings_).people, reach);
   out.left_out = left_out.count;
-  out.covered = out.covered && left_out.nearest >= kFarthest;
+  out.covered = out.covered && left_out.nearest >= kMaxTestRadius;
   if (report != nullptr) *report = left_out;
   return out;
 }

@@ -1,5 +1,5 @@
-// Who is there: bodies from several trackers become persistent people with complete, moving bodies.
-// Pure.
+// Tracks people: merges bodies from several trackers to persistent people with complete, moving
+// bodies. Pure.
 #pragma once
 
 #include <map>
@@ -16,55 +16,56 @@
 
 namespace handsel::spark {
 
-/// What all sources report about one person is one body: each joint is the newest sight of it, a
-/// gaze may come from another source. Ids of the trackers are hints only; places decide.
+/// The observations of one person by all sources form one body: each joint has its newest
+/// observation, and the gaze may be from another source. Ids of trackers are hints; positions
+/// decide.
 ///
-/// A lost person is never gone (reliability promise P3): the last body stays, inflated by
-/// lost_speed x age, until its volume has been seen empty (from where the sources stand) for
-/// empty_after, the same person is seen as far away as they may have come, or an operator clears
-/// them. A body that is nearer the field-of-view boundary than `edge` when lost has left through
-/// it, or stands there unseen: it grows no farther than `edge` while the source continues to
-/// observe, because a person who comes back is seen; whoever comes in over the boundary then is
-/// that person.
+/// A lost person is never dropped (reliability requirement P3). The last body remains, inflated by
+/// lost_speed x age, until sources have observed its volume empty for empty_after, the same person
+/// is observed within the possible walking distance, or an operator clears the person. A body
+/// nearer to the field-of-view boundary than `edge` when lost has left over the boundary or stands
+/// unobserved next to it. Its inflation is at most `edge` while the source continues to observe,
+/// because the source would observe a return; the next person who enters over the boundary is that
+/// person.
 ///
-/// Occupied space does not shrink by a jump: one too far for a person makes a second person, and
-/// the first counts as lost; a shorter one inflates the body by its length for doubt_time. Where a
-/// lost person may have been counts until several samples show them. Data reported twice is no
-/// news. Own method, for promise P3.
+/// Occupied space does not shrink by a jump. A jump too long for a person creates a second person,
+/// and the first counts as lost; a shorter jump inflates the body by its length for doubt_time. The
+/// volume of a lost person remains until several samples show the person. Duplicate data is not a
+/// new observation. Own method, for requirement P3.
 class PeopleTracker {
  public:
-  /// `eyes`: viewpoint of each source, by name [m]; without, a source sees all of its coverage.
+  /// `eyes`: viewpoint of each source, by name, world [m]; a source without viewpoint has no
+  /// occlusion.
   explicit PeopleTracker(const settings::SparkSettings& settings,
                          std::map<std::string, Vector3> eyes = {})
       : settings_(settings), eyes_(std::move(eyes)) {}
 
-  /// `seen`: when the observation was captured (arrival less its age). `latency`: its age at
-  /// arrival [s]. One whose stamp has not advanced, or that shows people exactly as before, is no
-  /// news, and does not make its source live. Where `reach` is given, only the nearest bodies, by
-  /// the quota, become new people; whoever is known already is followed all the same. Returns how
-  /// many bodies became nobody.
+  /// Takes an observation. `seen`: capture time (arrival less age). `latency`: age at arrival [s].
+  /// A duplicate (same stamp, or same people) is ignored and does not make its source live. With
+  /// `reach`, only the nearest bodies, by the quota, become new people; known people are tracked in
+  /// any case. Returns the number of bodies that did not become a person.
   std::uint32_t observe(const HumanObservation& observation, TimePoint seen,
                         const Obstacles& obstacles = {}, const Coverage* reach = nullptr,
                         double latency = 0);
-  /// An observation whose age is not known shows nothing; `why`: one sentence, for trouble().
+  /// Rejects an observation of unknown age; `why`: one sentence, for trouble().
   void refuse(const HumanObservation& observation, const std::string& why, TimePoint now);
-  /// An operator says that a lost person is gone: `id`, or everybody lost when it is empty. Who is
-  /// seen stays. How many went.
+  /// Deletes the lost person `id`, or all lost people if empty, by order of an operator. Observed
+  /// people remain. Returns the number of deleted people.
   std::size_t clear(const std::string& id, TimePoint now);
-  /// Adopts people whom a SPARK before this one had lost: last seen before `started`, `age` counted
-  /// from `now`. Each is adopted once. A person who is seen where the lost one may be, under the
+  /// Adopts people lost by a previous SPARK process: last observed before `started`, with `age` at
+  /// `now`. Each person is adopted once. A tracked person within the lost person's volume, with the
   /// same id or at the same place, is that person.
   void adopt(const std::vector<Person>& lost, TimePoint now, TimePoint started);
-  /// Everybody as of now, ages and inflation filled in, and what every source observes. `covered`:
-  /// live sources observe the whole of `reach`. `left_out`, if not null: what the quota of people
-  /// has left out.
+  /// Returns the state at `now`: all people with ages and inflation, and the views of all sources.
+  /// `covered`: live sources observe the whole of `reach`. Writes the people left out by the quota
+  /// to `left_out` unless null.
   HumanState state(TimePoint now, const Coverage& reach, LeftOut* left_out = nullptr) const;
-  /// Forgets the people farthest from the arm beyond the quota of tracks: nobody forgotten is
-  /// nearer than anybody kept.
+  /// Deletes the people farthest from the arm beyond the quota of tracks. Returns the deleted
+  /// people.
   LeftOut keep_nearest(TimePoint now, const Coverage& reach);
-  /// Observations of sources beyond the quota, which were not taken.
+  /// Returns the number of ignored observations of sources beyond the quota.
   std::uint64_t refused_observations() const { return refused_observations_; }
-  /// Which source is not live and why; empty: none.
+  /// Returns the sources that are not live, with reasons; empty: none.
   std::string trouble(TimePoint now) const;
 
  private:
@@ -80,9 +81,9 @@ class PeopleTracker {
   }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
   void confine(Track& track, TimePoint now) const;
-  Track* successor(const Track& gone, TimePoint now);
-  Track* re_entered(const Track& gone, TimePoint now);
-  void erase(std::size_t index, Track* name_goes_to);
+  Track* successor(const Track& lost, TimePoint now);
+  Track* re_entered(const Track& lost, TimePoint now);
+  void erase(std::size_t index, Track* successor_track);
   Track* same_as(const Person& lost);
   void add(const ObservedPerson& body, const std::string& source, TimePoint seen);
   void forget(TimePoint now, const Obstacles& obstacles);

@@ -9,15 +9,15 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kFresh = 0.1;       // sights of joints this much apart are one body [s]
-constexpr double kFastest = 2.2;     // [m/s]
-constexpr double kSettled = 0.08;    // a body moves by this between two samples without a doubt [m]
-constexpr double kConfirmed = 0.15;  // the volume of a lost person counts on after the return [s]
-constexpr double kGapOfHand = 0.5;   // beyond this a hand's motion is found anew [s]
-constexpr double kMinConfidence = 0.05;
-constexpr double kGuessed = 3;  // a joint that was not seen is this much noisier
-constexpr int kAheads = 5;      // predictions of a hand
-constexpr double kAhead = 0.1;  // this far apart [s]
+constexpr double kMergeTime = 0.1;       // max time between observations merged to one body [s]
+constexpr double kMaxPersonSpeed = 2.2;  // max speed of a person [m/s]
+constexpr double kJumpTolerance = 0.08;  // tolerance of the distance between two samples [m]
+constexpr double kConfirmTime = 0.15;    // inflation time of a lost person after the return [s]
+constexpr double kMaxHandGap = 0.5;      // max gap of samples before a hand's motion restarts [s]
+constexpr double kMinConfidence = 0.05;  // min confidence of a used joint
+constexpr double kUnseenNoise = 3;       // factor of the noise of an unobserved joint
+constexpr int kPredictions = 5;          // number of predictions of a hand
+constexpr double kPredictionStep = 0.1;  // time between predictions [s]
 constexpr std::size_t kJoints = kBodyJoints.size();
 
 int index(const char* name) { return body_joint_index(name); }
@@ -35,16 +35,16 @@ const Vector3& joint_position(const Person& person, int joint) {
   return person.joints[static_cast<std::size_t>(joint)].position;
 }
 
-/// Returns the height of the person's profile [m]; 0: there is none.
+/// Returns the height in the person's profile [m]; 0: none.
 double height(const settings::SparkSettings& settings, const std::string& id) {
   for (const settings::PersonProfile& one : settings.people)
     if (one.id == id) return one.height;
   return 0;
 }
 
-/// Places joints that were never seen by those that were, once these show which way the body faces.
-/// The first observation may have shown that wrongly.
-void guess_unseen(const Track& track, std::vector<BodyJoint>& body) {
+/// Places unobserved joints relative to observed ones, once shoulders or hips show the direction of
+/// the body, which the first observation may have missed.
+void place_unobserved(const Track& track, std::vector<BodyJoint>& body) {
   const auto seen = [&](const char* joint) {
     return track.joint_seen[static_cast<std::size_t>(index(joint))].has_value();
   };
@@ -73,20 +73,20 @@ void guess_unseen(const Track& track, std::vector<BodyJoint>& body) {
   }
 }
 
-/// Takes a sample of each hand that was seen; a wrist shows where the hand is, too.
-void follow_hands(Track& track, const std::array<bool, kJoints>& sighted, TimePoint at,
+/// Takes a sample of each observed hand; an observed wrist also determines the hand.
+void update_hands(Track& track, const std::array<bool, kJoints>& observed, TimePoint at,
                   double noise) {
   Vector3 trunk = Vector3::Zero();
   for (const int joint : kTrunkMiddle)
     trunk += joint_position(track.person, joint) / static_cast<double>(kTrunkMiddle.size());
   for (std::size_t side = 0; side < kHands.size(); ++side) {
-    if (!sighted[static_cast<std::size_t>(kHands[side])] &&
-        !sighted[static_cast<std::size_t>(kWrists[side])])
+    if (!observed[static_cast<std::size_t>(kHands[side])] &&
+        !observed[static_cast<std::size_t>(kWrists[side])])
       continue;
     const Vector3& hand = joint_position(track.person, kHands[side]);
     std::optional<TimePoint>& last = track.hand_seen[side];
-    const double dt = last ? to_seconds(at - *last) : kGapOfHand;
-    if (dt >= kGapOfHand)
+    const double dt = last ? to_seconds(at - *last) : kMaxHandGap;
+    if (dt >= kMaxHandGap)
       track.hands[side].reset(hand, trunk, noise);
     else if (dt > 1e-4)
       track.hands[side].update(hand, trunk, dt, noise);
@@ -123,13 +123,14 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   const bool known = !person.joints.empty();
   if (body.joints.empty()) return;
 
-  // A slower source shows an earlier instant: what nobody saw since counts, moved on to now.
+  // A source with more latency shows an earlier instant: joints unobserved since then are used,
+  // extrapolated to the present.
   const TimePoint at = known ? std::max(seen, track.seen) : seen;
   const double behind = to_seconds(at - seen);
-  if (behind > kFresh) return;
+  if (behind > kMergeTime) return;
   ObservedPerson merged = body;
   merged.joints.clear();
-  std::array<bool, kJoints> sighted{};
+  std::array<bool, kJoints> observed{};
   for (const ObservedJoint& joint : body.joints) {
     const int i = body_joint_index(joint.name);
     if (i < 0 || !(joint.confidence >= kMinConfidence)) continue;
@@ -138,39 +139,40 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
     merged.joints.push_back(joint);
     if (behind > 0) merged.joints.back().position += behind * person.joints[k].velocity;
     track.joint_seen[k] = seen;
-    sighted[k] = true;
+    observed[k] = true;
   }
   if (merged.joints.empty()) return;
   const double dt = known ? to_seconds(at - track.seen) : 0.0;
-  std::array<bool, kJoints> lately{};  // sighted in another observation
+  std::array<bool, kJoints> observed_recently{};  // observed by another recent observation
   for (std::size_t i = 0; known && i < kJoints; ++i) {
-    if (sighted[i] || !track.joint_seen[i] || to_seconds(at - *track.joint_seen[i]) > kFresh)
+    if (observed[i] || !track.joint_seen[i] || to_seconds(at - *track.joint_seen[i]) > kMergeTime)
       continue;
     merged.joints.push_back(
         {kBodyJoints[i], person.joints[i].position + dt * person.joints[i].velocity, 0.5});
-    lately[i] = true;
+    observed_recently[i] = true;
   }
-  track.size.see(body);
+  track.size.add_sample(body);
   const double known_height = height(settings, person.id);
   person.stature = known_height > 0 ? known_height : track.size.stature();
   const Person previous = person;
   std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
   if (fitted.empty()) return;
-  guess_unseen(track, fitted);
+  place_unobserved(track, fitted);
   std::array<double, kJoints> noise{};
   for (std::size_t i = 0; i < kJoints; ++i)
-    noise[i] = lately[i] ? 0.0 : settings.joint_noise * (sighted[i] ? 1.0 : kGuessed);
+    noise[i] =
+        observed_recently[i] ? 0.0 : settings.joint_noise * (observed[i] ? 1.0 : kUnseenNoise);
   track.motion.update(fitted, noise, at);
-  const auto doubt = [&](double by, double time) {
-    track.doubt = seen < track.doubted_until ? track.doubt + by : by;
-    track.doubted_until = std::max(track.doubted_until, seen + from_seconds(time));
+  const auto inflate = [&](double by, double time) {
+    track.extra_inflation = seen < track.extra_until ? track.extra_inflation + by : by;
+    track.extra_until = std::max(track.extra_until, seen + from_seconds(time));
   };
   if (known && dt > settings.lost_after)
-    doubt(settings.lost_speed * dt + jump, kConfirmed);
-  else if (known && jump > kFastest * (dt + behind) + kSettled)
-    doubt(jump, settings.doubt_time);
+    inflate(settings.lost_speed * dt + jump, kConfirmTime);
+  else if (known && jump > kMaxPersonSpeed * (dt + behind) + kJumpTolerance)
+    inflate(jump, settings.doubt_time);
   person.joints = std::move(fitted);
-  follow_hands(track, sighted, at, settings.joint_noise);
+  update_hands(track, observed, at, settings.joint_noise);
   track.seen = at;
   track.empty_since.reset();
   track.left_by.clear();
@@ -183,13 +185,13 @@ std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person
     if (!track.hand_seen[side]) continue;
     const double since = std::max(0.0, to_seconds(now - *track.hand_seen[side]));
     HandPrediction hand{kBodyJoints[static_cast<std::size_t>(kHands[side])], {}};
-    for (int k = 1; k <= kAheads; ++k) {
-      const HandPredictor::Ball ball = track.hands[side].at(since + k * kAhead);
-      // The hand is no farther from the shoulder than the arm reaches, which may have moved.
+    for (int k = 1; k <= kPredictions; ++k) {
+      const HandPredictor::Ball ball = track.hands[side].at(since + k * kPredictionStep);
+      // The arm's length bounds the distance from the shoulder, which may have moved.
       const double arm = (ball.centre - joint_position(person, kShoulders[side])).norm() +
-                         arm_length(person) + kFastest * (since + k * kAhead);
+                         arm_length(person) + kMaxPersonSpeed * (since + k * kPredictionStep);
       hand.ahead.push_back(
-          {k * kAhead, ball.centre, std::min(ball.radius, arm) + person.inflation});
+          {k * kPredictionStep, ball.centre, std::min(ball.radius, arm) + person.inflation});
     }
     out.push_back(std::move(hand));
   }

@@ -1,5 +1,4 @@
-// One person as followed over time: the body merged from all sources, its motion and its size.
-// Pure.
+// The track of one person: the body merged from all sources, its motion and its size. Pure.
 #pragma once
 
 #include <array>
@@ -18,28 +17,31 @@
 
 namespace handsel::spark {
 
-/// A person with everything that is remembered of the observations.
+/// A person with the stored results of the observations.
 struct Track {
   Person person;  ///< as of `seen`; age, inflation and hands are not set
   std::map<std::string, std::string> bodies;  ///< id of the body, by source
   TimePoint born{};                           ///< capture of the first observation
-  TimePoint seen{};                           ///< time that the body of `person` stands for
-  std::optional<TimePoint> gaze_seen;         ///< when the gaze was seen last
-  std::array<std::optional<TimePoint>, kBodyJoints.size()> joint_seen;  ///< when each was seen last
+  TimePoint seen{};                           ///< instant of the body of `person`
+  std::optional<TimePoint> gaze_seen;         ///< capture of the last gaze
+  /// Capture of each joint's last observation.
+  std::array<std::optional<TimePoint>, kBodyJoints.size()> joint_seen;
   BodyMotion motion;                                  ///< velocities of the joints
-  BodySize size;                                      ///< stature, from the joints seen
+  BodySize size;                                      ///< stature from the observed joints
   std::array<HandPredictor, 2> hands;                 ///< left, right
   std::array<std::optional<TimePoint>, 2> hand_seen;  ///< last sample of each predictor
-  double doubt{};                                     ///< inflation until `doubted_until` [m]
-  TimePoint doubted_until{};                          ///< end of `doubt`
-  std::optional<TimePoint> empty_since;  ///< since when the volume of a lost person is seen empty
-  bool adopted{};  ///< from the safety state, and not seen by this process yet
-  /// Appeared at the field-of-view boundary, and nobody who had left is known to be this person.
-  bool came_in{};
-  std::string left_by;   ///< source over whose boundary the person left; empty: none
-  TimePoint confined{};  ///< when that source last showed that the person had not come back
+  double extra_inflation{};                           ///< inflation until `extra_until` [m]
+  TimePoint extra_until{};                            ///< end of `extra_inflation`
+  /// Since when sources observe the volume of a lost person empty.
+  std::optional<TimePoint> empty_since;
+  bool adopted{};  ///< from the safety state, not yet observed by this process
+  /// Whether the person appeared at the field-of-view boundary and is not yet identified with a
+  /// person who left.
+  bool entered_at_boundary{};
+  std::string left_by;   ///< source whose boundary the person crossed; empty: none
+  TimePoint confined{};  ///< last time at which that source showed no return
 
-  /// Time since the body was seen [s].
+  /// Returns the time since the last observation [s].
   double age(TimePoint now) const { return to_seconds(now - seen); }
 };
 
@@ -48,12 +50,12 @@ struct Track {
 double distance(const Track& track, const ObservedPerson& body);
 
 /// Merges an observed body, captured at `seen`, into the track. `jump`: distance of the body from
-/// the track [m]; one too far for a person inflates the track for some time.
+/// the track [m]; a jump too long for a person inflates the track for some time.
 void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump,
             const settings::SparkSettings& settings);
 
-/// Returns where the hands of the track will be. `person`: the person of the track as of `now`,
-/// whose inflation widens the volumes.
+/// Returns predictions of the track's hands. `person`: the track's person at `now`, whose inflation
+/// enlarges the volumes.
 std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now);
 
 }  // namespace handsel::spark

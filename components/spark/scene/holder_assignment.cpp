@@ -11,12 +11,11 @@
 namespace handsel::spark {
 namespace {
 
-// What a loaded hand has lifted so far does not stand there any more [m].
-constexpr double kClearOfSupport = 0.01;
+// Min gap to the support at which an object in a loaded hand is lifted [m].
+constexpr double kMinLiftGap = 0.01;
 
-/// Returns the distance of a palm from an object, as from the centre of one that is as long as it
-/// is wide: from the box around it, plus half the smallest side of that box [m]. The centre of a
-/// long object may be far from the hand that holds one end.
+/// Returns the distance of a palm from an object [m]: from its bounding box, plus half the smallest
+/// side of the box. The centre of a long object may be far from a hand that holds one end.
 double palm_distance(const Vector3& p_palm, const ObjectModel& model, const Pose& T_world_object) {
   const Eigen::AlignedBox3d box = object_extent(&model, {});
   return box.exteriorDistance(T_world_object.inverse() * p_palm) + box.sizes().minCoeff() / 2;
@@ -24,7 +23,7 @@ double palm_distance(const Vector3& p_palm, const ObjectModel& model, const Pose
 
 }  // namespace
 
-/// Returns the box under the object, its bottom no more than `gap` [m] from the top; nullptr: none.
+/// Returns the box under the object with at most `gap` [m] between top and bottom; nullptr: none.
 const SceneBox* HolderAssignment::support_under(const SceneObject& object, double gap) const {
   const ObjectModel* model = in_.library ? in_.library(object.model) : nullptr;
   const Eigen::AlignedBox3d box = object_extent(nullptr, object.primitive);
@@ -48,16 +47,16 @@ const SceneBox* HolderAssignment::support_under(const SceneObject& object, doubl
   return nullptr;
 }
 
-// A sensor feels the hand that is nearest.
+// The nearest hand causes a measured grip.
 void HolderAssignment::attribute_grips(ObjectTrack& track) const {
   track.object.grips.clear();
-  for (const ObservedGrip& felt : track.grips) {
-    ObjectGrip grip{"", felt.force};
-    double nearest = in_.settings.grip_distance;
+  for (const ObservedGrip& measured : track.grips) {
+    ObjectGrip grip{"", measured.force};
+    double min_distance = in_.settings.grip_distance;
     const auto claim = [&](const std::string& person, const Vector3& hand) {
-      const double distance = (hand - felt.position).norm();
-      if (distance >= nearest) return;
-      nearest = distance;
+      const double distance = (hand - measured.position).norm();
+      if (distance >= min_distance) return;
+      min_distance = distance;
       grip.person = person;
     };
     for (const Person& person : in_.people.people)
@@ -69,16 +68,16 @@ void HolderAssignment::attribute_grips(ObjectTrack& track) const {
   }
 }
 
-/// Decides by the force sensors of the object: whoever had it keeps it until their grip is lost,
-/// then the strongest grip counts. Returns false when nobody grips it.
-bool HolderAssignment::keep_gripped(SceneObject& object) const {
+/// Assigns the holder by the object's force sensors: the holder remains until the grip is lost,
+/// then the max grip force decides. Returns false if nobody grips the object.
+bool HolderAssignment::assign_by_grip(SceneObject& object) const {
   const ObjectGrip* strongest = nullptr;
   const std::string now = object.holder == Holder::robot ? kRobotName : object.holder_id;
   for (const ObjectGrip& grip : object.grips) {
     if (grip.person.empty()) continue;
-    const bool keeps =
+    const bool is_holder =
         object.holder >= Holder::robot && grip.person == now && grip.force > in_.settings.grip_lost;
-    if (keeps) return true;
+    if (is_holder) return true;
     if (grip.force > in_.settings.grip_force &&
         (strongest == nullptr || grip.force > strongest->force))
       strongest = &grip;
@@ -89,36 +88,38 @@ bool HolderAssignment::keep_gripped(SceneObject& object) const {
   return true;
 }
 
-/// Returns, of the robot's hands that feel the object together, the one that holds it: the hand
-/// that had it while that feels some of the load, else the one with the largest load.
+/// Returns the robot hand that holds the object: the present holder while it measures some of the
+/// load, else the hand with the max load.
 std::optional<std::size_t> HolderAssignment::loaded_hand(const ObjectTrack& track) const {
-  constexpr double kReach = 0.35;     // [m] from the palm
-  constexpr double kTaken = 0.30;     // [m] and so near to come to be held: what only leans on the
-                                      // fingertips is not in the hand
-  constexpr double kHeldRatio = 0.4;  // of its weight that is felt when it is held
-  constexpr double kKeptRatio = 0.2;  // and that the hand that had it feels at least
+  // Max distance of the palm from a held object, and from an object that begins to be held: an
+  // object that leans on the fingertips is not held [m].
+  constexpr double kMaxHeldDistance = 0.35, kMaxGraspDistance = 0.30;
+  // Min load of all hands on a held object, and of a hand that remains the holder, divided by the
+  // object's mass.
+  constexpr double kMinHeldRatio = 0.4, kMinHolderRatio = 0.2;
   const ObjectModel* model = in_.library ? in_.library(track.object.model) : nullptr;
   if (model == nullptr || !in_.robot.known()) return std::nullopt;
   std::optional<std::size_t> strongest;
-  double together = 0;
+  double total_load = 0;
   for (std::size_t i = 0; i < in_.robot.hands().size(); ++i) {
     const RobotPlacement::Hand& hand = in_.robot.hands()[i];
-    const double reach = track.object.holder == Holder::robot ? kReach : kTaken;
+    const double reach =
+        track.object.holder == Holder::robot ? kMaxHeldDistance : kMaxGraspDistance;
     if (!(palm_distance(hand.T_world_palm.translation(), *model, track.object.T_world_object) <
           reach))
       continue;
-    together += hand.payload;
+    total_load += hand.payload;
     if (!strongest || hand.payload > in_.robot.hands()[*strongest].payload) strongest = i;
   }
-  if (!strongest || !(together > kHeldRatio * model->mass)) return std::nullopt;
+  if (!strongest || !(total_load > kMinHeldRatio * model->mass)) return std::nullopt;
   const RobotPlacement::Hand& before = in_.robot.hands()[track.robot_hand];
-  const bool kept =
-      track.object.holder == Holder::robot && before.payload > kKeptRatio * model->mass;
-  return kept ? track.robot_hand : *strongest;
+  const bool is_same_holder =
+      track.object.holder == Holder::robot && before.payload > kMinHolderRatio * model->mass;
+  return is_same_holder ? track.robot_hand : *strongest;
 }
 
-/// Returns whether the person who has held the object still has a hand at it; the object may touch
-/// a surface meanwhile.
+/// Returns whether a hand of the person who holds the object is still on it; the object may touch a
+/// surface.
 bool HolderAssignment::is_in_hand_of_holder(const SceneObject& object) const {
   if (object.holder != Holder::human || !object.grips.empty()) return false;
   const ObjectModel* model = in_.library ? in_.library(object.model) : nullptr;
@@ -134,8 +135,8 @@ bool HolderAssignment::is_in_hand_of_holder(const SceneObject& object) const {
   });
 }
 
-/// Returns whether the hand of the robot that has held the object still has the fingers around it,
-/// though it feels no load: a person carries the object with it.
+/// Returns whether the fingers of the robot hand that held the object still enclose it without a
+/// measured load, because a person also carries the object.
 bool HolderAssignment::is_in_closed_hand(const ObjectTrack& track) const {
   if (track.object.holder != Holder::robot || !track.robot_grip) return false;
   const RobotPlacement::Hand& hand = in_.robot.hands()[track.robot_hand];
@@ -149,43 +150,44 @@ bool HolderAssignment::is_in_closed_hand(const ObjectTrack& track) const {
 
 void HolderAssignment::assign(ObjectTrack& track) const {
   SceneObject& object = track.object;
-  if (keep_gripped(object)) return;
-  const Vector3 where = object.T_world_object.translation();
+  if (assign_by_grip(object)) return;
+  const Vector3 p_world = object.T_world_object.translation();
   const std::optional<std::size_t> by = loaded_hand(track);
-  const bool robot_may = by.has_value();
-  if (robot_may && *by != track.robot_hand) {
+  const bool robot_holds = by.has_value();
+  if (robot_holds && *by != track.robot_hand) {
     track.robot_hand = *by;
     track.T_palm_object = in_.robot.hands()[*by].T_world_palm.inverse() * object.T_world_object;
   }
-  if (!robot_may && is_in_hand_of_holder(object)) return;
+  if (!robot_holds && is_in_hand_of_holder(object)) return;
   if (const SceneBox* box =
-          support_under(object, robot_may ? kClearOfSupport : in_.settings.support_gap)) {
+          support_under(object, robot_holds ? kMinLiftGap : in_.settings.support_gap)) {
     object.holder = Holder::surface;
     object.holder_id = box->id;
     return;
   }
-  if (robot_may) {
+  if (robot_holds) {
     const RobotPlacement::Hand& hand = in_.robot.hands()[*by];
     object.holder = Holder::robot;
     object.holder_id = hand.name;
-    track.robot_grip = RobotGrip{hand.fingers, hand.T_world_palm.inverse() * where};
+    track.robot_grip = RobotGrip{hand.fingers, hand.T_world_palm.inverse() * p_world};
     return;
   }
   if (is_in_closed_hand(track)) return;
-  double nearest = in_.settings.near_distance;
+  double min_distance = in_.settings.near_distance;
   for (const auto& person : in_.people.people) {
     if (!object.grips.empty()) break;  // nobody grips it
     for (const char* hand : {"l_hand", "r_hand"}) {
-      const double distance = (joint_of(person, hand).position - where).norm();
-      if (distance > nearest) continue;
-      nearest = distance;
+      const double distance = (joint_of(person, hand).position - p_world).norm();
+      if (distance > min_distance) continue;
+      min_distance = distance;
       object.holder = Holder::human;
       object.holder_id = person.id;
     }
   }
-  const bool human_went = object.holder == Holder::human && nearest >= in_.settings.near_distance;
-  const bool robot_went = object.holder == Holder::robot || object.holder == Holder::surface;
-  if (nearest >= in_.settings.near_distance && (human_went || robot_went)) {
+  const bool human_released =
+      object.holder == Holder::human && min_distance >= in_.settings.near_distance;
+  const bool robot_released = object.holder == Holder::robot || object.holder == Holder::surface;
+  if (min_distance >= in_.settings.near_distance && (human_released || robot_released)) {
     object.holder = Holder::nobody;
     object.holder_id.clear();
   }
@@ -200,11 +202,11 @@ bool HolderAssignment::carry(ObjectTrack& track) const {
   if (track.object.age <= kFollowHandAfter) {
     if (track.hand_offset_time == track.seen) return false;
     track.hand_offset_time = track.seen;
-    double nearest = std::numeric_limits<double>::infinity();
+    double min_distance = std::numeric_limits<double>::infinity();
     for (const char* hand : {"l_hand", "r_hand"}) {
       const Vector3 p = object.T_world_object.translation() - joint_of(*person, hand).position;
-      if (p.norm() >= nearest) continue;
-      nearest = p.norm();
+      if (p.norm() >= min_distance) continue;
+      min_distance = p.norm();
       track.hand = body_joint_index(hand);
       track.p_hand_object = p;
     }

@@ -1,5 +1,5 @@
-// Who or what holds an object: decided from geometry, grip sensors, the load of the robot's hands
-// and the hands of people. Pure.
+// Decides the holder of an object from geometry, grip sensors, the load of the robot's hands and
+// the hands of people. Pure.
 #pragma once
 
 #include <optional>
@@ -14,30 +14,30 @@
 
 namespace handsel::spark {
 
-/// Assigns holders for one scene; refers to everything it is made of.
+/// Assigns holders for one scene; keeps references to its inputs.
 class HolderAssignment {
  public:
-  /// What the holders are decided from.
+  /// Inputs of the decision.
   struct Inputs {
     const settings::SparkSettings& settings;  ///< distances and forces
     const ObjectLibrary& library;             ///< described models
     const std::vector<SceneBox>& boxes;       ///< fixed boxes
-    const RobotPlacement& robot;              ///< located
-    const HumanState& people;                 ///< as of now
+    const RobotPlacement& robot;              ///< after locate()
+    const HumanState& people;                 ///< present state
   };
   explicit HolderAssignment(const Inputs& inputs) : in_(inputs) {}
 
-  /// Gives each grip that was felt to the nearest hand.
+  /// Assigns each measured grip to the nearest hand.
   void attribute_grips(ObjectTrack& track) const;
-  /// Decides who or what holds an object that is in sight or at rest.
+  /// Assigns the holder of an object that is observed or at rest.
   void assign(ObjectTrack& track) const;
-  /// Moves an object that is out of sight in a person's hand with that hand. Returns whether it
-  /// did.
+  /// Moves an unobserved object in a person's hand with that hand. Returns whether the object was
+  /// moved.
   bool carry(ObjectTrack& track) const;
 
  private:
   std::optional<std::size_t> loaded_hand(const ObjectTrack& track) const;
-  bool keep_gripped(SceneObject& object) const;
+  bool assign_by_grip(SceneObject& object) const;
   bool is_in_hand_of_holder(const SceneObject& object) const;
   bool is_in_closed_hand(const ObjectTrack& track) const;
   const SceneBox* support_under(const SceneObject& object, double gap) const;

@@ -9,25 +9,25 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameMove = 0.004;       // [m] a sample this near the estimate is averaged
-constexpr double kSameTurn = 0.06;        // [rad] and turned by no more
-constexpr int kObjectAverageOver = 15;    // [samples]
-constexpr double kVelocityMemory = 0.06;  // [s]
-constexpr double kFastestObject = 2.5;    // [m/s] of what somebody carries
-constexpr double kLeap = 0.1;             // [m] beyond that a thing has jumped
-constexpr double kTrust = 0.2;            // [s] a source silent for longer is not believed
-constexpr double kAgree = 0.01;           // [m] two sources may differ by this
+constexpr double kMaxAveragedMove = 0.004;    // max distance of an averaged sample [m]
+constexpr double kMaxAveragedTurn = 0.06;     // max rotation of an averaged sample [rad]
+constexpr int kMaxAveragedSamples = 15;       // max number of averaged samples
+constexpr double kVelocityMemory = 0.06;      // time constant of the velocity filter [s]
+constexpr double kMaxCarrySpeed = 2.5;        // max speed of a carried object [m/s]
+constexpr double kJumpMargin = 0.1;           // min length of a jump beyond carrying [m]
+constexpr double kMaxSourceSilence = 0.2;     // max silence of the selected source [s]
+constexpr double kMaxSourceDeviation = 0.01;  // max deviation of agreeing sources [m]
 
-/// Averages the place of an object at rest over several noisy samples. A moving object is where it
-/// was seen, as is one in a person's hand, of which the average would hide slow motions.
+/// Averages the pose of an object at rest over several noisy samples. A moving object has its last
+/// observed pose, as does an object in a person's hand, where averaging would hide slow motions.
 Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
   const Eigen::AngleAxisd turn(estimate.linear().transpose() * seen.linear());
-  if ((seen.translation() - estimate.translation()).norm() > kSameMove ||
-      std::abs(turn.angle()) > kSameTurn) {
+  if ((seen.translation() - estimate.translation()).norm() > kMaxAveragedMove ||
+      std::abs(turn.angle()) > kMaxAveragedTurn) {
     samples = 1;
     return seen;
   }
-  samples = std::min(samples + 1, kObjectAverageOver);
+  samples = std::min(samples + 1, kMaxAveragedSamples);
   Pose out = estimate;
   out.translation() += (seen.translation() - estimate.translation()) / samples;
   out.linear() =
@@ -35,9 +35,9 @@ Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
   return out;
 }
 
-/// Filters the velocity by a first-order filter over the samples; steps of the averaged place would
-/// look like jerks.
-void follow(ObjectTrack& track, const ObservedObject& observed, TimePoint seen) {
+/// Filters the velocity by a first-order filter over the samples; steps of the averaged position
+/// would cause false velocities.
+void update_velocity(ObjectTrack& track, const ObservedObject& observed, TimePoint seen) {
   const Vector3 at = observed.T_world_object.translation();
   const double dt = to_seconds(seen - track.seen);
   if (track.samples == 0 || dt > kVelocityGap) {
@@ -78,10 +78,10 @@ void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTrac
         return (sample.T_world_object.translation() - track.last_seen_at).norm();
       };
       const double possible =
-          kLeap + kFastestObject * to_seconds(at - std::min(a->second.seen, b->second.seen));
-      const bool leapt =
+          kJumpMargin + kMaxCarrySpeed * to_seconds(at - std::min(a->second.seen, b->second.seen));
+      const bool jumped =
           apart(observed[i], a->second) > possible && apart(observed[k], b->second) > possible;
-      if (leapt && apart(observed[i], b->second) < possible &&
+      if (jumped && apart(observed[i], b->second) < possible &&
           apart(observed[k], a->second) < possible)
         std::swap(observed[i].id, observed[k].id);
     }
@@ -90,7 +90,8 @@ void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTrac
 
 bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
                    TimePoint seen, double doubt_time) {
-  if (track.samples == 0 || track.source == source || to_seconds(seen - track.seen) > kTrust) {
+  if (track.samples == 0 || track.source == source ||
+      to_seconds(seen - track.seen) > kMaxSourceSilence) {
     track.source = source;
     return true;
   }
@@ -98,19 +99,20 @@ bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std
   const double apart =
       (observed.T_world_object.translation() - track.last_seen_at).norm() - between;
   const bool wider = apart > track.spread || seen > track.spread_until;
-  if (apart > kAgree && wider) track.spread = apart;
-  if (apart > kAgree) track.spread_until = seen + from_seconds(doubt_time);
+  if (apart > kMaxSourceDeviation && wider) track.spread = apart;
+  if (apart > kMaxSourceDeviation) track.spread_until = seen + from_seconds(doubt_time);
   return false;
 }
 
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
                 double doubt_time) {
-  const double leap = (observed.T_world_object.translation() - track.last_seen_at).norm();
-  if (track.samples > 0 && leap > kLeap + kFastestObject * to_seconds(seen - track.seen)) {
-    track.jump = leap;
+  const double distance = (observed.T_world_object.translation() - track.last_seen_at).norm();
+  if (track.samples > 0 &&
+      distance > kJumpMargin + kMaxCarrySpeed * to_seconds(seen - track.seen)) {
+    track.jump = distance;
     track.jump_until = seen + from_seconds(doubt_time);
   }
-  follow(track, observed, seen);
+  update_velocity(track, observed, seen);
   track.object.id = observed.id;
   track.object.model = observed.model;
   track.object.primitive = observed.primitive;
@@ -120,7 +122,7 @@ void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint se
                                                   : observed.T_world_object;
   track.samples = std::max(track.samples, 1);
   track.seen = seen;
-  track.wandered = 0;
+  track.max_drift = 0;
 }
 
 void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint now,
@@ -129,7 +131,7 @@ void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint 
   const double since = std::clamp(to_seconds(now - track.evaluated), 0.0, std::max(0.0, unseen));
   track.evaluated = now;
   SceneObject& object = track.object;
-  if (object.holder == Holder::robot) track.wandered = 0;
+  if (object.holder == Holder::robot) track.max_drift = 0;
   double speed = object.holder == Holder::robot ? 0 : settings.unseen_drift, with = 0;
   for (const Person& person : people.people) {
     if (object.holder == Holder::human && object.holder_id == person.id) with = person.inflation;
@@ -139,8 +141,8 @@ void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint 
           object.holder != Holder::robot)
         speed = settings.touched_drift;
   }
-  track.wandered = std::min(track.wandered + since * speed, settings.unseen_most);
-  object.uncertainty = track.wandered + with;
+  track.max_drift = std::min(track.max_drift + since * speed, settings.unseen_most);
+  object.uncertainty = track.max_drift + with;
   if (now < track.spread_until) object.uncertainty += track.spread;
   if (now < track.jump_until) object.uncertainty = std::max(object.uncertainty, track.jump);
 }

@@ -14,60 +14,60 @@
 
 namespace handsel::spark {
 
-/// After this time without observation the velocity of an object is unknown [s].
+/// Max time without observation for which the velocity of an object is known [s].
 inline constexpr double kVelocityGap = 0.3;
-/// An object that is held and has not been observed for this time is moved with the hand [s].
+/// Time without observation after which a held object is moved with the hand [s].
 inline constexpr double kFollowHandAfter = 0.1;
 
-/// How a hand of the robot had an object when it last felt the load.
+/// The grasp of a robot hand at its last measurement of the load.
 struct RobotGrip {
   Vector fingers;         ///< RobotPlacement::Hand::fingers
   Vector3 p_palm_object;  ///< position of the object in the palm frame [m]
 };
 
-/// An object with everything that is remembered of the observations.
+/// An object with the stored results of the observations.
 struct ObjectTrack {
-  SceneObject object;        ///< estimate; its age is that of the last scene
-  std::size_t robot_hand{};  ///< index of the robot hand that holds the object or held it last
-  Pose T_palm_object{Pose::Identity()};   ///< in the palm frame of that hand
-  std::optional<RobotGrip> robot_grip;    ///< of that hand; nullopt: it never had the object
+  SceneObject object;                     ///< estimate; `age` as of the last scene
+  std::size_t robot_hand{};               ///< index of the last robot hand that held the object
+  Pose T_palm_object{Pose::Identity()};   ///< pose in the palm frame of that hand
+  std::optional<RobotGrip> robot_grip;    ///< grasp of that hand; nullopt: none so far
   TimePoint seen{};                       ///< capture of the newest sample
-  int samples{};                          ///< number that make up the estimate; 0: none
-  Vector3 last_seen_at{Vector3::Zero()};  ///< of the newest sample, world [m]
-  std::vector<ObservedGrip> grips;        ///< of the newest sample
-  std::string source;                     ///< name of the trusted source
-  double spread{};  ///< distance between the positions of the trusted source and another [m]
-  TimePoint spread_until{};  ///< `spread` counts until then
-  double jump{};  ///< last jump of the position, faster than anybody can carry an object [m]
-  TimePoint jump_until{};  ///< `jump` counts until then
-  int hand{};              ///< joint of the holder's hand; of use while a person holds the object
+  int samples{};                          ///< number of averaged samples; 0: none
+  Vector3 last_seen_at{Vector3::Zero()};  ///< position of the newest sample, world [m]
+  std::vector<ObservedGrip> grips;        ///< grips of the newest sample
+  std::string source;                     ///< name of the selected source
+  double spread{};                        ///< distance between the selected source and another [m]
+  TimePoint spread_until{};               ///< end of `spread`
+  double jump{};           ///< last jump, faster than a person can carry an object [m]
+  TimePoint jump_until{};  ///< end of `jump`
+  int hand{};              ///< joint of the holder's hand; valid while a person holds the object
   Vector3 p_hand_object{Vector3::Zero()};  ///< position relative to that joint, world axes [m]
-  std::optional<TimePoint>
-      hand_offset_time;   ///< capture time of the sample that gave `p_hand_object`
-  double wandered{};      ///< upper bound of the distance moved since the last observation [m]
-  TimePoint evaluated{};  ///< when `wandered` was computed
+  /// Capture time of the sample of `p_hand_object`.
+  std::optional<TimePoint> hand_offset_time;
+  double max_drift{};     ///< upper bound of the distance moved since the last observation [m]
+  TimePoint evaluated{};  ///< time of the last update of `max_drift`
 };
 
 using ObjectTracks = std::map<std::string, ObjectTrack>;  ///< by id of the object
 
-/// Keeps one shape in `observed`: the model if the library knows it, else the primitive if it has a
-/// size. Returns whether there was one.
+/// Selects the shape of `observed`: the model if the library has one, else the primitive if it has
+/// a size. Returns whether a shape exists.
 bool select_shape(ObservedObject& observed, const ObjectLibrary& library);
-/// Corrects the ids of two objects of a kind that seem to have changed places faster than anybody
-/// could carry them: their ids are swapped back. `at`: capture time of the observation.
+/// Swaps the ids of two objects of a kind that have exchanged places faster than a person can carry
+/// them. `at`: capture time of the observation.
 void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTracks& tracks,
                          TimePoint at);
 
-/// Returns whether a sample is to be used. One source is trusted at a time, so that an object at
-/// rest does not move between two that differ; the distance of another one counts as `spread` for
+/// Returns whether a sample is used. One source is selected at a time, so that an object at rest
+/// does not alternate between two sources; the distance of another source is `spread` for
 /// `doubt_time` [s].
 bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
                    TimePoint seen, double doubt_time);
-/// Adds a sample to the estimate. `doubt_time`: how long a jump adds to the uncertainty [s].
+/// Adds a sample to the estimate. `doubt_time`: time for which a jump adds to the uncertainty [s].
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
                 double doubt_time);
-/// Computes the uncertainty of an object that is not observed from the distance it may have moved,
-/// up to a limit of the settings. In the hand of a person the inflation of that person is added.
+/// Computes the uncertainty of an unobserved object from the distance that it may have moved, up to
+/// a limit of the settings. For an object in a person's hand that person's inflation is added.
 void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint now,
                         const settings::SparkSettings& settings);
 

@@ -8,7 +8,7 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kFingerLength = 0.05;  // that turns what an axis slides into an angle [m]
+constexpr double kFingerLength = 0.05;  // converts the travel of a prismatic axis to an angle [m]
 
 double arm_length(const RobotModel& robot) {
   double length = 0;

@@ -1,4 +1,4 @@
-// Where the robot, its links and its hands are, as it reports. Pure.
+// Poses of the robot, its links and its hands from its reported state. Pure.
 #pragma once
 
 #include <memory>
@@ -11,45 +11,46 @@
 
 namespace handsel::spark {
 
-/// Where a robot at `base` could reach, and some more: the room in which people must be watched
-/// [m].
+/// Returns the box within reach of a robot at `base`, with a margin, in which people must be
+/// observed [m].
 Coverage reach_of(const RobotModel& robot, const Vector3& base);
 
-/// Configuration and base pose of the robot, and what follows from them.
+/// Configuration and base pose of the robot, with the poses of links and hands.
 class RobotPlacement {
  public:
   /// A hand of the robot.
   struct Hand {
     std::string name;                     ///< as SceneObject::holder_id; empty for the first
-    int palm{-1};                         ///< link; -1: none
-    double payload{};                     ///< felt [kg]
+    int palm{-1};                         ///< link of the palm; -1: none
+    double payload{};                     ///< measured [kg]
     Pose T_world_palm{Pose::Identity()};  ///< as of the last locate()
-    /// Positions of its finger axes as of the last locate() [rad]; of one that slides the turn of a
-    /// finger of 5 cm that moves its tip as far. Empty: the hand has none.
+    /// Positions of the finger axes as of the last locate() [rad]; for a prismatic axis the
+    /// rotation of a finger of 5 cm with the same motion of the tip. Empty: no finger axes.
     Vector fingers;
-    std::vector<int> axes;  ///< its finger axes
+    std::vector<int> axes;  ///< finger axes
   };
 
   explicit RobotPlacement(std::shared_ptr<const RobotModel> robot);
 
-  /// Takes the state of the robot, which must be this one's.
+  /// Takes the state of the same robot.
   void update(const RobotState& state);
   /// Computes the poses of links and hands from the last state.
   void locate();
 
-  /// Model of the robot.
+  /// Returns the model of the robot.
   const RobotModel& model() const { return *robot_; }
   /// Returns whether update() was called.
   bool known() const { return known_; }
-  /// Configuration of the last update().
+  /// Returns the configuration of the last update().
   const Vector& position() const { return position_; }
-  /// Base pose of the last update(); identity before.
+  /// Returns the base pose of the last update(); identity before.
   const Pose& T_world_base() const { return T_world_base_; }
-  /// Hands, never empty; the first is that of the tool link.
+  /// Returns the hands, never empty; the first is that of the tool link.
   const std::vector<Hand>& hands() const { return hands_; }
-  /// Poses of the links in the base frame as of the last locate(); empty before the robot is known.
+  /// Returns the poses of the links in the base frame as of the last locate(); empty before
+  /// update().
   const std::vector<Pose>& links() const { return links_; }
-  /// The box around everything the robot can reach.
+  /// Returns the box around all points within the robot's reach.
   Coverage reach() const;
 
  private:

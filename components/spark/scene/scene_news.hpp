@@ -1,4 +1,4 @@
-// What of a scene is new since it was published last. Pure.
+// Detects changes of a scene since the last publication. Pure.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace handsel::spark {
 
-/// News of a scene: a change that matters to a planner, or a new observation of an object in a
-/// person's hand, which may be offered.
+/// News of a scene: a change relevant to a planner, or a new observation of an object in a person's
+/// hand, which may be offered.
 class SceneNews {
  public:
   /// Notes that the scene was published at `now`.
@@ -25,9 +25,9 @@ class SceneNews {
   }
 
  private:
-  static constexpr double kSameSample = 1e-3;  // [s]
+  static constexpr double kSameSample = 1e-3;  // max time difference of one sample [s]
 
-  /// Returns when an object in a person's hand was observed last; the epoch: no person holds one.
+  /// Returns the last observation of an object in a person's hand; the epoch: none.
   static TimePoint held_seen(const Scene& scene, TimePoint now) {
     TimePoint newest{};
     for (const SceneObject& object : scene.objects)

@@ -202,7 +202,7 @@ TEST(Quotas, what_is_held_or_wanted_stays_in_the_scene_before_what_is_near) {
   anna.joints = standing_body({6, 0, 0}, 0, 1.75);
   people.people.push_back(anna);
   const Vector3 hand = anna.joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position;
-  scene.want("wanted");
+  scene.request("wanted");
   std::vector<ObservedObject> things{thing("in_hand", hand), thing("wanted", {9, 9, 1}),
                                      thing("near", {0.4, 0, 1})};
   for (int i = 0; i < 1000; ++i)
