@@ -13,14 +13,13 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSameConfiguration = 1e-4;  // [rad]
-constexpr double kVerifyStep = 0.001;  // states on what is returned are checked this close [rad]
-constexpr int kAttempts = 3;           // the fine check may refuse what the coarse one let pass
-constexpr int kBends = 24;             // postures tried on another branch
-constexpr double kBendAway = 1.0;  // the last of them is up to this far from the start's, shoulder,
-                                   // elbow and wrist bent over [rad]
-constexpr double kMinBend = 0.2;   // [rad]
-constexpr double kJointSample = 0.05;  // of a path of the joints [rad]
+constexpr double kSameConfiguration = 1e-4;  // max difference of equal configurations [rad]
+constexpr double kVerifyStep = 0.001;        // step of the check of the returned path [rad]
+constexpr int kMaxAttempts = 3;              // max searches whose path may fail the fine check
+constexpr int kBranchGoals = 24;             // configurations tried on another branch
+constexpr double kMaxBranchOffset = 1.0;     // max random offset of these from the start [rad]
+constexpr double kMinBend = 0.2;             // min bend of shoulder, elbow and wrist there [rad]
+constexpr double kJointSample = 0.05;        // step of the samples of a joint-space path [rad]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct TreeNode {
@@ -80,15 +79,15 @@ class Search {
               : sample();
       const int added = extend(tree, nearest(space_, tree, target), target);
       if (added < 0) continue;
-      const CartesianNode fresh = tree[static_cast<std::size_t>(added)].at;
-      // Toward it from the other tree, as far as it goes.
-      int at = nearest(space_, other, fresh);
+      const CartesianNode added_node = tree[static_cast<std::size_t>(added)].at;
+      // Extends the other tree toward the new node as far as possible.
+      int at = nearest(space_, other, added_node);
       while (at >= 0 && !space_.exhausted()) {
-        const int next = extend(other, at, fresh);
+        const int next = extend(other, at, added_node);
         if (next < 0) break;
         at = next;
-        if (space_.distance(other[static_cast<std::size_t>(at)].at, fresh) > 1e-6) continue;
-        if (!same(other[static_cast<std::size_t>(at)].at, fresh))
+        if (space_.distance(other[static_cast<std::size_t>(at)].at, added_node) > 1e-6) continue;
+        if (!same(other[static_cast<std::size_t>(at)].at, added_node))
           break;  // the same pose on another branch
         std::vector<CartesianNode> path = branch(trees[0], grows == 0 ? added : at);
         std::reverse(path.begin(), path.end());
@@ -124,7 +123,7 @@ class Search {
     return out;
   }
 
-  /// One edge of at most `range`, shorter where it is blocked; -1: none.
+  /// Adds one edge of at most `range`, shorter if blocked; returns the new node; -1: none.
   int extend(Tree& tree, int near, const CartesianNode& target) {
     const CartesianNode from = tree[static_cast<std::size_t>(near)].at;
     const double far = space_.distance(from, target);
@@ -155,7 +154,7 @@ double integral(const CartesianSpace& space, const std::vector<Vector>& samples)
   return sum;
 }
 
-/// The samples of the local paths; empty when they no longer meet their nodes.
+/// Returns the samples along the path segments; empty if they do not reach the nodes.
 std::vector<Vector> samples_of(CartesianSpace& space, const std::vector<CartesianNode>& nodes) {
   std::vector<Vector> out = {nodes.front().q};
   for (std::size_t i = 1; i < nodes.size(); ++i) {
@@ -191,8 +190,8 @@ bool verified(CollisionWorld& world, const std::vector<Vector>& samples) {
   return !samples.empty();
 }
 
-/// Samples of a path of the joints from the start to a posture bent as the goal asks: through a
-/// stretched shoulder, elbow or wrist no local path leads. Empty when none was found.
+/// Returns samples of a joint-space path from the start to a configuration on the branch of `like`,
+/// because no path segment passes a stretched shoulder, elbow or wrist; empty if none was found.
 std::vector<Vector> other_branch(const PlanningModels& models, const CartesianProblem& cartesian,
                                  const Vector& like, std::uint64_t budget, Random& random,
                                  const Hooks& hooks) {
@@ -202,18 +201,18 @@ std::vector<Vector> other_branch(const PlanningModels& models, const CartesianPr
   problem.start = cartesian.start;
   problem.seed = random.bits();
   problem.budget = std::max<std::uint64_t>(1, budget);
-  for (int k = 0; k < kBends; ++k) {
+  for (int k = 0; k < kBranchGoals; ++k) {
     Vector q = RobotModel::part(cartesian.start, arm);
-    const double away = kBendAway * k / kBends;
+    const double offset = kMaxBranchOffset * k / kBranchGoals;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const Axis& axis =
           models.robot.axes()[static_cast<std::size_t>(arm.axes[static_cast<std::size_t>(i)])];
-      const double wanted = like[arm.axes[static_cast<std::size_t>(i)]];
+      const double q_like = like[arm.axes[static_cast<std::size_t>(i)]];
       const bool middle = i == 1 || i == 3 || i == 5;
-      if (middle && q[i] * wanted < 0)
-        q[i] = std::copysign(std::max(kMinBend, std::abs(q[i])), wanted);
-      const double moved = q[i] + away * random.between(-1, 1);
-      q[i] = middle && moved * wanted < 0 ? q[i] : std::clamp(moved, axis.lower, axis.upper);
+      if (middle && q[i] * q_like < 0)
+        q[i] = std::copysign(std::max(kMinBend, std::abs(q[i])), q_like);
+      const double moved = q[i] + offset * random.between(-1, 1);
+      q[i] = middle && moved * q_like < 0 ? q[i] : std::clamp(moved, axis.lower, axis.upper);
     }
     problem.goals.push_back(q);
   }
@@ -232,7 +231,7 @@ std::vector<Vector> other_branch(const PlanningModels& models, const CartesianPr
   return samples;
 }
 
-/// Returns why the problem makes no sense, or an empty text.
+/// Returns why the problem is invalid, one sentence; empty: valid.
 std::string contradiction(const RobotModel& robot, const CartesianProblem& problem) {
   if (problem.start.size() != robot.dof() || !problem.start.allFinite())
     return "the start is not a configuration of all axes";
@@ -255,7 +254,7 @@ std::string contradiction(const RobotModel& robot, const CartesianProblem& probl
   return {};
 }
 
-/// Plans one problem: goals by branch, then one search after the other.
+/// Plans one problem: groups the goals by branch, then searches branch by branch.
 class CartesianPlanning {
  public:
   CartesianPlanning(CartesianSpace& space, const PlanningModels& models,
@@ -305,7 +304,7 @@ class CartesianPlanning {
     models_.cost.set_moving_axes(moving_);
   }
 
-  /// Fills goals_; returns why there is none, or an empty text.
+  /// Writes goals_; returns why there are none, one sentence; empty: goals exist.
   std::string find_goals() {
     const ArmKinematics& arm = space_.arm();
     Vector at_goal = problem_.start;
@@ -341,7 +340,7 @@ class CartesianPlanning {
     return {};
   }
 
-  /// Searches branch by branch, each with its part of the checks that are left.
+  /// Searches branch by branch, each with a part of the remaining checks.
   bool search_branches() {
     bool sound = false;
     for (std::size_t branch = 0; branch < goals_.size() && !sound && !space_.cancelled();
@@ -359,7 +358,7 @@ class CartesianPlanning {
     return sound;
   }
 
-  /// Changes to the branch of `ends` in joint space, then searches there.
+  /// Changes to the branch of `ends` in joint space, then searches on this branch.
   bool change_branch(const std::vector<CartesianNode>& ends, std::uint64_t checks) {
     const ArmKinematics& arm = space_.arm();
     const std::vector<Vector> bridge =
@@ -372,12 +371,12 @@ class CartesianPlanning {
     return true;
   }
 
-  /// Fills nodes and samples of the result with a path on one branch.
+  /// Writes nodes and samples of a path on one branch to the result.
   bool search(const CartesianNode& start, const std::vector<CartesianNode>& ends) {
     const double reach = std::max((start.T_root_tool.translation() - shoulder_).norm(),
                                   (problem_.T_root_goal.translation() - shoulder_).norm()) +
                          0.2;
-    for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
+    for (int attempt = 0; attempt < kMaxAttempts && !space_.exhausted(); ++attempt) {
       const std::vector<CartesianNode> found =
           Search(space_, problem_, random_, reach, shoulder_).run(start, ends);
       if (found.empty()) return false;
@@ -399,7 +398,7 @@ class CartesianPlanning {
   Vector3 shoulder_;
   Random random_;
   std::vector<int> moving_;
-  std::vector<std::vector<CartesianNode>> goals_{1};  // by branch, that of the start first
+  std::vector<std::vector<CartesianNode>> goals_{1};  // by branch, the branch of the start first
   CartesianResult result_;
 };
 

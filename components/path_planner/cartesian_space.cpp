@@ -6,9 +6,9 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kNearPi = 0.02;       // turns this near to pi have no local path [rad]
-constexpr double kMotionStep = 0.005;  // states between two samples are checked this close [rad]
-constexpr int kHalvings = 4;           // of a step before what the joints do is called a jump
+constexpr double kMinFromPi = 0.02;    // min distance from pi of the angle of a path segment [rad]
+constexpr double kMotionStep = 0.005;  // step of the checks between two samples [rad]
+constexpr int kMaxHalvings = 4;        // max halvings of a step before the joints count as jumping
 
 }  // namespace
 
@@ -20,11 +20,11 @@ CartesianNode ArmKinematics::node_of(const Vector& q) const {
 }
 
 int ArmKinematics::bends(const Vector& a, const Vector& b) const {
-  constexpr double kStretched = 1e-3;
+  constexpr double kMaxStretched = 1e-3;  // max angle of a stretched joint [rad]
   int other = 0;
   for (const std::size_t middle : {1, 3, 5}) {
     const double x = a[group_.axes[middle]], y = b[group_.axes[middle]];
-    other += x * y < 0 && std::min(std::abs(x), std::abs(y)) > kStretched;
+    other += x * y < 0 && std::min(std::abs(x), std::abs(y)) > kMaxStretched;
   }
   return other;
 }
@@ -41,7 +41,7 @@ std::vector<Vector> ArmKinematics::configurations(const Pose& T, double elbow,
 std::optional<LocalPath> LocalPath::between(const CartesianNode& a, const CartesianNode& b) {
   const Eigen::AngleAxisd turn(
       Eigen::Matrix3d(a.T_root_tool.linear().transpose() * b.T_root_tool.linear()));
-  if (turn.angle() > M_PI - kNearPi) return std::nullopt;
+  if (turn.angle() > M_PI - kMinFromPi) return std::nullopt;
   return LocalPath(a, b, turn);
 }
 
@@ -111,7 +111,7 @@ bool CartesianSpace::advance(const LocalPath& path, double from, double to, Cart
   const std::optional<ik::Axes> best = arm_.nearest(next.T_root_tool, next.elbow, now);
   if (!best) return false;
   if ((*best - now).lpNorm<Eigen::Infinity>() > settings_.largest_step) {
-    if (halved == kHalvings) return false;
+    if (halved == kMaxHalvings) return false;
     const double middle = 0.5 * (from + to);
     return advance(path, from, middle, at, samples, halved + 1) &&
            advance(path, middle, to, at, samples, halved + 1);

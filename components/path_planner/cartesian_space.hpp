@@ -1,5 +1,5 @@
-// The space of the active variables of one arm: tool pose, elbow angle and further axes, and the
-// local paths in it.
+// The space of the active variables of one arm: tool pose, elbow angle and further axes; and the
+// path segments in this space.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace handsel::path_planner {
 
-/// Returns an angle in [-pi, pi] [rad].
+/// Returns the angle wrapped to [-pi, pi] [rad].
 double wrapped(double angle);
 
-/// Kinematics of the arm alone: poses of the tool, elbow angles and branches.
+/// Kinematics of the arm: tool poses, elbow angles and branches.
 class ArmKinematics {
  public:
   /// All arguments must outlive this.
@@ -23,14 +23,14 @@ class ArmKinematics {
 
   /// Returns the group of the arm's axes.
   const Group& group() const { return group_; }
-  /// Returns the active variables that belong to a configuration of all axes.
+  /// Returns the active variables of a configuration of all axes.
   CartesianNode node_of(const Vector& q) const;
-  /// Returns how many of shoulder, elbow and wrist are bent the other way: no path in active
-  /// variables leads from one branch to another.
+  /// Returns the number of shoulder, elbow and wrist with opposite bend. No path in active
+  /// variables connects two branches.
   int bends(const Vector& a, const Vector& b) const;
-  /// Returns whether no joint is bent the other way.
+  /// Returns whether no joint has the opposite bend.
   bool same_branch(const Vector& a, const Vector& b) const { return bends(a, b) == 0; }
-  /// Returns the configurations at a pose with this elbow angle [rad], inside the limits; the other
+  /// Returns the configurations at a pose with this elbow angle [rad], within the limits; all other
   /// axes as in `all`.
   std::vector<Vector> configurations(const Pose& T, double elbow, const Vector& all) const;
   /// Returns the joints at a pose and elbow angle [rad] that are nearest to `now`, on its branch.
@@ -48,15 +48,15 @@ class ArmKinematics {
 /// elbow.
 class LocalPath {
  public:
-  /// Returns nothing for a turn by nearly pi, where the axis is not defined. The nodes must outlive
+  /// Returns nullopt for a rotation by nearly pi, whose axis is undefined. The nodes must outlive
   /// the path.
   static std::optional<LocalPath> between(const CartesianNode& a, const CartesianNode& b);
 
-  /// Returns the node where the path begins.
+  /// Returns the first node.
   const CartesianNode& begin() const { return a_; }
-  /// Returns the node where the path ends.
+  /// Returns the last node.
   const CartesianNode& end() const { return b_; }
-  /// Returns tool and elbow at a fraction of the path; the joints are not set.
+  /// Returns tool and elbow at a fraction of the path; does not set the joints.
   CartesianNode at(double fraction) const;
 
  private:
@@ -67,7 +67,7 @@ class LocalPath {
   double turn_, elbow_;
 };
 
-/// Which local paths are free, and how far apart nodes are.
+/// Checks path segments and computes distances of nodes.
 class CartesianSpace : public Budget {
  public:
   /// All arguments must outlive this.
@@ -86,9 +86,9 @@ class CartesianSpace : public Budget {
   std::vector<Vector> configurations(const Pose& T, double elbow, const Vector& all);
   /// Returns the distance in the measure of CartesianSettings [rad].
   double distance(const CartesianNode& a, const CartesianNode& b) const;
-  /// Follows the local path from a to b up to the fraction `far`, and returns how far it came; `at`
-  /// is where. The joints continue from a's on their branch; every step is free. Adds the
-  /// configurations to `samples` unless that is null.
+  /// Follows the path segment from a to b up to the fraction `far` as long as every step is free.
+  /// Returns the reached fraction and writes the reached node to `at`. The joints remain on the
+  /// branch of a. Adds the configurations to `samples` unless null.
   double follow(const CartesianNode& a, const CartesianNode& b, double far, CartesianNode& at,
                 std::vector<Vector>* samples = nullptr);
 

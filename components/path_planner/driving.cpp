@@ -8,8 +8,8 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr int kTries = 1500;    // places of the platform for each pose
-constexpr double kReach = 1.2;  // places are at most this far from the pose, in the plane [m]
+constexpr int kTries = 1500;                  // random platform poses per pose of the tip
+constexpr double kMaxPlatformDistance = 1.2;  // max horizontal distance of these from the pose [m]
 
 }  // namespace
 
@@ -43,11 +43,11 @@ void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Pr
 void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, const FurnitureRoom& room,
                              const std::vector<Vector>& ends) {
   Scene wider = scene;
-  Scene alone = scene;
-  alone.objects.clear();
+  Scene one_box = scene;
+  one_box.objects.clear();
   for (SceneBox& box : wider.boxes) {
-    alone.boxes = {box};
-    world.set_scene(alone);
+    one_box.boxes = {box};
+    world.set_scene(one_box);
     double clearance = room.room;
     for (const Vector& q : ends)
       clearance =
@@ -72,7 +72,8 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
     };
     std::vector<Place> places = {{here.x(), here.y(), q_start[platform[2]], -1}};
     for (int k = 0; k < kTries; ++k) {
-      const double bearing = random.between(-M_PI, M_PI), range = kReach * std::sqrt(random.unit());
+      const double bearing = random.between(-M_PI, M_PI),
+                   range = kMaxPlatformDistance * std::sqrt(random.unit());
       const Eigen::Vector2d at = poses[i].T_root_tip.translation().head<2>() +
                                  range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing));
       const double heading = nearest_heading(random.between(-M_PI, M_PI), q_start[platform[2]]);
@@ -81,8 +82,8 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
     }
     std::sort(places.begin(), places.end(),
               [](const Place& a, const Place& b) { return a.far < b.far; });
-    int postures = 0;
-    for (std::size_t k = 0; k < places.size() && postures < each; ++k) {
+    int configurations = 0;
+    for (std::size_t k = 0; k < places.size() && configurations < each; ++k) {
       Vector q = q_start;
       q[platform[0]] = places[k].x;
       q[platform[1]] = places[k].y;
@@ -93,7 +94,7 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
       if (!world.is_free(q)) continue;
       found.goals.push_back(RobotModel::part(q, whole));
       found.pose.push_back(i);
-      ++postures;
+      ++configurations;
     }
   }
   if (found.goals.empty())

@@ -1,4 +1,4 @@
-// Room about people's heads: where an arm may only creep, a path that leads by is no short one.
+// Clearance to people's heads: near heads the arm is slow, so that a path with clearance is faster.
 // Pure. Own method.
 #pragma once
 
@@ -8,10 +8,9 @@
 
 namespace handsel::path_planner {
 
-/// Makes spheres about the heads obstacles of the world, larger than the heads by `room` [m] or by
-/// the largest fraction of it at which `start` and one of `goals` (all axes) are free: what stands
-/// nearer must be able to leave, what is held near a head be reached. Returns the room that is
-/// kept [m]; at 0 there are no such obstacles. Everything else of the world is set before.
+/// Adds spheres about the heads to the world's obstacles, larger than the heads by `room` [m], or
+/// by the max fraction of it at which `start` and one of `goals` (all axes) are free. Returns the
+/// clearance [m]; 0: no obstacles were added. To be called after all other settings of the world.
 double keep_clear_of_heads(CollisionWorld& world, const HumanState& people, double room,
                            const Vector& start, const std::vector<Vector>& goals);
 

@@ -14,23 +14,24 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSameGoal = 1e-6;       // [rad]
-constexpr double kReplanNearEnds = 0.3;  // motions this near to an end are judged exactly also
-                                         // where the wide check does not clear them [rad]
-constexpr double kDropLoss = 0.01;       // share of the price that dropping nodes may cost
-constexpr double kDropGain = 0.3;        // or of what was gained
-constexpr double kMinReplanGain = 1e-6;  // smaller ones are none
-constexpr std::uint64_t kExact =
-    12;  // a state that the spheres do not clear takes as long as so many that they do
+constexpr double kSameGoal = 1e-6;  // max difference of equal goals [rad]
+// Max distance from an end at which motions are checked exactly if the batch check is unclear
+// [rad].
+constexpr double kReplanNearEnds = 0.3;
+constexpr double kMaxDropLoss = 0.01;    // max relative increase of the price by removed waypoints
+constexpr double kMaxDropGain = 0.3;     // or max fraction of the preceding reduction of the price
+constexpr double kMinReplanGain = 1e-6;  // min reduction of the price by a perturbation
+// Duration of an exact check of a state, divided by that of a batch check.
+constexpr std::uint64_t kExactCheckCost = 12;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// Each local path cut to at most `longest` (max norm).
-std::vector<Vector> cut(const std::vector<Vector>& path, double longest) {
+/// Returns the path with segments of at most `max_length` (max norm).
+std::vector<Vector> cut(const std::vector<Vector>& path, double max_length) {
   std::vector<Vector> pieces = {path.front()};
   for (std::size_t i = 1; i < path.size(); ++i) {
     const Vector step = path[i] - path[i - 1];
     const int count =
-        std::max(1, static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / longest)));
+        std::max(1, static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / max_length)));
     for (int k = 1; k <= count; ++k)
       pieces.push_back(k == count ? path[i]
                                   : Vector(path[i - 1] + step * (static_cast<double>(k) / count)));
@@ -38,13 +39,13 @@ std::vector<Vector> cut(const std::vector<Vector>& path, double longest) {
   return pieces;
 }
 
-class Live {
+class PathReplanner {
  public:
-  Live(SearchSpace& space, const Problem& problem, const Settings& settings,
-       const ReplanSettings& live)
+  PathReplanner(SearchSpace& space, const Problem& problem, const Settings& settings,
+                const ReplanSettings& live)
       : space_(space), problem_(problem), settings_(settings), live_(live), random_(problem.seed) {}
 
-  /// nullopt: nothing of the path can be saved.
+  /// Returns the replanned path; nullopt: no part of the path can be used.
   std::optional<ReplanResult> run(std::vector<Vector> rest) {
     ReplanResult out;
     std::size_t goal = goal_of(rest.back());
@@ -53,7 +54,7 @@ class Live {
       if (!lead_to_a_goal(rest, goal) && !search_anew(rest, goal)) return std::nullopt;
       other_goal = true;
     }
-    const std::vector<Vector> as_it_was = rest;
+    const std::vector<Vector> original = rest;
     std::size_t first = 0, last = 0;
     const bool was_blocked = !other_goal && blocked(rest, first, last);
     out.before = was_blocked || other_goal ? kInfinite : space_.costs().price(rest);
@@ -65,7 +66,7 @@ class Live {
     std::vector<Vector> path = rest;
     smooth(space_, path, random_);
     if (was_blocked || other_goal) {
-      prune(space_, path);  // at once; it gets cheaper next time
+      prune(space_, path);  // returned without delay; later calls reduce the price
     } else if (space_.costs().concerns_people()) {
       deform(path);
       drop_nodes(path, out.before);
@@ -83,7 +84,7 @@ class Live {
     } else if (out.after < out.before * (1 - live_.min_gain)) {
       out.outcome = ReplanOutcome::improved;
     } else {
-      path = as_it_was;
+      path = original;
       out.after = out.before;
     }
     out.result.path = std::move(path);
@@ -100,13 +101,13 @@ class Live {
     return problem_.goals.size();
   }
 
-  /// The cheapest way that leaves the path at one of its nodes for one of the goals, straight.
+  /// Leads the path from one of its waypoints straight to one of the goals, at min price.
   bool lead_to_a_goal(std::vector<Vector>& rest, std::size_t& goal) {
     const std::vector<Vector> nodes = cut(rest, 4 * live_.piece);
     std::size_t reachable = 1;
     while (reachable < nodes.size() && space_.motion_free(nodes[reachable - 1], nodes[reachable]))
       ++reachable;
-    double least = kInfinite;
+    double min_cost = kInfinite;
     std::vector<double> so_far(reachable, 0.0);
     for (std::size_t k = 1; k < reachable; ++k)
       so_far[k] = so_far[k - 1] + space_.costs().price(nodes[k - 1], nodes[k]);
@@ -116,19 +117,19 @@ class Live {
       if (!space_.outside_limits(q).empty() || !space_.free(q)) continue;
       for (std::size_t k = 0; k < reachable; ++k) {
         const double cost = so_far[k] + space_.costs().price(nodes[k], q);
-        if (cost >= least || !space_.motion_free(nodes[k], q)) continue;
-        least = cost;
+        if (cost >= min_cost || !space_.motion_free(nodes[k], q)) continue;
+        min_cost = cost;
         leave = k;
         goal = i;
       }
     }
-    if (least == kInfinite) return false;
+    if (min_cost == kInfinite) return false;
     rest.assign(nodes.begin(), nodes.begin() + static_cast<long>(leave) + 1);
     rest.push_back(problem_.goals[goal]);
     return true;
   }
 
-  /// RRT-Connect from where the path can be left: what is found soon is made cheaper while it runs.
+  /// Searches from the switch point by RRT-Connect; later calls reduce the price of the path.
   bool search_anew(std::vector<Vector>& rest, std::size_t& goal) {
     std::vector<Vector> goals;
     std::vector<std::size_t> index;
@@ -154,7 +155,7 @@ class Live {
     return true;
   }
 
-  /// First and last edge (index of its end) that are not free.
+  /// Writes first and last blocked segment (index of its end); returns whether any is blocked.
   bool blocked(const std::vector<Vector>& path, std::size_t& first, std::size_t& last) {
     bool any = false;
     for (std::size_t i = 1; i < path.size(); ++i) {
@@ -166,9 +167,8 @@ class Live {
     return any;
   }
 
-  /// Chapter section 4.1.1: a configuration of the path is moved toward a random one and the path
-  /// rejoined on either side; here among those that are blocked, farther out and rejoined farther
-  /// away the longer it takes.
+  /// Repairs the path (chapter section 4.1.1): moves a blocked configuration toward a random one
+  /// and reconnects the path on both sides, with distances that increase with the number of tries.
   bool repair(std::vector<Vector>& rest) {
     std::vector<Vector> path = cut(rest, live_.piece);
     std::size_t first = 0, last = 0;
@@ -178,32 +178,34 @@ class Live {
         return true;
       }
       std::vector<Vector> best;
-      double least = kInfinite;
+      double min_cost = kInfinite;
       int found = 0;
       for (int k = 0; k < live_.tries && found < 3 && !space_.exhausted(); ++k) {
-        const double share = static_cast<double>(k + 1) / live_.tries;
-        const std::size_t wide = 1 + static_cast<std::size_t>(random_.unit() * (2 + 12 * share));
-        const std::size_t from = first > wide ? first - wide : 0,
-                          to = std::min(path.size() - 1, last + wide - 1);
+        const double fraction = static_cast<double>(k + 1) / live_.tries;
+        const std::size_t span = 1 + static_cast<std::size_t>(random_.unit() * (2 + 12 * fraction));
+        const std::size_t from = first > span ? first - span : 0,
+                          to = std::min(path.size() - 1, last + span - 1);
         const std::size_t middle =
             first - 1 +
             static_cast<std::size_t>(random_.unit() * static_cast<double>(last - first + 2));
         const Vector center = path[std::min(middle, path.size() - 1)];
         const Vector toward = random_.within(space_.lower(), space_.upper()) - center;
-        const double far = random_.between(0.1, 0.3 + 1.5 * share);
+        const double far = random_.between(0.1, 0.3 + 1.5 * fraction);
         Vector q = center + toward * (far / std::max(far, toward.norm()));
         q = q.cwiseMax(space_.lower()).cwiseMin(space_.upper());
         if (!space_.free(q)) continue;
         const double cost =
             found > 0 ? space_.costs().price(path[from], q) + space_.costs().price(q, path[to])
                       : 0.0;
-        if (cost >= least || !space_.motion_free(path[from], q) || !space_.motion_free(q, path[to]))
+        if (cost >= min_cost || !space_.motion_free(path[from], q) ||
+            !space_.motion_free(q, path[to]))
           continue;
         best.assign(path.begin(), path.begin() + static_cast<long>(from) + 1);
         best.push_back(q);
         best.insert(best.end(), path.begin() + static_cast<long>(to), path.end());
-        least = found > 0 ? cost
-                          : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
+        min_cost = found > 0
+                       ? cost
+                       : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
         ++found;
       }
       if (best.empty()) return false;
@@ -214,8 +216,8 @@ class Live {
     return true;
   }
 
-  /// The path bent as a whole: nodes on either side of one go with it, the less the farther they
-  /// are, either way; cost, bounds, collision.
+  /// Deforms the path: moves one waypoint and its neighbours with linearly decreasing displacement,
+  /// in both directions; checks price, bounds, then collisions.
   void deform(std::vector<Vector>& path) {
     path = cut(path, 2 * live_.piece);
     const std::size_t n = path.size();
@@ -229,23 +231,23 @@ class Live {
         return 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(n - 2));
       };
       const std::size_t a = any(), b = any(), middle = costs[a] > costs[b] ? a : b;
-      const std::size_t wide =
+      const std::size_t span =
           1 + static_cast<std::size_t>(random_.unit() * 0.3 * static_cast<double>(n));
-      const std::size_t from = middle > wide ? middle - wide : 0,
-                        to = std::min(n - 1, middle + wide);
+      const std::size_t from = middle > span ? middle - span : 0,
+                        to = std::min(n - 1, middle + span);
       Vector shift =
           random_.within(Vector::Constant(space_.size(), -1), Vector::Constant(space_.size(), 1));
-      shift *= random_.between(0.2, 1.0) * live_.piece * static_cast<double>(wide) /
+      shift *= random_.between(0.2, 1.0) * live_.piece * static_cast<double>(span) /
                std::max(0.1, shift.norm());
       double before = 0;
       for (std::size_t i = from + 1; i <= to; ++i) before += prices[i];
       for (const double sign : {1.0, -1.0}) {
         bool good = true;
         for (std::size_t i = from + 1; i < to && good; ++i) {
-          const double share =
+          const double fraction =
               i <= middle ? static_cast<double>(i - from) / static_cast<double>(middle - from)
                           : static_cast<double>(to - i) / static_cast<double>(to - middle);
-          bent[i] = path[i] + sign * share * shift;
+          bent[i] = path[i] + sign * fraction * shift;
           good = space_.inside(bent[i]);
         }
         bent[from] = path[from];
@@ -266,10 +268,10 @@ class Live {
     }
   }
 
-  /// Nodes that hardly matter: each is a corner the trajectory would have to take.
+  /// Removes waypoints with little effect on the price, because each one requires a blend.
   void drop_nodes(std::vector<Vector>& path, double before) {
     const double now = space_.costs().price(path);
-    double allowed = std::max(kDropLoss * now, kDropGain * (before - now));
+    double allowed = std::max(kMaxDropLoss * now, kMaxDropGain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
       const double loss = space_.costs().price(path[i - 1], path[i + 1]) -
                           space_.costs().price(path[i - 1], path[i]) -
@@ -327,10 +329,10 @@ ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
                            const ReplanSettings& live, const Hooks& hooks) {
   ReplanResult out;
   const auto& [robot, world, cost] = models;
-  Settings quick = settings;
-  quick.smoothing_rounds = live.rounds / 3;
+  Settings fast_settings = settings;
+  fast_settings.smoothing_rounds = live.rounds / 3;
   std::uint64_t spent = 0;
-  const bool sound =
+  const bool is_valid =
       problem.start.size() == robot.dof() && problem.start.allFinite() && !problem.axes.empty() &&
       !problem.straight &&
       std::all_of(problem.axes.begin(), problem.axes.end(),
@@ -338,14 +340,14 @@ ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
       std::all_of(problem.goals.begin(), problem.goals.end(), [&](const Vector& g) {
         return g.size() == static_cast<Eigen::Index>(problem.axes.size()) && g.allFinite();
       });
-  if (sound && problem.budget > 0) {
+  if (is_valid && problem.budget > 0) {
     world.set_moving_axes(problem.axes);
     cost.set_moving_axes(problem.axes);
-    SearchSpace space(robot, world, cost, problem, quick, hooks);
-    space.charge_exact(kExact);
+    SearchSpace space(robot, world, cost, problem, fast_settings, hooks);
+    space.charge_exact(kExactCheckCost);
     const std::vector<Vector> rest = remainder(running, space.start(), live.reach);
     if (!rest.empty() && space.free(space.start())) {
-      if (auto found = Live(space, problem, quick, live).run(rest)) {
+      if (auto found = PathReplanner(space, problem, fast_settings, live).run(rest)) {
         found->result.checks = space.checks();
         return *found;
       }
@@ -354,15 +356,15 @@ ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
   }
   out.outcome = ReplanOutcome::blocked;
   out.before = kInfinite;
-  if (sound && problem.budget > 0 && spent >= problem.budget) {
+  if (is_valid && problem.budget > 0 && spent >= problem.budget) {
     out.result.checks = spent;
     out.result.reason =
         "no path onward was found within " + std::to_string(problem.budget) + " checks";
     return out;
   }
-  Problem anew = problem;
-  anew.budget -= std::min(anew.budget, spent);
-  out.result = plan(robot, world, cost, anew, quick, hooks);
+  Problem new_problem = problem;
+  new_problem.budget -= std::min(new_problem.budget, spent);
+  out.result = plan(robot, world, cost, new_problem, fast_settings, hooks);
   out.result.checks += spent;
   if (out.result.solved) out.outcome = ReplanOutcome::replanned;
   return out;

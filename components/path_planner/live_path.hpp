@@ -1,6 +1,6 @@
-// The path that runs (chapter section 4.1.1, path perturbation on a running path): made cheaper for
-// the costs as they are now, repaired where something came into it, planned anew where that fails.
-// Pure.
+// Online replanning (chapter section 4.1.1, path perturbation on a running path): reduces the
+// present cost of the running path, repairs blocked parts, and plans a new path if the repair
+// fails. Pure.
 #pragma once
 
 #include <vector>
@@ -10,38 +10,38 @@
 namespace handsel::path_planner {
 
 enum class ReplanOutcome {
-  kept,       ///< free, and nothing cheaper was found
+  kept,       ///< free, and no cheaper path was found
   improved,   ///< free, and cheaper than before
-  repaired,   ///< was blocked; led around what blocks it
-  replanned,  ///< another goal, or nothing of it could be saved
+  repaired,   ///< was blocked, leads around the obstacle now
+  replanned,  ///< new goal, or no part of the path could be used
   blocked,    ///< no path was found: the arm must stop
 };
 /// Returns a word for reports: "kept", "improved", "repaired", "replanned" or "blocked".
 const char* name(ReplanOutcome);
 
 struct ReplanSettings {
-  /// A start farther from the path than this is not on it (corners are cut, max norm) [rad].
+  /// Max distance of the start from the path, which blends do not follow exactly (max norm) [rad].
   double reach{0.5};
-  /// l_max: the path is cut into pieces of at most this before it is repaired [rad].
+  /// l_max: max length of the segments into which the path is divided before the repair [rad].
   double piece{0.15};
-  double min_gain{0.02};  ///< a path cheaper by less than this fraction is not worth switching to
-  double verify_step{0.002};  ///< states on what is returned are checked this close [rad]
-  int rounds{60};             ///< shortcuts and perturbations tried each time
-  int tries{60};              ///< perturbations tried to repair
+  double min_gain{0.02};      ///< min relative reduction of the price for a switch
+  double verify_step{0.002};  ///< step of the check of the returned path [rad]
+  int rounds{60};             ///< max number of shortcuts and perturbations
+  int tries{60};              ///< max number of perturbations for the repair
 };
 
 struct ReplanResult {
   ReplanOutcome outcome{ReplanOutcome::kept};  ///< what was done with the running path
-  /// front() of the path = start of the problem; unsolved when blocked, with the reason.
+  /// Path with front() = start of the problem; unsolved if blocked, with the reason.
   Result result;
-  double before{};  ///< price of the remainder as it was, for the costs now (infinite: blocked)
-  double after{};   ///< price of the path returned
+  double before{};  ///< price of the remaining path at present costs (infinite: blocked)
+  double after{};   ///< price of the returned path
 };
 
-/// `running`: the path the arm runs along. `problem.start`: where it can be left at the earliest
-/// (on it, t_now + t_replan ahead: what comes before stays as it is). `problem.goals`: as they are
-/// wanted now. Deterministic for the problem's seed. When the start is not on the path, or nothing
-/// of it can be saved, the problem is planned anew with what is left of the budget.
+/// Replans the running path. `running`: the path that the arm runs along. `problem.start`: first
+/// switch point, on the path t_now + t_replan ahead; the path before it does not change.
+/// `problem.goals`: present goals. Deterministic for the problem's seed. If the start is not on the
+/// path, or no part of the path can be used, plans a new path with the remaining budget.
 ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
                            const std::vector<Vector>& running, const Settings& settings,
                            const ReplanSettings& live, const Hooks& hooks = {});

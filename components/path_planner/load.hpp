@@ -1,4 +1,4 @@
-// What the path planner reads when it starts.
+// Reads the settings and models of the path planner at its start.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ namespace handsel::path_planner {
 
 /// Returns the settings of the planners from those of the file.
 SolverSettings solver_settings(const settings::PathPlannerSettings& file);
-/// Returns the robot on the platform of its description; nullopt: the description names none, or is
-/// empty.
+/// Returns the robot on the platform of its description; nullopt: no platform, or empty
+/// description.
 std::optional<RobotModel> mobile_of(const RobotModel& robot,
                                     const std::filesystem::path& description);
 

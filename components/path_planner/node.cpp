@@ -12,7 +12,7 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr const char* kCancelled = "cancelled on request";
-constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
+constexpr Duration kLayerWatch = std::chrono::milliseconds(200);  // period of layer checks
 
 }  // namespace
 
@@ -79,7 +79,7 @@ void Node::on_request(const PathRequest& request) {
   start(whole);
 }
 
-/// What is asked for is answered at once; the work for it ends with its next check.
+/// Answers a cancelled request at once; its planning ends with the next check.
 void Node::cancel(const RequestId& id) {
   stop_running(id.client, id.number);
   for (const RequestId& open : requests_.cancel(id)) refuse(open, kCancelled);
@@ -129,7 +129,7 @@ void Node::answer(const PlanningTask& task) {
   reply_out_->publish(reply);
 }
 
-/// Ends the work for the requests of a client up to this number with its next check.
+/// Cancels planning for the requests of a client up to this number; it ends with the next check.
 void Node::stop_running(std::uint64_t client, std::uint64_t last) {
   const auto of_client = running_.find(client);
   if (of_client == running_.end()) return;
@@ -142,7 +142,7 @@ void Node::refuse(const RequestId& id, const std::string& reason) {
   reply_out_->publish(*requests_.answer(id));
 }
 
-/// The answer is not remembered: the same request may be made again.
+/// Refuses a request without storing the answer, so that the same request can be repeated.
 void Node::refuse_once(const RequestId& id, const std::string& reason) {
   reply_out_->publish(refusal(id, reason));
 }

@@ -1,4 +1,4 @@
-// The path planner on a Bus.
+// Binds the path planner to a bus.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ class Node {
  public:
   Node(Bus& bus, const NodeContext& context);
 
-  /// Returns how many requests to continue along a running path ended in each ReplanOutcome.
+  /// Returns the number of requests for online replanning by ReplanOutcome.
   const std::array<std::uint64_t, 5>& replan_outcomes() const { return replan_outcomes_; }
 
  private:
@@ -53,9 +53,9 @@ class Node {
   CostLayers layers_;
   AdvisedValue<double> cost_gain_;
   RequestQueue<PathReply> requests_{OlderRequests::supersede};
-  std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>>
-      running_;    ///< By client and number.
-  Solver solver_;  ///< Solves in jobs only, which run one after the other.
+  /// By client and number.
+  std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>> running_;
+  Solver solver_;  ///< Used only in jobs, which run one after the other.
 };
 
 }  // namespace handsel::path_planner

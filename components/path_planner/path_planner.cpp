@@ -11,13 +11,14 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr std::uint64_t kFirstShare = 40000;
-constexpr int kAttempts = 4;    // the first by the wide check alone; the fine check may refuse what
-                                // the coarse one let pass: then finely
-constexpr double kFiner = 0.1;  // of the step, from the third attempt on
-constexpr double kWideShare = 0.3;  // of the budget for the first
-constexpr double kNearEnds =
-    0.3;  // motions this close to start or goals are judged exactly by the first, too [rad]
+constexpr std::uint64_t kFirstTreeChecks = 40000;  // checks before the first restart of a search
+// Max number of attempts: the first with the batch check only, the third and fourth with a fine
+// step, because the fine check may refuse a path that the coarse check accepted.
+constexpr int kMaxAttempts = 4;
+constexpr double kFineStepRatio = 0.1;        // fine step divided by the step of the settings
+constexpr double kBatchBudgetFraction = 0.3;  // fraction of the budget for the first attempt
+// Max distance from start or goals at which the first attempt checks motions exactly [rad].
+constexpr double kNearEnds = 0.3;
 
 std::string contact(const CollisionVerdict& verdict) {
   return verdict.first + " touches " + verdict.second;
@@ -42,7 +43,7 @@ std::string format(const char* pattern, double a, double b) {
   return text;
 }
 
-/// Why the problem makes no sense, or empty.
+/// Returns why the problem is invalid, one sentence; empty: valid.
 std::string contradiction(const RobotModel& robot, const Problem& problem) {
   if (problem.start.size() != robot.dof())
     return format("the start has %.0f axes, the robot has %.0f",
@@ -87,17 +88,18 @@ class Planning {
   Result run() {
     if (!ends_free()) return result_;
     if (problem_.straight) return straight_line();
-    for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
-      const bool widely = attempt == 0;
-      space_.set_step(attempt < 2 ? settings_.step : kFiner * settings_.step);
-      most_ = widely ? static_cast<std::uint64_t>(kWideShare * static_cast<double>(problem_.budget))
-                     : problem_.budget;
-      space_.limit(most_);
-      if (widely) space_.check_in_batches(goals_, kNearEnds);
+    for (int attempt = 0; attempt < kMaxAttempts && !space_.exhausted(); ++attempt) {
+      const bool in_batches = attempt == 0;
+      space_.set_step(attempt < 2 ? settings_.step : kFineStepRatio * settings_.step);
+      max_checks_ = in_batches ? static_cast<std::uint64_t>(kBatchBudgetFraction *
+                                                            static_cast<double>(problem_.budget))
+                               : problem_.budget;
+      space_.limit(max_checks_);
+      if (in_batches) space_.check_in_batches(goals_, kNearEnds);
       const bool found = find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919);
       space_.check_exactly();
       space_.limit(problem_.budget);
-      if (!found && widely && !space_.cancelled()) continue;
+      if (!found && in_batches && !space_.cancelled()) continue;
       if (!found) return result_;
       if (verified() || smoothed_finely() || unsmoothed()) {
         finish(space_, result_);
@@ -172,22 +174,22 @@ class Planning {
     return result_;
   }
 
-  /// An unlucky tree is given up for a new one, each time after twice as many checks: search times
-  /// have long tails.
+  /// Searches with restarts, each after twice as many checks, because search times have a
+  /// heavy-tailed distribution.
   Found search_restarting(PlannerKind kind, bool heed_cost, std::uint64_t seed) {
     const std::uint64_t limit = space_.limit();
     Found best;
     best.closest = std::numeric_limits<double>::infinity();
-    for (std::uint64_t share = kFirstShare;; share *= 2) {
+    for (std::uint64_t tree_checks = kFirstTreeChecks;; tree_checks *= 2) {
       const std::uint64_t before = space_.checks();
-      space_.limit(std::min(limit, before + share));
+      space_.limit(std::min(limit, before + tree_checks));
       Found found = search(space_, goals_, kind, heed_cost, seed);
       seed += 104729;
       space_.limit(limit);
       if (!found.path.empty()) return found;
       if (found.closest < best.closest) best = found;
       if (space_.exhausted() || space_.checks() == before)
-        return best;  // a start that is refused at once costs nothing, ever
+        return best;  // a refused start uses no checks
     }
   }
 
@@ -210,12 +212,13 @@ class Planning {
       const PlannerKind kind = problem_.planner;
       bool heeds_cost = people;
       if (!asked && people)
-        space_.limit(space_.checks() +
-                     static_cast<std::uint64_t>(
-                         settings_.search_fraction *
-                         static_cast<double>(most_ - std::min(most_, space_.checks()))));
+        space_.limit(
+            space_.checks() +
+            static_cast<std::uint64_t>(
+                settings_.search_fraction *
+                static_cast<double>(max_checks_ - std::min(max_checks_, space_.checks()))));
       found = search_restarting(kind, heeds_cost, seed);
-      space_.limit(most_);
+      space_.limit(max_checks_);
       if (found.path.empty() && !asked && people && !space_.exhausted() && direct.empty()) {
         heeds_cost = false;
         found = search_restarting(kind, heeds_cost, seed + 1);
@@ -254,12 +257,12 @@ class Planning {
     return true;
   }
 
-  /// What smoothing shifted by less than a step may scrape a corner: smoothed anew, with smaller
-  /// steps.
+  /// Repeats the smoothing with a finer step, because a path shifted by less than a step may touch
+  /// an obstacle.
   bool smoothed_finely() {
     if (space_.cancelled()) return false;
     space_.enter(Stage::smooth);
-    space_.set_step(kFiner * settings_.step);
+    space_.set_step(kFineStepRatio * settings_.step);
     result_.path = raw_;
     Random random(problem_.seed);
     smooth(space_, result_.path, random);
@@ -267,7 +270,7 @@ class Planning {
     return verified();
   }
 
-  /// The path as it was found.
+  /// Returns whether the path before smoothing passes the fine check.
   bool unsmoothed() {
     result_.path = raw_;
     return verified();
@@ -308,7 +311,7 @@ class Planning {
   std::vector<Vector> goals_;
   std::vector<std::size_t> goal_index_;
   std::vector<Vector> raw_;
-  std::uint64_t most_{};  // checks until this attempt ends
+  std::uint64_t max_checks_{};  // max checks of this attempt
   Result result_;
 };
 

@@ -8,7 +8,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSame = 0.05;  // postures nearer to each other are one [rad]
+constexpr double kSame = 0.05;  // max difference of equal configurations [rad]
 
 }  // namespace
 

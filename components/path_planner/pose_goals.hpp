@@ -1,5 +1,4 @@
-// Goals given as places of the tool: one pose, the poses of a set of grasps, or regions around
-// poses. Pure.
+// Goals as tool poses: one pose, the poses of a set of grasps, or regions around poses. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +9,22 @@
 
 namespace handsel::path_planner {
 
-/// The group's tip is to be there, or in the region around it.
+/// Goal pose of the group's tip, with a region around it.
 struct PoseGoal {
   Pose T_root_tip{Pose::Identity()};  ///< pose of the tip, frame of the root link
   Vector3 slack{Vector3::Zero()};     ///< half extents of a box along the pose's axes [m]
-  double turn{};                      ///< about the pose's z axis in either direction [rad]
+  double turn{};                      ///< max rotation about the pose's z axis [rad]
 };
 
 struct PoseGoals {
-  /// Configurations of the group, by pose; inside the limits, collisions are not checked.
+  /// Configurations of the group, by pose; within the limits, not checked for collisions.
   std::vector<Vector> goals;
-  std::vector<std::size_t> pose;  ///< which pose each of them is for
-  std::string reason;             ///< when there is none
+  std::vector<std::size_t> pose;  ///< index of the pose of each goal
+  std::string reason;             ///< why there is no goal, one sentence
 };
 
-/// Up to `each` configurations a pose: the one nearest `q_start` first, then from random seeds and
-/// places of the region.
+/// Returns up to `each` configurations per pose: the nearest to `q_start` first, then from random
+/// seeds and poses of the region.
 PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses,
                 const Vector& q_start, std::uint64_t seed, int each = 8);
 

@@ -1,4 +1,4 @@
-// From what is asked on the bus to a problem. Pure.
+// Converts requests on the bus to problems, and results to replies. Pure.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace handsel::path_planner {
 
-/// Returns why no planner could serve this request, one sentence; empty: the request makes sense.
-/// What needs the scene is not checked.
+/// Returns why the request is invalid, one sentence; empty: valid. Does not check what depends on
+/// the scene.
 std::string contradiction(const RobotModel& robot, const PathRequest& request);
 
-/// Returns the places of the tip in the frame of the robot's root link.
+/// Returns the goal poses of the tip in the frame of the robot's root link.
 std::vector<PoseGoal> pose_goals(const PathRequest& request, const Pose& T_world_root);
 
-/// Returns the problem without goals and budget. The request is without contradiction.
+/// Returns the problem without goals and budget, for a valid request.
 Problem problem_of(const RobotModel& robot, const PathRequest& request, const Pose& T_world_root);
 
-/// Returns the reply to a request that was planned for; its outcome is not set.
+/// Returns the reply to a planned request; does not set the outcome.
 PathReply reply_of(const RequestId& id, const Result& result);
-/// Returns the reply to a request that is not planned for.
+/// Returns the reply to a refused request.
 PathReply refusal(const RequestId& id, const std::string& reason);
 
 }  // namespace handsel::path_planner

@@ -11,7 +11,7 @@
 namespace handsel::path_planner {
 namespace {
 
-/// Start and first goal, all axes; the start alone where goals are not configurations.
+/// Returns start and first goal, all axes; only the start if goals are not configurations.
 std::vector<Vector> first_ends_of(const Problem& problem) {
   std::vector<Vector> ends = {problem.start};
   if (problem.goals.empty()) return ends;
@@ -21,8 +21,8 @@ std::vector<Vector> first_ends_of(const Problem& problem) {
   return ends;
 }
 
-/// Start and goal of a request to continue, all axes: the goal that is led to if it is wanted
-/// still, else the first one.
+/// Returns start and goal of a request for online replanning, all axes: the present goal if it is
+/// still among the goals, else the first one.
 std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far) {
   Vector goal = problem.start;
   goal(problem.axes) = std::count(problem.goals.begin(), problem.goals.end(), goal_so_far) > 0
@@ -31,8 +31,7 @@ std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far) {
   return {problem.start, goal};
 }
 
-/// Covers the links with spheres, which takes up to half a second and is remembered in the process,
-/// so that no request waits for that.
+/// Covers the links with spheres in advance, which takes up to 0.5 s and is cached in the process.
 void cover_links(CollisionWorld& world, const RobotModel& robot) {
   std::vector<int> all(static_cast<std::size_t>(robot.dof()));
   std::iota(all.begin(), all.end(), 0);
@@ -82,8 +81,8 @@ bool Solver::drives_platform(const PathRequest& request) const {
 
 std::string Solver::complete(PathRequest& request, const Pose& T_world_base) const {
   if (!drives_platform(request)) return contradiction(*robot_, request);
-  constexpr double kLevel = 0.02;  // [rad]
-  if (!(T_world_base.linear()(2, 2) > std::cos(kLevel)))
+  constexpr double kMaxTilt = 0.02;  // max tilt of a level platform [rad]
+  if (!(T_world_base.linear()(2, 2) > std::cos(kMaxTilt)))
     return "the platform does not stand level: it cannot be planned for";
   if (!drives(*robot_) && request.start.size() == robot_->dof())
     request.start = with_platform(request.start, T_world_base);
@@ -121,9 +120,9 @@ void Solver::set_world(const Selected& selected, PlanningTask& task) {
     world.set_moving_axes(task.problem.axes);
     const std::vector<Vector> ends = ends_of(task.problem, task.request.running.back());
     if (selected.navigation != nullptr) {
-      FurnitureRoom kept = settings_.furniture;
-      kept.room *= settings_.driven_room_fraction;
-      keep_clear_of_furniture(world, scene, kept, ends);
+      FurnitureRoom clearance = settings_.furniture;
+      clearance.room *= settings_.driven_room_fraction;
+      keep_clear_of_furniture(world, scene, clearance, ends);
     } else {
       set_scene_with_margins(world, scene, settings_.replan_margins, ends);
     }
@@ -168,8 +167,8 @@ void Solver::solve_once(const Selected& selected, PlanningTask& task, const Hook
   task.result = std::move(live.result);
 }
 
-/// Keeps clearance to heads for what is planned between configurations; returns 0 for the rest: a
-/// straight line leads where it leads.
+/// Adds clearance to heads for planning between configurations and returns it [m]; returns 0 for
+/// all other requests, such as straight lines.
 double Solver::keep_head_clearance(const Selected& selected, const PlanningTask& task) const {
   CollisionWorld& world = selected.models.world;
   const Problem& problem = task.problem;
@@ -185,8 +184,8 @@ double Solver::keep_head_clearance(const Selected& selected, const PlanningTask&
   return keep_clear_of_heads(world, *task.people, settings_.head_room, problem.start, goals);
 }
 
-/// Keeps what clearance start and goal allow: of an arm to heads, of a platform that sets out to
-/// furniture. Returns whether that is any.
+/// Adds the clearance that start and goal allow: of an arm to heads, of a platform to furniture.
+/// Returns whether there is any.
 bool Solver::keep_clearance(const Selected& selected, const PlanningTask& task) const {
   if (selected.navigation == nullptr) return keep_head_clearance(selected, task) > 0;
   if (!task.request.running.empty() || settings_.furniture.room == 0) return false;

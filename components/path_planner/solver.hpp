@@ -1,5 +1,5 @@
-// Plans for the requests of the node: picks the models, sets up the world, and chooses between a
-// path that is continued, one in Cartesian space and one between configurations. Pure.
+// Plans the requests of the node: selects models, sets up the world, and selects between online
+// replanning, planning in Cartesian space and planning between configurations. Pure.
 #pragma once
 
 #include <memory>
@@ -17,43 +17,43 @@
 namespace handsel::path_planner {
 
 struct SolverSettings {
-  Settings search;                   ///< Of every search.
-  ReplanSettings live;               ///< Of requests to continue along a running path.
-  Margins replan_margins;            ///< Clearance that a running path keeps to obstacles [m].
-  double roam{};                     ///< How far the platform may drive around start and goals [m].
-  FurnitureRoom furniture;           ///< Level clearance of paths of the platform from furniture.
-  double driven_room_fraction{0.5};  ///< Fraction of that which a platform keeps on its path.
-  double head_room{};  ///< Clearance to heads that paths between configurations keep [m].
+  Settings search;          ///< Settings of every search.
+  ReplanSettings live;      ///< Settings of online replanning.
+  Margins replan_margins;   ///< Clearance of a running path to obstacles [m].
+  double roam{};            ///< Max distance of the platform's path around start and goals [m].
+  FurnitureRoom furniture;  ///< Horizontal clearance of the platform from furniture.
+  double driven_room_fraction{0.5};  ///< Fraction of this clearance in online replanning.
+  double head_room{};                ///< Clearance of paths between configurations to heads [m].
 };
 
-/// One request with what was known when it came.
+/// One request with the state of the world at its arrival.
 struct PlanningTask {
-  PathRequest request;                       ///< Complete, without contradiction.
-  Problem problem;                           ///< As problem_of() gives it, with its budget.
-  Pose T_world_root{Pose::Identity()};       ///< Root of the robot that is planned for.
+  PathRequest request;                       ///< Complete and valid.
+  Problem problem;                           ///< Result of problem_of(), with a budget.
+  Pose T_world_root{Pose::Identity()};       ///< Root of the planned robot in the world.
   std::shared_ptr<const Scene> scene;        ///< Never null.
   std::shared_ptr<const HumanState> people;  ///< Never null.
   LayersNow layers;                          ///< Cost layers.
-  double cost_gain{1.0};                     ///< Factor of what people cost, of attention.
-  ReplanOutcome outcome{};                   ///< Result: of a request to continue.
-  Result result;                             ///< Result.
+  double cost_gain{1.0};                     ///< Factor of the human-aware cost, by attention.
+  ReplanOutcome outcome{};                   ///< Result of online replanning.
+  Result result;                             ///< Result of planning.
 };
 
-/// The robot where it stands, and on its platform where a description has one.
+/// Plans for the robot on a fixed base, and on its platform if the description has one.
 class Solver {
  public:
-  /// `mobile`: the robot on its platform, or nothing.
+  /// `mobile`: the robot on its platform; nullopt: no platform.
   Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile,
          const ObjectLibrary& objects, const CostSettings& weights, const SolverSettings& settings);
 
-  /// Returns whether the request is for the robot on its platform.
+  /// Returns whether the request plans axes of the platform.
   bool drives_platform(const PathRequest& request) const;
-  /// Sets the start of a request that drives where it has none, and returns why the request makes
-  /// no sense, or an empty text. Safe beside solve().
+  /// Adds the platform's pose to the start of a request that lacks it. Returns why the request is
+  /// invalid, one sentence; empty: valid. May run in parallel to solve().
   std::string complete(PathRequest& request, const Pose& T_world_base) const;
-  /// Returns a task without budget; `scene` must not be null. Safe beside solve().
+  /// Returns a task without budget; `scene` must not be null. May run in parallel to solve().
   PlanningTask make_task(const PathRequest& request, std::shared_ptr<const Scene> scene) const;
-  /// Fills the results of the task. One call at a time.
+  /// Writes the results of the task. One call at a time.
   void solve(PlanningTask& task, const Hooks& hooks);
 
  private:
@@ -65,10 +65,10 @@ class Solver {
     HumanCost cost;
     NavigationCost navigation;
   };
-  /// What plans for a request: the robot where it stands, or on its platform.
+  /// Models for a request: the robot on a fixed base, or on its platform.
   struct Selected {
     PlanningModels models;
-    NavigationCost* navigation{};  ///< Null: it stands.
+    NavigationCost* navigation{};  ///< Null: fixed base.
   };
   void prepare_mobile();
   Selected select(const PathRequest& request);
@@ -87,8 +87,8 @@ class Solver {
   SolverSettings settings_;
   CollisionWorld world_;
   HumanCost cost_;
-  std::unique_ptr<Mobile>
-      mobile_;  ///< From the beginning if the robot drives, else from its first request.
+  /// Exists from the start for a mobile robot, else from the first request for the platform.
+  std::unique_ptr<Mobile> mobile_;
 };
 
 }  // namespace handsel::path_planner

@@ -1,5 +1,5 @@
-// How many of the checks that a problem allows are left, and whether anybody still wants the
-// answer.
+// Counts the checks of a problem against its budget, and evaluates the conditions that cancel
+// planning.
 #pragma once
 
 #include <cstdint>
@@ -20,28 +20,28 @@ class Budget {
         exact_before_(world.exact_checks()),
         limit_(limit) {}
 
-  /// Returns the states checked so far, and what was charged.
+  /// Returns the number of checked states so far, plus the charges.
   std::uint64_t checks() const {
     return check_.checks() - before_ + exact_more_ * (check_.exact_checks() - exact_before_) +
            charged_;
   }
-  /// From now on a state that only the exact check could decide counts as so many more: where the
-  /// time it takes is what matters.
+  /// Adds `more` checks for each further state that needs the exact check, in proportion to its
+  /// duration.
   void charge_exact(std::uint64_t more) {
     exact_more_ = more;
     exact_before_ = check_.exact_checks();
   }
-  /// Adds work that counts like that many checks.
+  /// Adds work equivalent to this number of checks.
   void charge(std::uint64_t checks) { charged_ += checks; }
-  /// Returns the number of checks at which the budget is used up.
+  /// Returns the number of checks at which the budget is exhausted.
   std::uint64_t limit() const { return limit_; }
-  /// Sets the limit, counted from the beginning.
+  /// Sets the limit, counted from construction.
   void limit(std::uint64_t checks) { limit_ = checks; }
-  /// Returns whether the cancel hook or the condition of stop_when() ends the plan.
+  /// Returns whether the cancel hook or the condition of stop_when() ends planning.
   bool cancelled() const { return (hooks_.cancelled && hooks_.cancelled()) || (stop_ && stop_()); }
-  /// Sets a further condition that ends the plan; empty: none.
+  /// Sets a further condition that ends planning; empty: none.
   void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
-  /// Returns whether the checks are used up or the plan is cancelled.
+  /// Returns whether the budget is exhausted or planning is cancelled.
   bool exhausted() const { return checks() >= limit_ || cancelled(); }
   /// Returns the hooks that were given; must outlive the budget.
   const Hooks& hooks() const { return hooks_; }

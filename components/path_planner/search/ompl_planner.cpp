@@ -94,8 +94,8 @@ class Motions : public ob::MotionValidator {
   SearchSpace& space_;
 };
 
-/// Mechanical work of the human-aware cost: what T-RRT's transition test needs (integral costs make
-/// every motion uphill).
+/// Mechanical work of the human-aware cost, as needed by T-RRT's transition test; with an integral
+/// cost every motion would be uphill.
 class Work : public ob::MechanicalWorkOptimizationObjective {
  public:
   Work(const ob::SpaceInformationPtr& si, const SearchSpace& space)
@@ -112,7 +112,7 @@ class Work : public ob::MechanicalWorkOptimizationObjective {
   const SearchSpace& space_;
 };
 
-/// A stock planner whose own random numbers start from our seed.
+/// An OMPL planner whose random numbers start from the given seed.
 template <class Planner>
 class Seeded : public Planner {
  public:
@@ -151,22 +151,23 @@ ob::PlannerPtr stock_planner(const ob::SpaceInformationPtr& si, PlannerKind kind
   }
 }
 
-/// Least distance between the part of the tree grown from the start and the goals or the part grown
-/// from them.
+/// Returns the min distance between the tree from the start and the goals or the tree from the
+/// goals.
 double closest_approach(const ob::PlannerData& data, const std::vector<Vector>& goals, int size) {
-  constexpr std::size_t kMost = 1500;
+  constexpr std::size_t kMaxStates = 1500;  // max number of compared states
   std::vector<Vector> from_start, from_goal = goals;
   for (unsigned i = 0; i < data.numVertices(); ++i) {
     const ob::PlannerDataVertex& vertex = data.getVertex(i);
     if (vertex.getState() == nullptr) continue;
     (vertex.getTag() == 2 ? from_goal : from_start).push_back(to_vector(vertex.getState(), size));
   }
-  if (from_start.size() > kMost) from_start.erase(from_start.begin(), from_start.end() - kMost);
-  if (from_goal.size() > kMost) from_goal.resize(kMost);
-  double least = std::numeric_limits<double>::infinity();
+  if (from_start.size() > kMaxStates)
+    from_start.erase(from_start.begin(), from_start.end() - kMaxStates);
+  if (from_goal.size() > kMaxStates) from_goal.resize(kMaxStates);
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const Vector& a : from_start)
-    for (const Vector& b : from_goal) least = std::min(least, (a - b).squaredNorm());
-  return std::sqrt(least);
+    for (const Vector& b : from_goal) min_distance = std::min(min_distance, (a - b).squaredNorm());
+  return std::sqrt(min_distance);
 }
 
 }  // namespace
@@ -190,11 +191,11 @@ ob::PlannerStatus BatchPlanner::solve(const ob::PlannerTerminationCondition& sto
   std::vector<Vector> goals;
   while (const ob::State* goal = pis_.nextGoal()) goals.push_back(to_vector(goal, space_.size()));
   if (goals.empty()) return ob::PlannerStatus::INVALID_GOAL;
-  space_.stop_when([&stop, asking = false]() mutable {
-    if (asking) return false;  // the condition may ask whether the space is exhausted
-    asking = true;
+  space_.stop_when([&stop, is_evaluating = false]() mutable {
+    if (is_evaluating) return false;  // the condition may call exhausted()
+    is_evaluating = true;
     const bool stops = stop.eval();
-    asking = false;
+    is_evaluating = false;
     return stops;
   });
   found_ = kind_ == PlannerKind::trrt     ? transition_rrt(space_, goals, seed_)
@@ -248,7 +249,7 @@ Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, Pla
   auto ompl_space = std::make_shared<ob::RealVectorStateSpace>(n);
   ob::RealVectorBounds bounds(n);
   for (int i = 0; i < n; ++i) {
-    // A posture on a joint's end may be past it by rounding: it is a start all the same.
+    // A start at a joint limit may be beyond it by rounding, and is valid nevertheless.
     bounds.setLow(i, std::min(space.lower()[i], space.start()[i]));
     bounds.setHigh(i, std::max(space.upper()[i], space.start()[i]));
   }
@@ -259,7 +260,7 @@ Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, Pla
   auto si = std::make_shared<ob::SpaceInformation>(ompl_space);
   si->setStateValidityChecker(std::make_shared<Validity>(si, space));
   si->setMotionValidator(std::make_shared<Motions>(si, space));
-  // BiT-RRT connects its trees within ten of these lengths.
+  // BiT-RRT connects its trees within ten times this length.
   ompl_space->setLongestValidSegmentFraction(std::min(1.0, 0.3 / ompl_space->getMaximumExtent()));
   si->setup();
 
@@ -299,11 +300,11 @@ Found search_with_ompl(SearchSpace& space, const std::vector<Vector>& goals, Pla
   found.path.clear();
   for (const ob::State* s : definition->getSolutionPath()->as<og::PathGeometric>()->getStates())
     found.path.push_back(to_vector(s, n));
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const double d = (goals[i] - found.path.back()).norm();
-    if (d < least) {
-      least = d;
+    if (d < min_distance) {
+      min_distance = d;
       found.goal = i;
     }
   }

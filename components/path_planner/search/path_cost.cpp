@@ -29,7 +29,7 @@ double PathCost::of(const Vector& q) const {
   return costs_.front();
 }
 
-/// Fills costs_ at the states at_ of the motion.
+/// Writes costs_ at the states at_ of the motion.
 void PathCost::fill_costs(const Vector& from, const Vector& to) const {
   costs_.resize(at_.size());
   to_ = axes_.whole(to);
@@ -55,7 +55,7 @@ const std::vector<double>& PathCost::at_steps(const Vector& from, const Vector& 
   return costs_;
 }
 
-/// Returns the costs at the middles of equal pieces of the motion.
+/// Returns the costs at the midpoints of equal parts of the motion.
 const std::vector<double>& PathCost::costs_along(const Vector& from, const Vector& to) const {
   const int pieces =
       std::max(1, static_cast<int>(std::ceil((to - from).norm() / settings_.cost_step)));

@@ -1,4 +1,4 @@
-// What states and motions of one problem cost.
+// Costs of states and motions of one problem.
 #pragma once
 
 #include <vector>
@@ -9,26 +9,24 @@
 
 namespace handsel::path_planner {
 
-/// Human-aware cost of the planned axes: that of the arm, and of the platform where it is planned
-/// for.
+/// Human-aware cost of the planned axes: of the arm, and of the platform if it is planned.
 class PathCost {
  public:
   /// All arguments must outlive this.
   PathCost(const HumanCost& cost, const Problem& problem, const Settings& settings);
 
-  /// Returns whether states may have a cost: a person is there or a layer adds one.
+  /// Returns whether states may have a cost, because of people or cost layers.
   bool concerns_people() const;
   /// Returns the cost of one state, [0, 1].
   double of(const Vector& q) const;
-  /// Returns the costs at the ends of equal steps of a motion; valid until the next call for a
-  /// cost.
+  /// Returns the costs at the ends of equal steps of a motion; valid until the next call.
   const std::vector<double>& at_steps(const Vector& from, const Vector& to, int steps) const;
   /// Returns the integral of the cost along a motion [rad].
   double integral(const Vector& from, const Vector& to) const;
-  /// Returns the sum of the rises of the cost along a motion.
+  /// Returns the sum of the increases of the cost along a motion.
   double work(const Vector& from, const Vector& to) const;
-  /// Returns what smoothing makes smaller: integral of the cost above that of the cheapest of start
-  /// and goals, and length_weight times the length.
+  /// Returns the price that smoothing minimises: the integral of the cost above the min cost of
+  /// start and goals, plus length_weight times the length.
   double price(const Vector& from, const Vector& to) const;
   /// Returns the sum of the prices of the segments of a path.
   double price(const std::vector<Vector>& path) const;
@@ -41,8 +39,8 @@ class PathCost {
   const Problem& problem_;
   const Settings& settings_;
   PlannedAxes axes_;
-  bool only_platform_{};  ///< No axis but those of the platform is planned for.
-  double level_{};        ///< Cost that no path between start and goals avoids.
+  bool only_platform_{};  ///< Only axes of the platform are planned.
+  double level_{};        ///< Min cost of start and goals.
   mutable Vector to_;
   mutable std::vector<double> at_, costs_;
 };

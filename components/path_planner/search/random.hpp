@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine for a seed.
+// Random numbers that depend only on the seed, not on the machine.
 #pragma once
 
 #include <cmath>

@@ -8,8 +8,8 @@ namespace handsel::path_planner {
 
 Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool heed_cost,
              std::uint64_t seed) {
-  // What nobody asked for by name goes without OMPL's harness, which takes longer to set up than a
-  // short search.
+  // Without a named planner the search runs outside OMPL's framework, whose setup takes longer than
+  // a short search.
   Found found = kind != PlannerKind::automatic
                     ? search_with_ompl(space, goals, kind,
                                        space.problem().stock || kind == PlannerKind::rrt, seed)

@@ -1,4 +1,4 @@
-// The random search for a first path: RRT-Connect, T-RRT and bidirectional T-RRT of this component;
+// Random search for a first path: RRT-Connect, T-RRT and bidirectional T-RRT of this component;
 // OMPL's RRT, RRT-Connect, T-RRT and BiT-RRT on the space, samples, checks and costs of this
 // component.
 #pragma once
@@ -9,20 +9,20 @@
 namespace handsel::path_planner {
 
 struct Found {
-  std::vector<Vector> path;  ///< empty when nothing was found
+  std::vector<Vector> path;  ///< empty if no path was found
   std::size_t goal{};        ///< index into `goals`
-  /// Least distance between the two trees, or tree and goals, when nothing was found [rad].
+  /// Min distance between the trees, or between tree and goals, if no path was found [rad].
   double closest{};
-  std::size_t nodes{};  ///< of the tree or trees
-  /// Of the planners here: from the start, and where one was grown from the goals.
+  std::size_t nodes{};  ///< number of nodes of all trees
+  /// Trees of this component's planners: from the start and, if there is one, from the goals.
   std::vector<Tree> trees{};
 };
 
-/// All goals must be free. automatic: bidirectional T-RRT when the cost is to be heeded, else
-/// RRT-Connect. A planner that is named runs in OMPL's harness (ompl_planner): rrt is OMPL's, the
-/// others are those of this component, or OMPL's where the problem says `stock`. Ends when the
-/// space is exhausted. The same seed gives the same path, also with other searches before it in the
-/// same process: no random number comes from OMPL's own generator.
+/// Searches a path until the budget is exhausted. All goals must be free. automatic: bidirectional
+/// T-RRT with `heed_cost`, else RRT-Connect. A named planner runs in OMPL's framework
+/// (ompl_planner): rrt is OMPL's, all others are those of this component, or OMPL's with `stock`.
+/// The same seed gives the same path, regardless of preceding searches: no random number comes from
+/// OMPL's generator.
 Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind planner,
              bool heed_cost, std::uint64_t seed);
 

@@ -8,10 +8,10 @@ namespace handsel::path_planner {
 
 namespace {
 
-constexpr double kForbiddenStep =
-    0.01;  // [rad] a meter away that is less than half a cell of our own grids
+// Step of the checks for forbidden places; at 1 m less than half a cell of the cost maps [rad].
+constexpr double kForbiddenStep = 0.01;
 
-/// Returns the bounds of the planned axes; of unlimited ones start +- 2 pi.
+/// Returns the bounds of the planned axes; for unlimited axes start +- 2 pi.
 std::pair<Vector, Vector> bounds_of(const RobotModel& robot, const Problem& problem) {
   Vector lower(problem.axes.size()), upper(problem.axes.size());
   for (int i = 0; i < static_cast<int>(problem.axes.size()); ++i) {
@@ -89,7 +89,7 @@ CollisionVerdict SearchSpace::motion_verdict(const Vector& from, const Vector& t
   return verdict.free && bound_ ? permitted_on_line(begin, step) : verdict;
 }
 
-/// Checks the line from `begin` to all_to_ against what cost layers forbid.
+/// Checks the line from `begin` to all_to_ against forbidding cost layers.
 CollisionVerdict SearchSpace::permitted_on_line(const Vector& begin, double step) const {
   const int states = motion_states(begin, all_to_, std::max(step, kForbiddenStep));
   CollisionVerdict verdict;

@@ -1,5 +1,5 @@
-// The configuration space of one problem: which states and motions are free, what they cost, and
-// how many checks are left.
+// The configuration space of one problem: checks and costs of states and motions, with a budget of
+// checks.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class SearchSpace : public Budget {
   SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost,
               const Problem& problem, const Settings& settings, const Hooks& hooks);
 
-  /// Returns the number of axes that are planned for.
+  /// Returns the number of planned axes.
   int size() const { return axes_.size(); }
   /// Returns the lower bounds of the planned axes [rad, m].
   const Vector& lower() const { return bounds_.first; }
@@ -34,43 +34,41 @@ class SearchSpace : public Budget {
   const Settings& settings() const { return settings_; }
   /// Returns the start, planned axes only.
   Vector start() const { return axes_.part(problem_.start); }
-  /// Returns what states and motions cost.
+  /// Returns the costs of states and motions.
   const PathCost& costs() const { return path_cost_; }
-  /// Returns the bound on how far what is held may lean over.
+  /// Returns the bound on the tilt of the held object.
   const UprightBound& upright() const { return upright_; }
 
-  /// Returns an empty text inside the position limits, else which axis is outside, where and of
-  /// which limits.
+  /// Returns an empty text within the position limits, else axis, position and limits.
   std::string outside_limits(const Vector& q) const;
   /// Returns whether every planned axis is within its bounds, without tolerance.
   bool inside(const Vector& q) const;
-  /// Checks a state exactly; says what touches what, or which cost layer forbids the place. Tilt
-  /// and bounds are not checked.
+  /// Checks a state exactly; the verdict names the contact or the forbidding cost layer. Does not
+  /// check tilt and bounds.
   CollisionVerdict verdict(const Vector& q);
-  /// Returns whether a state is upright where asked for, free of contact and not forbidden by a
-  /// cost layer. Bounds are not checked.
+  /// Returns whether a state is upright if required, free of contact and not forbidden by a cost
+  /// layer. Does not check bounds.
   bool free(const Vector& q);
-  /// Checks the straight motion at states at most `step` [rad, max norm] apart, as verdict(). Tilt
-  /// and bounds are not checked.
+  /// Checks the straight motion at states at most `step` [rad, max norm] apart, like verdict().
+  /// Does not check tilt and bounds.
   CollisionVerdict motion_verdict(const Vector& from, const Vector& to, double step);
-  /// Returns whether the straight motion is upright where asked for and free at states at most
-  /// step() apart. Bounds are not checked.
+  /// Returns whether the straight motion is upright if required and free at states at most step()
+  /// apart. Does not check bounds.
   bool motion_free(const Vector& from, const Vector& to);
-  /// As motion_free, but after check_in_batches() nothing goes to the exact check.
+  /// Returns like motion_free(), but after check_in_batches() without any exact check.
   bool motion_clear(const Vector& from, const Vector& to);
-  /// From now on motions the batch check cannot clear are taken for blocked; only where the start
-  /// or one of `ends` is itself not clear, those within `reach` [rad, max norm] of it go to the
-  /// exact check. Cheaper by far, and blind to gaps narrower than the spheres around the links
-  /// leave.
+  /// Treats motions that the batch check cannot clear as blocked. Only if the start or one of
+  /// `ends` is not clear, motions within `reach` [rad, max norm] of it are checked exactly. Much
+  /// faster, but does not find gaps narrower than the spheres around the links.
   void check_in_batches(std::vector<Vector> ends, double reach);
-  /// Ends what check_in_batches() began: every motion is checked exactly.
+  /// Reverses check_in_batches(): every motion is checked exactly.
   void check_exactly() { in_batches_ = false; }
-  /// Sets how close the checked states of a motion are [rad, max norm].
+  /// Sets the step of the checked states of a motion [rad, max norm].
   void set_step(double step) { step_ = step; }
-  /// Returns how close the checked states of a motion are [rad, max norm].
+  /// Returns the step of the checked states of a motion [rad, max norm].
   double step() const { return step_; }
 
-  /// Reports the begin of a stage to the hook of the caller, when there is one.
+  /// Reports the begin of a stage to the caller's hook, if any.
   void enter(Stage stage) const {
     if (hooks().entered) hooks().entered(stage);
   }
@@ -86,18 +84,19 @@ class SearchSpace : public Budget {
   const Settings& settings_;
   PlannedAxes axes_;
   std::pair<Vector, Vector> bounds_;  ///< Lower and upper, planned axes.
-  /// By what outside layers forbid: not when it starts there, the arm must be able to leave.
+  /// Whether forbidding cost layers apply; false if the start is forbidden, so that the arm can
+  /// leave.
   bool bound_{};
   PathCost path_cost_;
   UprightBound upright_;
-  Vector all_to_;  ///< End of the motion that is checked, all axes.
+  Vector all_to_;  ///< End of the checked motion, all axes.
   double step_{};
-  bool in_batches_{};  ///< Else every motion is checked exactly.
+  bool in_batches_{};  ///< False: every motion is checked exactly.
   std::vector<Vector> tight_ends_;
   double reach_{};
 };
 
-/// Returns the Euclidean length of a broken line [rad].
+/// Returns the Euclidean length of a polyline [rad].
 double path_length(const std::vector<Vector>& path);
 
 }  // namespace handsel::path_planner

@@ -6,14 +6,14 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kGain = 1e-6;       // smaller gains are none
-constexpr double kPruneLoss = 0.02;  // share of the price a dropped node may cost
-constexpr int kPerturbations = 3;    // per shortcut, where people are concerned
+constexpr double kMinGain = 1e-6;       // min reduction of the price
+constexpr double kMaxPruneLoss = 0.02;  // max relative increase of the price by a removed waypoint
+constexpr int kPerturbations = 3;       // perturbations per shortcut, with human-aware cost
 
-/// A place on the path: node before it and share of the edge.
+/// A place on the path: the preceding waypoint and the fraction of the segment.
 struct Place {
   std::size_t node{};
-  double share{};
+  double fraction{};
 };
 
 class Line {
@@ -31,7 +31,7 @@ class Line {
     return {i - 1, edge > 0 ? std::clamp((s - length_[i - 1]) / edge, 0.0, 1.0) : 0.0};
   }
   Vector point(const Place& p) const {
-    return path_[p.node] + p.share * (path_[p.node + 1] - path_[p.node]);
+    return path_[p.node] + p.fraction * (path_[p.node + 1] - path_[p.node]);
   }
 
  private:
@@ -45,8 +45,8 @@ bool free(SearchSpace& space, const std::vector<Vector>& line) {
   return true;
 }
 
-/// Replaces the path between two places by `inner` when that is cheaper, inside the bounds and
-/// free; in that order.
+/// Replaces the path between two places by `inner` if that reduces the price, is within the bounds
+/// and free, checked in this order.
 bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, const Place& from,
              const Place& to, const std::vector<Vector>& inner) {
   std::vector<Vector> before = {line.point(from)}, after = {line.point(from)};
@@ -54,7 +54,7 @@ bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, co
   before.push_back(line.point(to));
   for (const Vector& q : inner) after.push_back(q);
   after.push_back(line.point(to));
-  if (space.costs().price(after) >= space.costs().price(before) - kGain) return false;
+  if (space.costs().price(after) >= space.costs().price(before) - kMinGain) return false;
   if (!std::all_of(inner.begin(), inner.end(), [&](const Vector& q) { return space.inside(q); }))
     return false;
   if (!free(space, after)) return false;
@@ -74,13 +74,13 @@ bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, co
 void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
   const Settings& settings = space.settings();
   const bool people = space.costs().concerns_people();
-  int in_vain = 0;
-  const auto& asked_on = space.hooks().smooth_on;
-  const auto goes_on = [&](int round) {
-    return asked_on ? asked_on()
-                    : round < settings.smoothing_rounds && in_vain < settings.max_idle_rounds;
+  int idle_rounds = 0;
+  const auto& smooth_on = space.hooks().smooth_on;
+  const auto continues = [&](int round) {
+    return smooth_on ? smooth_on()
+                     : round < settings.smoothing_rounds && idle_rounds < settings.max_idle_rounds;
   };
-  for (int round = 0; goes_on(round) && !space.exhausted(); ++round) {
+  for (int round = 0; continues(round) && !space.exhausted(); ++round) {
     const Line line(path);
     if (path.size() < 2 || line.length() < 1e-9) return;
     bool gained = false;
@@ -104,7 +104,7 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
                replace(space, path, line, from, to,
                        {space.upright().restore(center + toward * (far / toward.norm()))});
     }
-    in_vain = gained ? 0 : in_vain + 1;
+    idle_rounds = gained ? 0 : idle_rounds + 1;
   }
 }
 
@@ -112,7 +112,7 @@ void prune(SearchSpace& space, std::vector<Vector>& path) {
   for (std::size_t i = 1; i + 1 < path.size() && !space.exhausted();) {
     const double before =
         space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
-    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) &&
+    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kMaxPruneLoss) &&
         space.motion_free(path[i - 1], path[i + 1])) {
       path.erase(path.begin() + static_cast<long>(i));
       if (i > 1) --i;

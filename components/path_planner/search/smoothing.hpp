@@ -1,5 +1,5 @@
-// Making a path cheaper (chapter section 4.1.1): shortcuts and path perturbation, checked in the
-// order cost, bounds, collision.
+// Smoothing of a path (chapter section 4.1.1): shortcuts and path perturbation, checked in the
+// order price, bounds, collision.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace handsel::path_planner {
 
-/// Improves a collision-free path; never returns one with a higher price. Ends stay. Stops when the
-/// space is exhausted.
+/// Improves a collision-free path; never increases the price or moves the ends. Stops when the
+/// budget is exhausted.
 void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random);
 
-/// Drops nodes whose removal costs at most one part in fifty and stays free.
+/// Removes waypoints if the path stays free and the price rises by at most 2 %.
 void prune(SearchSpace& space, std::vector<Vector>& path);
 
 }  // namespace handsel::path_planner

@@ -12,7 +12,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kLeastStep = 0.02;  // shorter advances are none [rad]
+constexpr double kMinStep = 0.02;  // min length of an extension [rad]
 
 class Search {
  public:
@@ -61,12 +61,12 @@ class Search {
   }
 
  private:
-  /// From a node toward a target, at most `range` far and as far as the transition test allows; the
-  /// new node, or the old one.
+  /// Extends a node toward a target by at most `range`, as far as the transition test allows;
+  /// returns the new node, or the old one.
   int advance(int side, int from, const Vector& target, double range, bool* reached = nullptr) {
     const Vector start = trees_[side][from], stop = space_.upright().toward(start, target, range);
     const double length = (stop - start).norm();
-    if (length < kLeastStep) {
+    if (length < kMinStep) {
       if (reached == nullptr || stop != target || !space_.motion_free(start, target)) return from;
       *reached = true;
       return add(side, from, target, space_.costs().of(target));

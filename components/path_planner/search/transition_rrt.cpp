@@ -10,8 +10,8 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kGoalBias = 0.1;
-constexpr double kRefinementShare = 0.1;
+constexpr double kGoalBias = 0.1;               // fraction of samples that are goals
+constexpr double kMaxRefinementFraction = 0.1;  // max fraction of refining states in the tree
 
 }  // namespace
 
@@ -38,7 +38,8 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
     const bool refines = distance < range;
     if (to_goal) found.closest = std::min(found.closest, distance);
     if (refines && !to_goal &&
-        static_cast<double>(refinements) > kRefinementShare * static_cast<double>(tree.size()))
+        static_cast<double>(refinements) >
+            kMaxRefinementFraction * static_cast<double>(tree.size()))
       continue;
     const Vector q =
         refines ? target : Vector(tree[near] + (target - tree[near]) * (range / distance));

@@ -1,5 +1,6 @@
-// The transition test of T-RRT (chapter section 4.1.1): downhill always, uphill by chance, the less
-// likely the steeper; warmer after refusals, cooler after each rise let pass.
+// The transition test of T-RRT (chapter section 4.1.1): accepts decreasing costs always and
+// increasing costs with a probability that falls with the increase. The temperature rises after
+// refusals and falls after each accepted increase.
 #pragma once
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 
 namespace handsel::path_planner {
 
-/// States axis by axis in single precision for the search of the nearest, whole in double for
-/// everything else.
+/// Stores states by axis in single precision for the nearest-state search, and as vectors in double
+/// precision for all other use.
 class Tree {
  public:
   explicit Tree(int axes) : columns_(64, axes), distances_(64) {}
@@ -17,7 +17,7 @@ class Tree {
   /// Returns the number of states.
   int size() const { return static_cast<int>(states_.size()); }
   const Vector& operator[](int i) const { return states_[static_cast<std::size_t>(i)]; }
-  /// Returns the index of the state before state `i`; -1 for a root.
+  /// Returns the index of the parent of state `i`; -1 for a root.
   int parent(int i) const { return parents_[static_cast<std::size_t>(i)]; }
 
   /// Adds a state and returns its index. A root has parent -1.
@@ -45,13 +45,13 @@ class Tree {
     return best;
   }
 
-  /// Returns the index of the root that the branch of state `i` begins at.
+  /// Returns the index of the root of the branch of state `i`.
   int root_of(int i) const {
     while (parent(i) >= 0) i = parent(i);
     return i;
   }
 
-  /// From the root to i.
+  /// Returns the states from the root to state `i`.
   std::vector<Vector> branch(int i) const {
     std::vector<Vector> path;
     for (; i >= 0; i = parent(i)) path.push_back((*this)[i]);
@@ -60,7 +60,7 @@ class Tree {
   }
 
  private:
-  Eigen::ArrayXXf columns_;  // a state a row; columns lie together
+  Eigen::ArrayXXf columns_;  // one row per state, column-major
   Eigen::ArrayXf distances_;
   std::vector<Vector> states_;
   std::vector<int> parents_;

@@ -6,11 +6,10 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kTiltStep =
-    0.03;  // sum over the axes between two states whose tilt is checked [rad]
-constexpr double kTiltBetween = 5e-4;  // between them it is at most this much more [rad]
-constexpr double kUprightRange = 0.2;  // longest motion that is bent back to upright [rad]
-constexpr double kMinProgress = 0.05;  // of its length
+constexpr double kTiltStep = 0.03;        // step of tilt checks, sum over the axes [rad]
+constexpr double kTiltMargin = 5e-4;      // max increase of the tilt between two checks [rad]
+constexpr double kMaxUprightRange = 0.2;  // max length of a corrected motion [rad]
+constexpr double kMinProgress = 0.05;  // min progress of a corrected motion, divided by its length
 
 }  // namespace
 
@@ -39,17 +38,18 @@ bool UprightBound::holds_on_line(const Vector& from, const Vector& to) const {
   if (!holds(from) || !holds(to)) return false;
   for (int i = 1; i < last; ++i)
     if (tilt(from + (static_cast<double>(i) / last) * (to - from)) >
-        problem_.upright->max_angle - kTiltBetween)
+        problem_.upright->max_angle - kTiltMargin)
       return false;
   return true;
 }
 
 Vector UprightBound::restore(Vector q) const {
   if (!problem_.upright) return q;
-  constexpr int kRounds = 12;
-  constexpr double kAim = 0.9, kDifference = 1e-5;
-  for (int round = 0; round < kRounds; ++round) {
-    const double now = tilt(q), over = now - kAim * problem_.upright->max_angle;
+  constexpr int kMaxRounds = 12;        // max iterations of the correction
+  constexpr double kTarget = 0.9;       // target tilt divided by the bound
+  constexpr double kDifference = 1e-5;  // step of the finite differences [rad]
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const double now = tilt(q), over = now - kTarget * problem_.upright->max_angle;
     if (over <= 0) break;
     Vector slope(axes_.size());
     for (int i = 0; i < axes_.size(); ++i) {
@@ -65,7 +65,7 @@ Vector UprightBound::restore(Vector q) const {
 
 Vector UprightBound::toward(const Vector& from, const Vector& target, double range) const {
   const double distance = (target - from).norm(),
-               reach = problem_.upright ? std::min(range, kUprightRange) : range;
+               reach = problem_.upright ? std::min(range, kMaxUprightRange) : range;
   Vector end = distance > reach ? Vector(from + (target - from) * (reach / distance)) : target;
   if (!problem_.upright || holds_on_line(from, end)) return end;
   Vector bent = restore(end);
