@@ -1,6 +1,6 @@
-// From nodes in the Cartesian space of a redundant arm to soft motion of its joints (chapter
+// Plans a jerk-limited trajectory of a redundant arm from waypoints in Cartesian space (chapter
 // section 4.6). Active axes: position and rotation vector of the tool, the angle of the elbow, hand
-// and head; they get the smoothed trajectory TR. Passive: the joints of the arm, by inverse
+// and head; they have the smoothed trajectory TR. Passive axes: the joints of the arm, by inverse
 // kinematics at the period of the controller, approximated by TR_app and slowed down where they
 // exceed their limits. Pure.
 #pragma once
@@ -19,58 +19,59 @@
 namespace handsel::trajectory_planner {
 
 struct CartesianWaypoint {
-  /// Wanted pose of the tip of the arm, frame of the root link.
+  /// Goal pose of the tip of the arm, frame of the root link.
   Pose T_root_tool{Pose::Identity()};
-  /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad];
-  /// left out: chosen so that the joints keep clearance to their limits.
+  /// Elbow angle on the circle about the line from shoulder to wrist, 0 = max along axis 1 [rad];
+  /// nullopt: selected for distance of the joints from their limits.
   std::optional<double> elbow{};
   Vector also{};  ///< positions of the further active axes [rad]
 };
 
-/// What is held stays upright on the whole path.
+/// Bound on the tilt of the held object on the whole path.
 struct HeldLevel {
-  Vector3 axis_tool{Vector3::UnitZ()};  ///< of the tool, along up_root when upright
+  Vector3 axis_tool{Vector3::UnitZ()};  ///< axis of the tool that is along up_root when upright
   Vector3 up_root{Vector3::UnitZ()};    ///< up in the frame of the root link
-  double bound{0.1};                    ///< largest angle between the two [rad]
+  double bound{0.1};                    ///< max angle between the two [rad]
 };
 
 struct CartesianRequest {
-  Vector start;  ///< all axes of the robot [rad]; the first node is where it is
-  /// Robot axes that are active besides the arm: hand, head; of a robot on its platform
-  /// (common/model/platform.hpp) x, y, heading too.
+  Vector start;  ///< all axes of the robot [rad]; pose of the first waypoint
+  /// Further active robot axes: hand, head; for a robot on its platform (common/model/platform.hpp)
+  /// also x, y and heading.
   std::vector<int> also;
-  std::vector<CartesianWaypoint> nodes;  ///< after the start
-  std::optional<HeldLevel> level{};      ///< what is held is to stay upright; empty: nothing is
-  std::optional<JoinedArm> joined{};     ///< follows; every node is then a stop
-  double speed_scale{1};                 ///< (0, 1] on all velocity limits
-  /// Lowers those of the active axes along the path; null: no people.
+  std::vector<CartesianWaypoint> nodes;  ///< waypoints after the start
+  std::optional<HeldLevel> level{};      ///< bound on the tilt; nullopt: none
+  /// Second arm that follows; the motion then stops at every waypoint.
+  std::optional<JoinedArm> joined{};
+  double speed_scale{1};  ///< factor of all velocity limits, (0, 1]
+  /// Reduces the velocity limits of the active axes along the path; null: no people.
   const SpeedAlong* people{};
 };
 
 struct RateBounds {
-  /// Upper bounds of one coordinate, > 0; units as at the use.
+  /// Upper bounds of one coordinate, > 0; unit as documented at the use.
   double velocity{}, acceleration{}, jerk{};
 };
 
 struct CartesianSettings {
-  /// Of each coordinate of the tool's position [m/s, m/s^2, m/s^3].
+  /// Bounds of each coordinate of the tool's position [m/s, m/s^2, m/s^3].
   RateBounds translation{0.25, 0.6, 2.0};
-  /// Of each coordinate of its rotation vector; no turn is faster than their norm [rad/s, ...].
+  /// Bounds of each coordinate of the rotation vector; their norm bounds the rotation [rad/s, ...].
   RateBounds rotation{0.6, 1.5, 5.0};
-  RateBounds elbow{0.6, 1.5, 5.0};  ///< [rad/s, ...]
-  double allowed_excess{0.1};       ///< of three segments at corners
-  double period{0.002};             ///< the joints are computed this often [s]
-  /// A joint that moves farther in a period has changed branch: refused [rad].
+  RateBounds elbow{0.6, 1.5, 5.0};  ///< bounds of the elbow angle [rad/s, ...]
+  double allowed_excess{0.1};       ///< allowed excess of three segments at blends
+  double period{0.002};             ///< period of the computed joints [s]
+  /// Max motion of a joint in one period; a larger one is a change of branch and refused [rad].
   double largest_step{0.1};
-  double collision_step{0.01};  ///< configurations are checked this often [rad, max norm]
-  int elbows{24};               ///< angles tried at a node that leaves its elbow open
+  double collision_step{0.01};  ///< step of the collision checks [rad, max norm]
+  int elbows{24};               ///< elbow angles tried at a waypoint without elbow angle
   ApproximationTolerance tolerance{2e-4, 1e-2};  ///< of TR_app to the sampled joints [rad], [rad/s]
-  JoinError max_apart{1e-3, 3.5e-3};  ///< of joined tips: beyond it the motion is refused
+  JoinError max_apart{1e-3, 3.5e-3};  ///< max error of the joined tips; a larger one is refused
 };
 
-/// TR: the smoothed trajectory of the active axes and how to read poses from it. Own method: the
-/// rotation vector is counted on from segment to segment. On a segment it is the displacement from
-/// node to node, one axis and an angle; in a blend it is taken at the node of the blend.
+/// TR: the smoothed trajectory of the active axes, and its poses. Own method: the rotation vector
+/// is accumulated over segments. On a segment it is the rotation between the waypoints about one
+/// axis; in a blend it refers to the waypoint of the blend.
 class CartesianTrajectory {
  public:
   struct Node {
@@ -83,49 +84,49 @@ class CartesianTrajectory {
   /// Returns the trajectory of the active axes: position [m], rotation vector, elbow, further
   /// axes [rad].
   const Trajectory& active() const { return active_; }
-  /// Returns the nodes the motion leads by, the start first.
+  /// Returns the waypoints of the motion, the start first.
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Returns the pose of the tool at time t [s], frame of the root link.
   Pose pose(double t) const;
   /// Returns the angle [rad] of the elbow on its circle at time t [s].
   double elbow(double t) const { return active_.at(t).position[6]; }
-  /// Returns the pose for active values near a node, frame of the root link.
+  /// Returns the pose for active values near a waypoint, frame of the root link.
   Pose pose_at(const Vector& active, std::size_t node) const;
-  /// Returns the index of the node whose blend or adjacent halves of segments are run at t [s].
+  /// Returns the waypoint whose blend or adjacent halves of segments contain the time t [s].
   std::size_t node_at(double t) const;
 
  private:
   friend class CartesianPlanning;
   std::vector<Node> nodes_;
   Trajectory active_;
-  std::vector<double> middles_;  // when the middle of each segment is passed [s]
+  std::vector<double> middles_;  // time at the middle of each segment [s]
 };
 
 struct CartesianMotion {
-  bool solved{};       ///< every node of the request is reached
-  std::string reason;  ///< why not, one sentence
-  /// Nodes of the request on the path that follows; all of them when solved. Never a node that
-  /// collides.
+  bool solved{};       ///< whether every waypoint of the request is reached
+  std::string reason;  ///< why the motion is incomplete, one sentence
+  /// Number of reached waypoints of the request; all of them if solved. Excludes colliding
+  /// waypoints.
   std::size_t reached{};
-  CartesianTrajectory path;          ///< TR, as far as the motion goes
-  double duration_ptp{};             ///< with a stop at each node [s]
-  std::vector<BlendReport> corners;  ///< of nodes of `path`
-  /// Of each node of `path` the number in the request; the start is 0.
+  CartesianTrajectory path;          ///< TR, up to the last reached waypoint
+  double duration_ptp{};             ///< duration with a stop at each waypoint [s]
+  std::vector<BlendReport> corners;  ///< blends at the waypoints of `path`
+  /// Number in the request of each waypoint of `path`; the start is 0.
   std::vector<std::size_t> given;
-  /// Of each segment of `path`, because of people; empty: no people.
+  /// Speed limits of each segment of `path` because of people; empty: no people.
   std::vector<LimitZones> speeds;
-  double cost{};  ///< largest human-aware cost on the path, [0, 1]
-  /// Robot axes of what follows: those of the arm, the further ones, then those of the joined arm.
+  double cost{};  ///< max human-aware cost on the path, [0, 1]
+  /// Robot axes of `samples` and `executable`: arm, further axes, joined arm.
   std::vector<int> axes;
-  JoinError joined{};           ///< largest on the path, of TR_app
+  JoinError joined{};           ///< max error on the path, of TR_app
   std::vector<Vector> samples;  ///< positions at each period of `path`
-  Executable executable;        ///< TR_app, inside the comfort limits of the robot
+  Executable executable;        ///< TR_app, within the comfort limits of the robot
 };
 
-/// Nodes equal to the one before are left out. Where the path to a node does not exist (out of
-/// reach, a turn by pi, a joint limit or another branch between, a collision, what is held leans
-/// over), the motion ends at the node before it, and the reason says what is wrong. The arm must be
-/// one of shoulder, elbow and wrist (ik::SrsArm).
+/// Plans a Cartesian motion. Skips waypoints equal to the previous one. If there is no path to a
+/// waypoint (out of reach, rotation by pi, joint limit, change of branch, collision, tilt of the
+/// held object), the motion ends at the previous waypoint with a reason. The arm must consist of
+/// shoulder, elbow and wrist (ik::SrsArm).
 CartesianMotion plan_cartesian(const RobotModel& robot, const Group& arm, CollisionWorld& world,
                                const CartesianRequest& request,
                                const CartesianSettings& settings = {});

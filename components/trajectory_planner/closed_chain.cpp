@@ -5,7 +5,8 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kJoined = 1e-3, kJoinedTurn = 4e-3;  // at the start [m], [rad]
+// Max error of the joined tips at the start [m], [rad].
+constexpr double kMaxStartDistance = 1e-3, kMaxStartAngle = 4e-3;
 
 }  // namespace
 
@@ -28,7 +29,7 @@ ClosedChain::ClosedChain(const RobotModel& robot, const JoinedArm& joined, const
 std::string ClosedChain::objection(const Pose& T_root_tip) const {
   if (!arm_) return ik::SrsArm::why_none(*joined_.arm);
   const JoinError off = error(T_root_tip, start_);
-  if (off.apart <= kJoined && off.turned <= kJoinedTurn) return {};
+  if (off.apart <= kMaxStartDistance && off.turned <= kMaxStartAngle) return {};
   char out[200];
   std::snprintf(out, sizeof out,
                 "the tip of %s is %.1f mm and %.1f degrees from where it is said to be joined to "

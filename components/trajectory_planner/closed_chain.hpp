@@ -1,5 +1,5 @@
-// A second arm whose tip is rigidly joined to that of the first: two hands on one object. Own
-// method. Pure.
+// Kinematics of a second arm whose tip is rigidly joined to the first arm's tip: two hands on one
+// object. Own method. Pure.
 #pragma once
 
 #include <optional>
@@ -13,19 +13,19 @@ namespace handsel::trajectory_planner {
 
 struct JoinedArm {
   const Group* arm{};                     ///< group of the second arm; must outlive this
-  Pose T_tip_follower{Pose::Identity()};  ///< tip of the first arm to that of the second
+  Pose T_tip_follower{Pose::Identity()};  ///< second tip in the frame of the first
 };
 
-/// How far the tips are from being joined as they should.
+/// Error between the actual and the required relative pose of the tips.
 struct JoinError {
-  double apart{};   ///< [m]
-  double turned{};  ///< [rad]
+  double apart{};   ///< distance [m]
+  double turned{};  ///< angle [rad]
 };
 /// Returns distance and angle between two poses of the second tip in the frame of the first.
 JoinError join_error(const Pose& T_tip_follower, const Pose& wanted);
 
-/// The joints of the second arm for poses of the first's tip, one near the next; its elbow stays at
-/// the angle it has at the start.
+/// Computes the joints of the second arm for successive nearby poses of the first tip; the elbow
+/// angle is that of the start.
 class ClosedChain {
  public:
   /// `start`: all axes. Keeps references to robot and group.
@@ -33,21 +33,21 @@ class ClosedChain {
   ClosedChain(const ClosedChain&) = delete;
   ClosedChain& operator=(const ClosedChain&) = delete;
 
-  /// Returns why the arm cannot follow, one sentence; empty: it can. The tips must be joined at the
-  /// start as they are said to be.
+  /// Returns why the arm cannot follow, one sentence; empty: it can. The tips must have the
+  /// required relative pose at the start.
   std::string objection(const Pose& T_root_tip) const;
   /// Returns the robot axes of the second arm, in the order of joints().
   const std::vector<int>& axes() const { return joined_.arm->axes; }
-  /// Joints of the second arm after the last follow() that was true [rad].
+  /// Returns the joints of the second arm after the last successful follow() [rad].
   const Vector& joints() const { return q_; }
-  /// Returns the arm to its joints at the start; the next follow() is near those.
+  /// Resets the arm to its joints at the start, near which the next follow() must be.
   void restart() { q_ = start_; }
-  /// Moves joints() to the next pose of the first tip. False where the arm does not reach, meets a
-  /// limit or a joint would jump by more than `largest_step` [rad]: `why` says so. Only after
-  /// objection() was empty.
+  /// Moves joints() to the next pose of the first tip. Returns false, with the reason in `why`, if
+  /// the pose is out of reach, at a limit, or a joint would move by more than `largest_step` [rad].
+  /// Requires an empty objection().
   bool follow(const Pose& T_root_tip, double largest_step, std::string& why);
-  /// Returns how far the second tip is from its wanted pose for a pose of the first tip. `joints`:
-  /// of the second arm [rad].
+  /// Returns the error of the second tip for a pose of the first tip. `joints`: of the second arm
+  /// [rad].
   JoinError error(const Pose& T_root_tip, const Vector& joints) const;
 
  private:

@@ -11,10 +11,10 @@ namespace handsel::trajectory_planner {
 
 namespace {
 
-constexpr double kCuts = 16;   // of the finest box, for the scene's sake
-constexpr double kHeld = 0.5;  // what the hand holds ends no farther from the tool [m]
+constexpr double kMaxDivision = 16;     // max division of the finest box for the scene
+constexpr double kMaxHeldExtent = 0.5;  // max extent of a held object from the tool [m]
 
-/// No point of the link is farther from its frame's origin [m].
+/// Returns the max distance of the link's points from its frame's origin [m].
 double extent_of(const Link& link) {
   struct Radius {
     double operator()(const Sphere& s) const { return s.radius; }
@@ -22,25 +22,25 @@ double extent_of(const Link& link) {
     double operator()(const Cylinder& s) const { return std::hypot(s.radius, 0.5 * s.length); }
     double operator()(const Capsule& s) const { return s.radius + 0.5 * s.length; }
     double operator()(const MeshPtr& s) const {
-      double most = 0;
-      for (const Vector3& v : s->vertices) most = std::max(most, v.squaredNorm());
-      return std::sqrt(most);
+      double max_radius = 0;
+      for (const Vector3& v : s->vertices) max_radius = std::max(max_radius, v.squaredNorm());
+      return std::sqrt(max_radius);
     }
   };
-  double most = 0;
+  double max_radius = 0;
   for (const PlacedShape& placed : link.collision)
-    most = std::max(
-        most, placed.T_parent_shape.translation().norm() + std::visit(Radius{}, placed.shape));
-  return most;
+    max_radius = std::max(max_radius, placed.T_parent_shape.translation().norm() +
+                                          std::visit(Radius{}, placed.shape));
+  return max_radius;
 }
 
-/// How far from its axis the farthest point is that each axis moves, whatever the posture [m]; 1
-/// for one that slides.
-Vector longest_levers(const RobotModel& robot) {
+/// Returns the max distance of moved points from each axis in any configuration [m]; 1 for a
+/// prismatic axis.
+Vector max_levers(const RobotModel& robot) {
   std::vector<double> extent;
   for (const Link& link : robot.links()) extent.push_back(extent_of(link));
   for (const Manipulator& hand : hands_of(robot))
-    if (hand.palm >= 0) extent[static_cast<std::size_t>(hand.palm)] += kHeld;
+    if (hand.palm >= 0) extent[static_cast<std::size_t>(hand.palm)] += kMaxHeldExtent;
   Vector levers = Vector::Zero(robot.dof());
   std::vector<double> from_joint(robot.links().size());
   for (const Joint& joint : robot.joints()) {
@@ -80,7 +80,8 @@ MotionCheck::MotionCheck(const RobotModel& robot, CollisionWorld& world,
   world_.set_moving_axes(axes_);
 }
 
-/// Between its ends an axis is at most a t^2 / 8 off the line between them.
+/// Encloses a part of the trajectory: between its ends an axis deviates by at most a t^2 / 8 from a
+/// line.
 void MotionCheck::enclose(const SegmentTable& table, const Piece& piece, Vector& low,
                           Vector& high) {
   const double lasts = piece.end - piece.begin;
@@ -97,10 +98,10 @@ void MotionCheck::enclose(const SegmentTable& table, const Piece& piece, Vector&
 MotionCheck::Leaf MotionCheck::check(const Vector& low, const Vector& high) {
   const Vector middle = 0.5 * (low + high);
   if (!world_.is_free(middle)) return Leaf::contact;
-  if (levers_.size() == 0) levers_ = longest_levers(robot_);
+  if (levers_.size() == 0) levers_ = max_levers(robot_);
   const double moves = 0.5 * (high - low).dot(levers_);
   if (world_.distance_to_scene(middle, moves) >= moves) return Leaf::free;
-  return (high - low).maxCoeff() > finest_ / kCuts ? Leaf::unclear : Leaf::contact;
+  return (high - low).maxCoeff() > finest_ / kMaxDivision ? Leaf::unclear : Leaf::contact;
 }
 
 void MotionCheck::cut_in_two(const Piece& piece) {
@@ -120,25 +121,25 @@ bool MotionCheck::free(const Trajectory& trajectory, const SegmentTable& table) 
   open_.clear();
   const double part = table.duration() / CollisionWorld::kMaxBoxes;
   for (int i = CollisionWorld::kMaxBoxes; i > 0; --i) open_.push_back({(i - 1) * part, i * part});
-  std::array<Piece, CollisionWorld::kMaxBoxes> judged;
+  std::array<Piece, CollisionWorld::kMaxBoxes> pieces;
   while (!open_.empty()) {
     int count = 0;
     for (; count < CollisionWorld::kMaxBoxes && !open_.empty(); ++count, open_.pop_back()) {
       const auto at = static_cast<std::size_t>(count);
-      judged[at] = open_.back();
-      enclose(table, judged[at], low_[at], high_[at]);
+      pieces[at] = open_.back();
+      enclose(table, pieces[at], low_[at], high_[at]);
     }
     const std::uint32_t unclear = world_.unclear_boxes(low_.data(), high_.data(), count);
     for (int i = count - 1; i >= 0; --i) {
       if ((unclear >> i & 1) == 0) continue;
       const auto at = static_cast<std::size_t>(i);
       if ((high_[at] - low_[at]).maxCoeff() > finest_) {
-        cut_in_two(judged[at]);
+        cut_in_two(pieces[at]);
         continue;
       }
       const Leaf leaf = check(low_[at], high_[at]);
       if (leaf == Leaf::contact) return false;
-      if (leaf == Leaf::unclear) cut_in_two(judged[at]);
+      if (leaf == Leaf::unclear) cut_in_two(pieces[at]);
     }
   }
   return true;

@@ -1,5 +1,4 @@
-// Whether a robot may run a trajectory without contact, checked everywhere along it and not at
-// steps only. Own method.
+// Checks a trajectory for contacts continuously, not only at steps. Own method.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +10,19 @@
 
 namespace handsel::trajectory_planner {
 
-/// Every piece of the trajectory stays inside a box of configurations; a box that the batch check
-/// clears is free whatever happens in it. Others are cut in two, down to boxes in which no axis
-/// moves by more than `finest`: there FCL checks the middle, and the scene must be farther from it
-/// than anything moves in the box. Boxes are cut further for that, down to `finest` / 16; what
-/// comes nearer then counts as contact.
+/// Encloses parts of the trajectory in boxes of configurations; a box that the batch check clears
+/// is free. Other boxes are halved until no axis moves by more than `finest`. Then FCL checks the
+/// middle, whose distance from the scene must exceed every motion in the box. For this boxes are
+/// halved down to `finest` / 16; a smaller distance counts as contact.
 class MotionCheck {
  public:
-  /// `rest`: all axes [rad]; those that the trajectory does not move are there. Sets the moving
-  /// axes of the world.
+  /// `rest`: positions of all axes, used for axes that the trajectory does not move [rad]. Sets the
+  /// moving axes of the world.
   MotionCheck(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes,
               const Vector& rest, double finest = 0.0004);
 
-  /// Returns whether no configuration on the trajectory is in contact. `table`: of the same
-  /// trajectory, in the order of the axes given.
+  /// Returns whether the trajectory is free of contact. `table`: of the same trajectory, in the
+  /// order of the given axes.
   bool free(const Trajectory& trajectory, const SegmentTable& table);
 
  private:
@@ -41,11 +39,10 @@ class MotionCheck {
   const std::vector<int>& axes_;
   Vector rest_;
   double finest_;
-  // what an axis carries is nowhere farther from it [m]; 1 for one that slides; found when first
-  // needed
+  // Max distance of moved points from each axis [m]; 1 for a prismatic axis; computed on first use.
   Vector levers_;
   MotionState3 at_begin_, at_end_;
-  Vector acceleration_;  // largest of each axis
+  Vector acceleration_;  // max of each axis
   int cursor_{};
   std::vector<Piece> open_;
   std::vector<Vector> low_, high_;

@@ -11,8 +11,8 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kLevel = 0.02;  // a platform that leans more does not stand level [rad]
-constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
+constexpr double kMaxTilt = 0.02;  // max tilt of a level platform [rad]
+constexpr Duration kLayerWatch = std::chrono::milliseconds(200);  // period of layer checks
 constexpr Duration kLeastModelled = std::chrono::milliseconds(2);
 using settings::read_trajectory_planner_settings;
 
@@ -78,7 +78,7 @@ void Node::on_request(const TrajectoryRequest& request) {
   }
   if (admission != Admission::fresh) return;
   if (const std::string why = not_ready(); !why.empty()) return refuse(request.id, why);
-  if (drives(request) && !(scene_->T_world_base.linear()(2, 2) > std::cos(kLevel)))
+  if (drives(request) && !(scene_->T_world_base.linear()(2, 2) > std::cos(kMaxTilt)))
     return refuse(request.id, "the platform does not stand level: it cannot be planned for");
   start(request);
 }

@@ -1,4 +1,4 @@
-// The trajectory planner on a Bus.
+// Binds the trajectory planner to a bus.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class Node {
   void answer(const TrajectoryReply& reply);
   void refuse(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
-  /// Whether the platform moves along with the tool.
+  /// Returns whether the request moves the platform together with the tool.
   bool drives(const TrajectoryRequest& request) const;
   /// The robot on its platform.
   struct Mobile {

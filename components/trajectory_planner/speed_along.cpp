@@ -6,7 +6,7 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kFades = 0.35;  // from looked at to not looked at [rad]
+constexpr double kUnseenTransition = 0.35;  // angle of the transition from seen to unseen [rad]
 
 double in_steps(double factor) {
   constexpr double kStep = SpeedAlong::kStep;
@@ -35,10 +35,10 @@ SpeedAlong::SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Sur
   }
 }
 
-double SpeedAlong::what_people_do(const Vector& q) const {
+double SpeedAlong::behaviour_factor(const Vector& q) const {
   if (someone_.empty()) return 1;
   const Vector3 tool = (T_world_base_ * robot_.link_pose(q, tool_)).translation();
-  double least = 1;
+  double min_factor = 1;
   for (const Someone& someone : someone_) {
     const double distance = simplified_distance(someone.body, tool, tool, 0);
     const double near = std::clamp(2 * (1 - distance / settings_.concern_radius), 0.0, 1.0);
@@ -50,17 +50,18 @@ double SpeedAlong::what_people_do(const Vector& q) const {
       const Vector3 sight = tool - someone.sight->eyes;
       const double angle = std::acos(std::clamp(
           sight.dot(someone.sight->direction) / std::max(sight.norm(), 1e-9), -1.0, 1.0));
-      unseen = std::clamp(1 + (angle - settings_.unseen_angle) / kFades, 0.0, 1.0);
+      unseen = std::clamp(1 + (angle - settings_.unseen_angle) / kUnseenTransition, 0.0, 1.0);
     }
-    least = std::min(least, (1 - (1 - settings_.approach_factor) * near *
-                                     std::clamp(closing / settings_.approach_speed, 0.0, 1.0)) *
-                                (1 - (1 - settings_.unseen_factor) * near * unseen));
+    min_factor =
+        std::min(min_factor, (1 - (1 - settings_.approach_factor) * near *
+                                      std::clamp(closing / settings_.approach_speed, 0.0, 1.0)) *
+                                 (1 - (1 - settings_.unseen_factor) * near * unseen));
   }
-  return least;
+  return min_factor;
 }
 
 LimitScale SpeedAlong::factor(double cost, const Vector& q) const {
-  const double c = std::clamp(cost, 0.0, 1.0), people = what_people_do(q);
+  const double c = std::clamp(cost, 0.0, 1.0), people = behaviour_factor(q);
   const auto by_cost = [&](double min_factor) { return (1 - (1 - min_factor) * c) * people; };
   const LimitScale& min = settings_.min_factors;
   return {by_cost(min.velocity), by_cost(min.acceleration), by_cost(min.jerk)};

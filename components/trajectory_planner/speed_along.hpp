@@ -1,6 +1,6 @@
-// Velocity, acceleration and jerk that the robot may have at each place of its path because of
-// people (chapter section 2.1). Own method: what the place costs them (chapter section 4.1.2), and
-// what they do: come nearer, or look elsewhere. Pure.
+// Computes factors of the velocity, acceleration and jerk limits along a path because of people
+// (chapter section 2.1). Own method: from the human-aware cost (chapter section 4.1.2), the
+// approach of people and their gaze. Pure.
 #pragma once
 
 #include <vector>
@@ -11,53 +11,53 @@
 
 namespace handsel::trajectory_planner {
 
-/// The people around the robot, and where the robot stands.
+/// The people around the robot, and the pose of the robot.
 struct Surroundings {
   HumanState people;  ///< joints in the world frame
   /// Pose of the root link of the robot in the world.
   Pose T_world_base{Pose::Identity()};
-  double cost_gain{1.0};  ///< factor of what people cost, of attention
+  double cost_gain{1.0};  ///< factor of the human-aware cost, by attention
 };
 
-/// Factors of the limits, because of people.
+/// Parameters of the factors of the limits.
 struct SpeedSettings {
-  double cost_step{0.1};  ///< the path is sampled this often [rad, max norm]
-  /// Factors where the cost is 1; 1 where it is 0, linear between.
+  double cost_step{0.1};  ///< sampling step of the path [rad, max norm]
+  /// Factors at cost 1; linear to 1 at cost 0.
   LimitScale min_factors{0.5, 0.7, 0.7};
-  /// What people do counts in full up to half this distance from the tool, and fades to nothing
-  /// here [m].
+  /// Distance from the tool at which the effect of people's behaviour ends; full effect up to half
+  /// of it [m].
   double concern_radius{1.5};
-  /// A trunk that comes nearer to the tool this fast, or faster, counts in full [m/s].
+  /// Speed of a trunk toward the tool from which approach_factor has full effect [m/s].
   double approach_speed{0.8};
-  double approach_factor{0.7};  ///< then it is this, (0, 1]
-  /// A tool this far from where someone looks, or farther, counts as unseen [rad].
+  double approach_factor{0.7};  ///< factor at full effect of an approach, (0, 1]
+  /// Angle between gaze and tool from which the tool counts as unseen [rad].
   double unseen_angle{1.2};
-  double unseen_factor{0.8};  ///< then it is this, (0, 1]
+  double unseen_factor{0.8};  ///< factor for an unseen tool, (0, 1]
 };
 
 class SpeedAlong {
  public:
-  /// `cost` knows the same people; it, and the robot, must live on.
+  /// `cost` must contain the same people; `cost` and `robot` must outlive this.
   SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around,
              const SpeedSettings& settings);
 
   struct SpeedSample {
     double at{};        ///< position on the motion, 0 at its start, 1 at its end
-    double cost{};      ///< human-aware, [0, 1]
-    LimitScale factor;  ///< of the limits
+    double cost{};      ///< human-aware cost, [0, 1]
+    LimitScale factor;  ///< factors of the limits
   };
   /// Returns whether no person is present and no layer adds a cost: the factor is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
   SpeedSample at(const Vector& q) const;  ///< all axes [rad]
   /// Returns samples of the straight motion between two configurations, ends included.
   std::vector<SpeedSample> along(const Vector& from, const Vector& to) const;
-  /// Factor of all limits because of what people do, (0, 1]; 1 without people.
-  double what_people_do(const Vector& q) const;
+  /// Returns the factor of all limits because of people's behaviour, (0, 1]; 1 without people.
+  double behaviour_factor(const Vector& q) const;
 
-  /// Between two samples the lower factors of both count, in steps of kStep downward, never below
-  /// kStep; equal neighbours are one zone.
+  /// Returns zones with the lower factors of adjacent samples, rounded down to multiples of kStep
+  /// and at least kStep; merges equal adjacent zones.
   static LimitZones zones(const std::vector<SpeedSample>& samples);
-  /// Step, and least value, of the factors that zones() gives.
+  /// Step and min value of the factors of zones().
   static constexpr double kStep = 0.05;
 
  private:

@@ -46,7 +46,7 @@ KinematicLimits comfort_limits(const RobotModel& robot, const Group& group, doub
           RobotModel::part(all.acceleration, group), RobotModel::part(all.jerk, group)};
 }
 
-/// Judges corners: position limits on the exact extremes, collisions along the way.
+/// Checks blends: position limits at the exact extremes, collisions along the blend.
 class CornerJudge {
  public:
   CornerJudge(const RobotModel& robot, const Group& group, CollisionWorld& world,
@@ -88,13 +88,13 @@ class CornerJudge {
   const HumanCost& cost_;
   const Vector& start_;
   double step_;
-  bool bound_;  // by what outside layers forbid: not when it starts there
+  bool bound_;  // whether forbidding layers apply; false if the start is forbidden
   MotionCheck motion_;
 };
 
-/// Zones of the legs, as far as people are concerned.
-void look_along(const SpeedAlong& people, const TrajectoryRequest& request, const Group& group,
-                Result& result) {
+/// Writes the speed zones of the path segments, and max cost, because of people.
+void compute_zones(const SpeedAlong& people, const TrajectoryRequest& request, const Group& group,
+                   Result& result) {
   if (people.unconcerned()) return;
   for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
     const auto samples = people.along(RobotModel::with(request.start, group, request.nodes[k]),
@@ -117,13 +117,13 @@ void tell_speeds(const TrajectoryRequest& request, Result& result) {
   result.speed_factor *= speeds.minCoeff();
 }
 
-void tell_stops(const std::vector<BlendReport>& corners, TrajectoryReply& reply) {
+void report_stops(const std::vector<BlendReport>& corners, TrajectoryReply& reply) {
   for (const BlendReport& corner : corners)
     if (corner.method == BlendMethod::stop)
       reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
 }
 
-/// One request, and what it is planned with.
+/// One request with the models for planning.
 struct PlanningCase {
   const RobotModel& robot;
   const Group& group;
@@ -135,7 +135,7 @@ struct PlanningCase {
 void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAlong& people,
                  Result& result) {
   const auto& [robot, group, world, request, settings] = given;
-  look_along(people, request, group, result);
+  compute_zones(people, request, group, result);
   tell_speeds(request, result);
   CornerJudge check(robot, group, world, cost, request.start, settings.blend_step);
   SmoothSettings smoothing;
@@ -145,7 +145,7 @@ void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAl
       [&check](const Trajectory& corner) { return check(corner); }, result.speeds);
   TrajectoryReply& reply = result.reply;
   if (!(reply.reason = smoothed.reason).empty()) return;
-  tell_stops(smoothed.corners, reply);
+  report_stops(smoothed.corners, reply);
   reply.solved = true;
   reply.reached = static_cast<std::uint32_t>(request.nodes.size());
   reply.duration_ptp = smoothed.duration_ptp;
@@ -182,7 +182,7 @@ void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& 
   tell_speeds(request, result);
   for (BlendReport& corner : motion.corners)
     corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
-  tell_stops(motion.corners, reply);
+  report_stops(motion.corners, reply);
 }
 
 }  // namespace

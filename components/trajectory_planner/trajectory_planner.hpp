@@ -1,6 +1,6 @@
-// From a broken line of joints or of the tool to soft motion that people find comfortable (chapter
-// sections 4.4 to 4.6): smoothing at the comfort limits, lowered along the path by what it costs
-// people and by what they do. Pure.
+// Plans a jerk-limited trajectory along a path of joints or of the tool (chapter sections 4.4
+// to 4.6): smoothing at the comfort limits, reduced along the path by human-aware cost and people's
+// behaviour. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,25 @@
 namespace handsel::trajectory_planner {
 
 struct Settings {
-  /// Blends are checked this often for places outside layers forbid [rad, max norm].
+  /// Step of the checks of blends for forbidden places of cost layers [rad, max norm].
   double blend_step{0.02};
-  SpeedSettings speed;  ///< how people lower the speed along the path
-  /// Of motions of the tool; its allowed excess holds for those of joints too.
+  SpeedSettings speed;  ///< reduction of the speed by people
+  /// Settings of tool motions; the allowed excess holds for joint motions as well.
   CartesianSettings tool;
 };
 
 struct Result {
-  TrajectoryReply reply;   ///< as sent to the client; its reason says why there is no trajectory
-  std::uint64_t checks{};  ///< configurations checked
-  double cost{};           ///< largest human-aware cost along the line, [0, 1]
-  /// Least factor of the comfort velocity limits: asked for x because of people.
+  TrajectoryReply reply;   ///< as sent to the client; its reason explains a failure
+  std::uint64_t checks{};  ///< number of checked configurations
+  double cost{};           ///< max human-aware cost along the path, [0, 1]
+  /// Min factor of the comfort velocity limits: request times people.
   double speed_factor{1.0};
-  std::vector<LimitZones> speeds;  ///< of each segment, because of people
+  std::vector<LimitZones> speeds;  ///< speed limits of each segment because of people
 };
 
-/// `world` and `cost` hold scene, people and attachment; `around` the same people. Never throws for
-/// a bad request: the reply says why not, and as far as a motion of the tool goes it is there.
+/// Plans the trajectory of a request. `world` and `cost` contain scene, people and attachment,
+/// `around` the same people. Never throws for an invalid request: the reply has the reason, and an
+/// incomplete tool motion is included up to its end.
 Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost,
             const Surroundings& around, const TrajectoryRequest& request, const Settings& settings);
 

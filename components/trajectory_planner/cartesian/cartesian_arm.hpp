@@ -14,23 +14,23 @@ class CartesianArm {
   /// Keeps references to the robot and the request, which must be checked.
   CartesianArm(const RobotModel& robot, const Group& group, const CartesianRequest& request);
 
-  /// Returns whether the arm is one of shoulder, elbow and wrist; only then srs() and advance() may
-  /// be called.
+  /// Returns whether the arm consists of shoulder, elbow and wrist, as srs() and advance() require.
   bool recognised() const { return arm_.has_value(); }
-  /// Returns the chain of the arm, made where the platform stood at the start.
+  /// Returns the chain of the arm at the platform's start pose.
   const ik::Chain& chain() const { return chain_; }
   /// Returns the closed-form kinematics of the arm.
   const ik::SrsArm& srs() const { return *arm_; }
   /// Returns the pose of the tool for chain() and srs(), `also` the positions of the further axes.
   Pose for_arm(const Pose& T_root_tool, const Vector& also) const;
-  /// Returns 0 in the middle of the range of each joint, growing steeply toward its ends.
+  /// Returns a penalty: 0 in the middle of each joint's range, with a steep increase at its ends.
   double near_limits(const ik::Axes& q) const;
-  /// Moves q to the configuration for this pose nearby; false where none is within `largest_step`.
+  /// Moves q to the nearest configuration for this pose; returns false if none is within
+  /// `largest_step`.
   bool advance(const Pose& T, double elbow, const Vector& also, double largest_step,
                ik::Axes& q) const;
 
  private:
-  /// Index of a robot axis among the further active axes; -1: it is none.
+  /// Returns the index of a robot axis among the further active axes; -1: none.
   int further(int axis) const;
   bool drives() const { return platform_[0] >= 0 || platform_[1] >= 0 || platform_[2] >= 0; }
   Pose base_at(const Vector& also) const;

@@ -1,4 +1,4 @@
-// Nodes of a Cartesian motion and the elbow angles at them.
+// Waypoints of a Cartesian motion and their elbow angles.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,12 +8,11 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kNearPi = 0.02;  // displacements this near to a turn by pi have no axis [rad]
-constexpr double kSame = 1e-9;    // nodes nearer are the same
-constexpr double kProbe = 0.05;   // the way between elbow angles is tried this often [rad or 3 x m]
-constexpr double kMetre = 3.0;    // [rad/m]
-constexpr double kElbowMotion =
-    0.3;  // cost of turning the elbow by a radian, where keeping off the limits is worth 1
+constexpr double kMinFromPi = 0.02;   // min distance from pi of the angle of a segment [rad]
+constexpr double kSame = 1e-9;        // max distance of equal waypoints
+constexpr double kProbe = 0.05;       // step of the tested motion between elbow angles [rad]
+constexpr double kMetre = 3.0;        // weight of the tool's translation in this step [rad/m]
+constexpr double kElbowMotion = 0.3;  // weight of elbow motion against near_limits() [1/rad]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Vector3 displacement(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
@@ -40,7 +39,7 @@ void CartesianPlanning::find_nodes() {
     const CartesianWaypoint& wanted = request_.nodes[k - 1];
     const Node& last = motion_.path.nodes_.back();
     const Vector3 turn = displacement(last.T_root_tool.linear(), wanted.T_root_tool.linear());
-    if (turn.norm() > M_PI - kNearPi)
+    if (turn.norm() > M_PI - kMinFromPi)
       return end_before(k, "the tool turns by half a turn from " + node_name(k - 1) + " to " +
                                node_name(k) +
                                ", about no axis in particular: a node between is needed");
@@ -80,13 +79,13 @@ std::optional<ik::Axes> CartesianPlanning::along_segment(
       {kMetre * step.head<3>().norm(), step.segment<3>(3).norm(), std::abs(elbow_to - elbow_from)});
   const int parts = std::max(1, static_cast<int>(std::ceil(far / kProbe)));
   ik::Axes q = from;
-  const auto look = [&](double factor) {
+  const auto add_sample = [&](double factor) {
     if (samples == nullptr) return;
     samples->push_back(request_.people->at(whole(
         q, a.active.tail(a.active.size() - kElbow) + factor * step.tail(step.size() - kElbow))));
     samples->back().at = factor;
   };
-  look(0);
+  add_sample(0);
   for (int k = 1; k <= parts; ++k) {
     const double factor = static_cast<double>(k) / parts;
     const Vector active = a.active + factor * step;
@@ -96,7 +95,7 @@ std::optional<ik::Axes> CartesianPlanning::along_segment(
     if (!next || (*next - q).lpNorm<Eigen::Infinity>() > 4 * settings_.largest_step)
       return std::nullopt;
     q = *next;
-    look(factor);
+    add_sample(factor);
   }
   return q;
 }
@@ -112,7 +111,7 @@ void CartesianPlanning::choose_elbows() {
   for (std::size_t k = 1; k < nodes.size(); ++k) {
     const std::optional<double>& fixed = request_.nodes[given_[k] - 1].elbow;
     std::vector<Option> to;
-    std::vector<std::pair<double, int>> ways;
+    std::vector<std::pair<double, int>> origins;
     const int tries = fixed ? 1 : settings_.elbows;
     for (int i = 0; i < tries; ++i) {
       const double angle = fixed ? *fixed : nodes[0].active[kTool] + 2 * M_PI * i / tries;
@@ -129,7 +128,7 @@ void CartesianPlanning::choose_elbows() {
             along_segment(k - 1, before.elbow, elbow, before.q, nullptr);
         if (!q) continue;
         to.push_back({elbow, order[j].first + arm_->near_limits(*q), *q});
-        ways.emplace_back(elbow, order[j].second);
+        origins.emplace_back(elbow, order[j].second);
         break;
       }
     }
@@ -138,7 +137,7 @@ void CartesianPlanning::choose_elbows() {
       break;
     }
     from = std::move(to);
-    chosen.push_back(std::move(ways));
+    chosen.push_back(std::move(origins));
   }
   std::size_t best = 0;
   for (std::size_t i = 0; i < from.size(); ++i)

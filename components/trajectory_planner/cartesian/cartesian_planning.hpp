@@ -1,4 +1,4 @@
-// The planning of one Cartesian motion, step by step: nodes, elbows, timing, joints at each period.
+// Plans one Cartesian motion in steps: waypoints, elbow angles, timing, joints at each period.
 #pragma once
 
 #include <cstdio>
@@ -13,7 +13,8 @@
 
 namespace handsel::trajectory_planner {
 
-inline constexpr int kTool = 6, kElbow = 7;  ///< active axes up to those of the tool, of the elbow
+/// Numbers of active axes up to the tool, up to the elbow.
+inline constexpr int kTool = 6, kElbow = 7;
 
 /// Returns the text of a printf pattern, up to 239 characters.
 template <class... Values>
@@ -23,7 +24,7 @@ std::string formatted(const char* pattern, Values... values) {
   return out;
 }
 
-/// Returns a node of the request as in messages, e.g. "node 2"; 0 is the start.
+/// Returns the name of a waypoint of the request in messages, e.g. "node 2"; 0 is the start.
 inline std::string node_name(std::size_t node) { return "node " + std::to_string(node); }
 
 class CartesianPlanning {
@@ -40,37 +41,37 @@ class CartesianPlanning {
   using Node = CartesianTrajectory::Node;
 
   bool refuse(const std::string& why);
-  /// The path ends before this node of the request.
+  /// Ends the path before this waypoint of the request.
   void end_before(std::size_t given, const std::string& why);
   bool possible();
   bool join();
-  /// Those of the arm and the one that follows it, and further ones that some node has elsewhere.
+  /// Returns the axes of the arm and the joined arm, and the further axes that move.
   std::vector<int> axes_that_move() const;
   Vector whole(const ik::Axes& q, const Vector& also) const;
 
-  /// The active values of the nodes, as far as path segments between them exist; elbows left open
-  /// are those of the start.
+  /// Computes the active values of the waypoints as long as path segments exist; open elbow angles
+  /// are that of the start.
   void find_nodes();
-  /// The configuration at the end of a path segment, on the branch of its beginning; nullopt where
-  /// joints meet a limit or jump. Writes samples of speed unless null.
+  /// Returns the configuration at the end of a path segment, on the branch of its start; nullopt if
+  /// joints reach a limit or jump. Writes speed samples unless null.
   std::optional<ik::Axes> along_segment(std::size_t segment, double elbow_from, double elbow_to,
                                         const ik::Axes& from,
                                         std::vector<SpeedAlong::SpeedSample>* samples) const;
-  /// Elbow angles of the nodes that leave it open: those that keep the joints clear of their limits
-  /// with little motion of the elbow, and that a path leads to. Cheapest first; paths are only
-  /// tried where they would be taken.
+  /// Selects open elbow angles with min cost: distance of the joints from their limits and motion
+  /// of the elbow, among angles with a path. Tests paths only for the cheapest options.
   void choose_elbows();
   std::string why_no_path(std::size_t k) const;
 
   KinematicLimits active_limits() const;
-  /// TR of the nodes left.
+  /// Computes TR of the remaining waypoints.
   bool timed();
-  /// A corner is followed from the configuration of its node to both ends.
+  /// Returns whether a blend is free, from the configuration of its waypoint to both ends.
   bool corner_free(const Trajectory& corner) const;
-  /// The node of a corner: it begins on the path segment before and ends on the one after.
+  /// Returns the waypoint of a blend, which starts on the previous and ends on the next path
+  /// segment.
   std::size_t node_of(const Trajectory& corner) const;
 
-  /// The joints at every period. Where that is not possible the path ends before the node ahead.
+  /// Computes the joints at every period; if impossible, ends the path before the next waypoint.
   bool followed();
   std::size_t ahead_of(double t, std::size_t node) const;
   std::string why_stopped(std::size_t given, const Pose& T, double elbow, const Vector& also,
@@ -86,8 +87,8 @@ class CartesianPlanning {
   const CartesianSettings& settings_;
   std::optional<CartesianArm> arm_;
   std::optional<ClosedChain> joined_;
-  std::vector<std::size_t> given_;        // of each node, its number in the request; the start is 0
-  std::vector<ik::Axes> configurations_;  // at the nodes
+  std::vector<std::size_t> given_;        // number of each waypoint in the request; the start is 0
+  std::vector<ik::Axes> configurations_;  // at the waypoints
   std::vector<double> times_;
   CartesianMotion motion_;
 };

@@ -1,4 +1,4 @@
-// The joints at every period, and their approximation.
+// Computes the joints at every period, and their approximation.
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +9,10 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr int kTries =
-    3;  // of an approximation that leaves the limits its samples keep; each ten times as close
-constexpr double kRounding = 1e-7;
+// Max approximations, each with 1/10 of the tolerance, until the result is within the position
+// limits.
+constexpr int kMaxTries = 3;
+constexpr double kRounding = 1e-7;  // rounding error of positions [rad]
 
 }  // namespace
 
@@ -19,19 +20,19 @@ bool CartesianPlanning::followed() {
   motion_.samples.clear();
   times_.clear();
   const CartesianTrajectory& path = motion_.path;
-  const double lasts = path.duration();
+  const double duration = path.duration();
   if (path.nodes_.size() < 2) {
     motion_.samples = {request_.start(motion_.axes)};
     times_ = {0.0};
     return true;
   }
-  const int steps = std::max(4, static_cast<int>(std::ceil(lasts / settings_.period - 1e-9)));
+  const int steps = std::max(4, static_cast<int>(std::ceil(duration / settings_.period - 1e-9)));
   ik::Axes q = RobotModel::part(request_.start, group_);
   if (joined_) joined_->restart();
   const SegmentTable table(path.active_);
   MotionState3 state = path.active_.at(0);
   int cursor = 0;
-  std::vector<Vector> postures;
+  std::vector<Vector> configurations;
   const auto ahead = [&](double t) {
     const std::size_t node = path.node_at(t);
     return given_[std::min(path.nodes_.size() - 1,
@@ -39,7 +40,7 @@ bool CartesianPlanning::followed() {
   };
   std::string why;
   for (int k = 0; k <= steps && why.empty(); ++k) {
-    const double t = k == steps ? lasts : std::min(lasts, k * settings_.period);
+    const double t = k == steps ? duration : std::min(duration, k * settings_.period);
     table.evaluate(t, cursor, state);
     const Pose T = path.pose_at(state.position, path.node_at(t));
     const Vector also = state.position.tail(state.position.size() - kElbow);
@@ -57,14 +58,14 @@ bool CartesianPlanning::followed() {
       else
         sample << q, also;
       motion_.samples.push_back(std::move(sample));
-      postures.push_back(whole(q, also));
+      configurations.push_back(whole(q, also));
     }
   }
   std::size_t last = times_.size() - 1;
-  if (const std::size_t touching = first_touching(world_, postures, settings_.collision_step);
-      touching < postures.size()) {
+  if (const std::size_t touching = first_touching(world_, configurations, settings_.collision_step);
+      touching < configurations.size()) {
     last = touching;
-    const CollisionVerdict verdict = world_.check(postures[touching]);
+    const CollisionVerdict verdict = world_.check(configurations[touching]);
     why = "on the path to " + node_name(ahead(times_[last])) + " " + verdict.first + " touches " +
           verdict.second;
   }
@@ -81,15 +82,15 @@ std::size_t CartesianPlanning::ahead_of(double t, std::size_t node) const {
 
 std::string CartesianPlanning::why_stopped(std::size_t given, const Pose& T, double elbow,
                                            const Vector& also, const ik::Axes& q) const {
-  const std::string way = "on the path to " + node_name(given);
+  const std::string place = "on the path to " + node_name(given);
   const auto next = arm_->srs().nearest(arm_->for_arm(T, also), elbow, q);
   if (!next)
-    return way + (arm_->srs().branches(arm_->for_arm(T, also), elbow).empty()
-                      ? " the arm does not reach"
-                      : " a joint meets its limit");
+    return place + (arm_->srs().branches(arm_->for_arm(T, also), elbow).empty()
+                        ? " the arm does not reach"
+                        : " a joint meets its limit");
   Eigen::Index joint = 0;
   (*next - q).cwiseAbs().maxCoeff(&joint);
-  return way + " joint " +
+  return place + " joint " +
          robot_.axes()[static_cast<std::size_t>(group_.axes[static_cast<std::size_t>(joint)])]
              .name +
          " would jump: shoulder, elbow or wrist is stretched there";
@@ -108,7 +109,7 @@ void CartesianPlanning::approximated() {
   derived.samples.front().position = motion_.samples.front();
   derived.samples.back().position = motion_.samples.back();
   ApproximationTolerance tolerance = settings_.tolerance;
-  for (int tries = 0; tries < kTries; ++tries, tolerance.position *= 0.1) {
+  for (int tries = 0; tries < kMaxTries; ++tries, tolerance.position *= 0.1) {
     motion_.executable = approximate_within(times_, derived.samples, tolerance, limits);
     if (!motion_.executable.approximation.ok() ||
         inside_limits(motion_.executable.approximation.trajectory))

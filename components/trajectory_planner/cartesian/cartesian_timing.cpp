@@ -1,4 +1,4 @@
-// The smoothed trajectory of the active axes.
+// Computes the smoothed trajectory of the active axes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -96,7 +96,7 @@ bool CartesianPlanning::corner_free(const Trajectory& corner) const {
     }
   for (const double end : {0.0, lasts}) {
     ik::Axes q = configurations_[node];
-    std::vector<Vector> way;
+    std::vector<Vector> configurations;
     const int steps =
         std::max(1, static_cast<int>(std::ceil(std::abs(end - middle) / (4 * settings_.period))));
     for (int k = 0; k <= steps; ++k) {
@@ -106,9 +106,10 @@ bool CartesianPlanning::corner_free(const Trajectory& corner) const {
       if (!held_upright(request_.level, T) ||
           !arm_->advance(T, active[kTool], also, settings_.largest_step, q))
         return false;
-      way.push_back(whole(q, also));
+      configurations.push_back(whole(q, also));
     }
-    if (first_touching(world_, way, settings_.collision_step) < way.size()) return false;
+    if (first_touching(world_, configurations, settings_.collision_step) < configurations.size())
+      return false;
   }
   return true;
 }
@@ -116,16 +117,17 @@ bool CartesianPlanning::corner_free(const Trajectory& corner) const {
 std::size_t CartesianPlanning::node_of(const Trajectory& corner) const {
   const std::vector<Node>& nodes = motion_.path.nodes_;
   const Vector begin = corner.at(0).position, end = corner.at(corner.duration()).position;
-  const auto off = [&](const Vector& x, std::size_t leg) {
-    const Vector along = nodes[leg + 1].active - nodes[leg].active;
+  const auto distance_to_segment = [&](const Vector& x, std::size_t segment) {
+    const Vector along = nodes[segment + 1].active - nodes[segment].active;
     const double factor = std::clamp(
-        (x - nodes[leg].active).dot(along) / std::max(along.squaredNorm(), 1e-18), 0.0, 1.0);
-    return (x - nodes[leg].active - factor * along).norm();
+        (x - nodes[segment].active).dot(along) / std::max(along.squaredNorm(), 1e-18), 0.0, 1.0);
+    return (x - nodes[segment].active - factor * along).norm();
   };
   std::size_t best = 0;
   double least = 1e-5;
   for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-    if (const double d = off(begin, k - 1) + off(end, k); d < least) {
+    if (const double d = distance_to_segment(begin, k - 1) + distance_to_segment(end, k);
+        d < least) {
       least = d;
       best = k;
     }

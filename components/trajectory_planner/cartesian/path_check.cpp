@@ -12,7 +12,7 @@ bool held_upright(const std::optional<HeldLevel>& held, const Pose& T) {
   return std::acos(std::clamp(c, -1.0, 1.0)) <= level.bound;
 }
 
-std::size_t first_touching(CollisionWorld& world, const std::vector<Vector>& postures,
+std::size_t first_touching(CollisionWorld& world, const std::vector<Vector>& configurations,
                            double step) {
   struct Run {
     std::size_t begin, end;
@@ -27,19 +27,19 @@ std::size_t first_touching(CollisionWorld& world, const std::vector<Vector>& pos
       const Run& run = runs[static_cast<std::size_t>(i)];
       if ((unclear >> i & 1) == 0) continue;
       for (const std::size_t k : {run.begin, run.end})
-        if (!world.is_free(postures[k])) return k;
+        if (!world.is_free(configurations[k])) return k;
     }
     runs.clear();
     low.clear();
     high.clear();
     return std::nullopt;
   };
-  for (std::size_t begin = 0; begin < postures.size();) {
-    Vector least = postures[begin], bound = least;
+  for (std::size_t begin = 0; begin < configurations.size();) {
+    Vector least = configurations[begin], bound = least;
     std::size_t end = begin;
-    while (end + 1 < postures.size()) {
-      const Vector lower = least.cwiseMin(postures[end + 1]),
-                   upper = bound.cwiseMax(postures[end + 1]);
+    while (end + 1 < configurations.size()) {
+      const Vector lower = least.cwiseMin(configurations[end + 1]),
+                   upper = bound.cwiseMax(configurations[end + 1]);
       if (end > begin && (upper - lower).maxCoeff() > step) break;
       least = lower;
       bound = upper;
@@ -48,11 +48,11 @@ std::size_t first_touching(CollisionWorld& world, const std::vector<Vector>& pos
     runs.push_back({begin, end});
     low.push_back(least);
     high.push_back(bound);
-    begin = end > begin && end + 1 < postures.size() ? end : postures.size();
-    if (runs.size() < CollisionWorld::kMaxBoxes && begin < postures.size()) continue;
+    begin = end > begin && end + 1 < configurations.size() ? end : configurations.size();
+    if (runs.size() < CollisionWorld::kMaxBoxes && begin < configurations.size()) continue;
     if (const auto touching = check()) return *touching;
   }
-  return postures.size();
+  return configurations.size();
 }
 
 }  // namespace handsel::trajectory_planner

@@ -1,4 +1,4 @@
-// Checks of the path of a Cartesian motion.
+// Checks the path of a Cartesian motion.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,12 @@
 
 namespace handsel::trajectory_planner {
 
-/// Returns whether what is held is upright with the tool at T; true when nothing is held.
+/// Returns whether the held object is upright with the tool at T; true without a bound.
 bool held_upright(const std::optional<HeldLevel>& held, const Pose& T_root_tool);
 
-/// Returns the index of the first of these configurations, one near the next, that touches
-/// something; their number where none does. Boxes of configurations around some of them, at most
-/// `step` wide [rad], and what lies between, are checked side by side; those that are not clear
-/// configuration by configuration.
+/// Returns the index of the first of these successive nearby configurations in contact; their
+/// number if none. Checks boxes of configurations at most `step` wide [rad] in batches, then the
+/// configurations of boxes that are not clear.
 std::size_t first_touching(CollisionWorld& world, const std::vector<Vector>& configurations,
                            double step);
 
