@@ -1,6 +1,6 @@
-// The attentional system: behaviours on their own clocks, the least speed factor wins, the most
-// active one leads the gaze. Chapter abstract, sections 1 and 2.1. Own method: the chapter's
-// section on attention is missing (formulas: section 4). Pure: no clock, no I/O.
+// The attentional system: behaviours with adaptive clocks; the min speed factor applies, and the
+// most active behaviour controls the gaze. Chapter abstract, sections 1 and 2.1. Own method: the
+// chapter has no section on attention (formulas: section 4). Pure: no clock, no I/O.
 #pragma once
 
 #include <memory>
@@ -14,56 +14,56 @@ namespace handsel::attention {
 
 /// One behaviour as configured.
 struct BehaviourSettings {
-  Behaviour behaviour{};                ///< its kind
+  Behaviour behaviour{};                ///< kind
   ClockSettings clock;                  ///< period of the perception
-  std::string name{};                   ///< empty: that of the kind
-  std::vector<Condition> conditions{};  ///< of its releaser, beside those of its kind
-  WatchSettings watch{};                ///< where the kind is watch
+  std::string name{};                   ///< empty: name of the kind
+  std::vector<Condition> conditions{};  ///< conditions of the releaser, besides those of the kind
+  WatchSettings watch{};                ///< used by the kind watch
 };
 
-/// Work that others do as often as attention wants.
+/// Work of other components whose period attention advises.
 enum class Work {
-  people,    ///< what they do, in facts
-  objects,   ///< where they are and who has them, in the scene
-  forecast,  ///< of the running trajectory
+  people,    ///< facts about people
+  objects,   ///< poses and holders in the scene
+  forecast,  ///< forecast of the running trajectory
   cost_map,
-  replan,  ///< a better path for the running motion
+  replan,  ///< online replanning
 };
 inline constexpr const char* kWorkNames[] = {"people", "objects", "forecast", "cost_map", "replan"};
 
-/// A period between p_min and p_max, as urgent as the most urgent of the behaviours it serves:
-/// p_min + (p_max - p_min) times the smallest fraction of its range by which one of their clocks is
-/// above its own p_min. Before a behaviour has observed, p_min.
+/// The advised period of a work, by its most urgent behaviour: p_min + (p_max - p_min) * r, where r
+/// is the min over the behaviours of (period - p_min) / (p_max - p_min) of their clocks; p_min
+/// before the first observation.
 struct WorkSettings {
-  Work work{};                      ///< the work that is paced
-  double p_min{}, p_max{};          ///< [s] 0 < p_min <= p_max
-  double period{};                  ///< > 0: always this [s]
+  Work work{};                      ///< the work
+  double p_min{}, p_max{};          ///< bounds of the period, 0 < p_min <= p_max [s]
+  double period{};                  ///< > 0: constant period [s]
   std::vector<std::string> serves;  ///< behaviours, at least one
 };
 
 struct AttentionSettings {
-  bool off{};              ///< no behaviour observes or asks for anything
-  double tick{0.01};       ///< period of step() [s]; clocks are rounded
-  double gaze_dwell{0.5};  ///< gaze stays at least this long [s]
-  /// Another behaviour takes the gaze only with a period below this times that of the present one.
+  bool off{};              ///< no behaviour observes or acts
+  double tick{0.01};       ///< period of step(), to which clocks are rounded [s]
+  double gaze_dwell{0.5};  ///< min duration of a gaze target [s]
+  /// Max ratio of periods at which another behaviour takes over the gaze.
   double gaze_advantage{0.8};
-  /// Gain on the human-aware costs when AVOID is at its most urgent, >= 1.
+  /// Gain of the human-aware costs at max urgency of AVOID, >= 1.
   double near_cost_gain{2.0};
-  ZoneSettings zones;                         ///< of TRACK and AVOID
-  MotorSettings motor;                        ///< of all behaviours
+  ZoneSettings zones;                         ///< zones of TRACK and AVOID
+  MotorSettings motor;                        ///< motor parts of all behaviours
   std::vector<BehaviourSettings> behaviours;  ///< at least one; each name at most once
-  std::vector<WorkSettings> works;            ///< each at most once; other work sets its own period
+  std::vector<WorkSettings> works;  ///< each at most once; other works keep their own period
 };
 
 class Attention {
  public:
-  /// `body` must live as long. Throws ConfigError naming the behaviour and the field.
+  /// `body` must outlive this. Throws ConfigError that names behaviour and field.
   Attention(const AttentionSettings& settings, const Body& body);
 
-  /// Runs the perception of every behaviour whose clock is due. Call every `tick`.
+  /// Runs the perception of all due behaviours; to be called every `tick`.
   void step(const World& world, TimePoint now);
-  AttentionAdvice advice() const;  ///< as of the last step
-  AttentionState state() const;    ///< as of the last step
+  AttentionAdvice advice() const;  ///< Returns the advice as of the last step.
+  AttentionState state() const;    ///< Returns the state as of the last step.
 
  private:
   struct Entry {
@@ -82,7 +82,7 @@ class Attention {
 
   AttentionSettings settings_;
   std::vector<Entry> entries_;
-  std::vector<std::size_t> order_;  // in which releasers are evaluated
+  std::vector<std::size_t> order_;  // order of evaluation of the releasers
   TimePoint now_{}, gaze_since_{};
   int gaze_{-1};
 };

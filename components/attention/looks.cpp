@@ -50,9 +50,9 @@ NearHand nearest_hand(const Person& person, const Vector3& p) {
 
 namespace {
 
-constexpr double kBeforeHand = 0.12;  // from a hand to the middle of what it is about to take [m]
+constexpr double kHandToObject = 0.12;  // from a receiving hand to the centre of the object [m]
 
-/// Returns whether a hand is extended toward the robot and rests.
+/// Returns whether a hand is extended toward the robot and at rest.
 bool is_extended(const Person& person, Side side, const Vector3& p_robot,
                  const MotorSettings& motor) {
   const bool left = side == Side::left;
@@ -78,15 +78,15 @@ std::optional<Vector3> shift_to_extended_hand(const ActionStatus& action, const 
     const auto hand = side == Side::left ? body::l_hand : body::r_hand;
     const Vector3 to_hand = person.joints[hand].position - action.exchange_point;
     const double distance = to_hand.norm();
-    if (distance > kBeforeHand && (!nearest || distance - kBeforeHand < nearest->norm()))
-      nearest = (1 - kBeforeHand / distance) * to_hand;
+    if (distance > kHandToObject && (!nearest || distance - kHandToObject < nearest->norm()))
+      nearest = (1 - kHandToObject / distance) * to_hand;
   }
   return nearest;
 }
 
 double urgency(double distance, double closing) {
-  constexpr double kReference = 0.5;
-  return std::max(0.0, closing > kReference ? distance * kReference / closing : distance);
+  constexpr double kReferenceSpeed = 0.5;  // [m/s]
+  return std::max(0.0, closing > kReferenceSpeed ? distance * kReferenceSpeed / closing : distance);
 }
 
 double ramp(double x, double low, double high) {

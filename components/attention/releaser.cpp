@@ -21,12 +21,12 @@ E named(const std::string& what, const std::string& word, std::span<const char* 
 enum class Mark { unseen, open, closed };
 
 void visit(std::size_t index, const std::vector<Releaser>& releasers, std::vector<Mark>& marks,
-           std::vector<std::size_t>& way, std::vector<std::size_t>& order) {
+           std::vector<std::size_t>& path, std::vector<std::size_t>& order) {
   if (marks[index] == Mark::closed) return;
-  way.push_back(index);
+  path.push_back(index);
   if (marks[index] == Mark::open) {
     std::string chain;
-    for (auto at = std::find(way.begin(), way.end(), index); at != way.end(); ++at)
+    for (auto at = std::find(path.begin(), path.end(), index); at != path.end(); ++at)
       chain += (chain.empty() ? "" : " -> ") + releasers[*at].behaviour;
     throw ConfigError("releasers wait for each other: " + chain);
   }
@@ -39,10 +39,10 @@ void visit(std::size_t index, const std::vector<Releaser>& releasers, std::vecto
     if (at == releasers.end())
       throw ConfigError("behaviour " + releasers[index].behaviour + " waits for \"" +
                         condition.behaviour + "\", which is not described");
-    visit(static_cast<std::size_t>(at - releasers.begin()), releasers, marks, way, order);
+    visit(static_cast<std::size_t>(at - releasers.begin()), releasers, marks, path, order);
   }
   marks[index] = Mark::closed;
-  way.pop_back();
+  path.pop_back();
   order.push_back(index);
 }
 
@@ -87,8 +87,8 @@ bool met(const Condition& condition, const World& world, bool released) {
 
 std::vector<std::size_t> releaser_order(const std::vector<Releaser>& releasers) {
   std::vector<Mark> marks(releasers.size(), Mark::unseen);
-  std::vector<std::size_t> way, order;
-  for (std::size_t i = 0; i < releasers.size(); ++i) visit(i, releasers, marks, way, order);
+  std::vector<std::size_t> path, order;
+  for (std::size_t i = 0; i < releasers.size(); ++i) visit(i, releasers, marks, path, order);
   return order;
 }
 

@@ -1,4 +1,4 @@
-// What must hold for a behaviour to act, as data: one condition a line, all of them together.
+// Conditions of a behaviour's releaser as data, all of which must hold.
 #pragma once
 
 #include <optional>
@@ -13,26 +13,27 @@ namespace handsel::attention {
 /// before a condition negates it.
 struct Condition {
   enum class Kind { action, holding, fact, behaviour };
-  Kind kind{};            ///< which of the fields below counts
-  bool negated{};         ///< true: the opposite must hold
-  ActionKind action{};    ///< that must be running
-  FactKind fact{};        ///< that must hold about anybody or anything
-  std::string behaviour;  ///< that must be released
+  Kind kind{};            ///< selects the valid field below
+  bool negated{};         ///< whether the condition is negated
+  ActionKind action{};    ///< action that must be running
+  FactKind fact{};        ///< fact that must hold about any person or object
+  std::string behaviour;  ///< behaviour that must be released
 };
 
-/// Reads one condition. Throws ConfigError with what is wrong with the text.
+/// Reads one condition. Throws ConfigError that names the error.
 Condition parse_condition(const std::string& text);
-/// `released`: of the behaviour the condition names, if it names one.
+/// Returns whether the condition holds. `released`: state of the behaviour that the condition
+/// names.
 bool met(const Condition& condition, const World& world, bool released);
 
 /// Conditions of one behaviour.
 struct Releaser {
-  std::string behaviour;              ///< whose it is
+  std::string behaviour;              ///< name of the behaviour
   std::vector<Condition> conditions;  ///< all must hold
 };
 
-/// An order in which each behaviour comes after those its conditions name. Throws ConfigError
-/// naming a cycle or an unknown behaviour.
+/// Returns an order in which each behaviour follows those named by its conditions. Throws
+/// ConfigError that names a cycle or an unknown behaviour.
 std::vector<std::size_t> releaser_order(const std::vector<Releaser>& releasers);
 
 }  // namespace handsel::attention

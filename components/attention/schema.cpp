@@ -155,13 +155,13 @@ class Avoid : public Schema {
   const char* reason() const override { return reason_; }
 
  private:
-  /// The least distance along the running trajectory before long. At first alone would not do: what
-  /// begins or ends softly seems to stand.
+  /// Returns the min distance along the running trajectory at two times ahead. The earlier one
+  /// alone is not sufficient, because a jerk-limited trajectory hardly moves at its start and end.
   double least_along(const ActiveTrajectory& active, const HumanState& people,
-                     const SeparationExemption& exception, int way) {
-    constexpr double kFirst = 0.15, kSoon = 0.4;  // [s]
-    return std::min(distance_along(active, people, exception, way * kFirst),
-                    distance_along(active, people, exception, way * kSoon));
+                     const SeparationExemption& exception, int direction) {
+    constexpr double kFirst = 0.15, kSecond = 0.4;  // times ahead [s]
+    return std::min(distance_along(active, people, exception, direction * kFirst),
+                    distance_along(active, people, exception, direction * kSecond));
   }
   double distance_along(const ActiveTrajectory& active, const HumanState& people,
                         const SeparationExemption& exception, double ahead) {
@@ -216,27 +216,28 @@ class Pick : public Schema {
   Vector3 target_{Vector3::Zero()};
 };
 
-/// Somebody whose hand has been coming for what the robot holds, and for how long.
+/// Detects a person whose hand approaches the object that the robot holds, and for how long.
 class ReachWatch {
  public:
   explicit ReachWatch(const MotorSettings& motor)
       : near_(motor.reach_near), hold_(motor.reach_hold) {}
 
-  /// Distance of the nearest hand that reaches [m]; +inf: nobody's.
-  double look(const World& w, const Vector3& p_held, TimePoint now) {
+  /// Returns the distance of the nearest reaching hand [m]; +inf: none.
+  double observe(const World& w, const Vector3& p_held, TimePoint now) {
     double nearest = kInfinity;
-    std::string who;
+    std::string nearest_person;
     if (w.people == nullptr) return nearest;
     for (const Person& person : w.people->people) {
       const double distance = nearest_hand(person, p_held).distance;
-      if (distance > near_ || distance > nearest || !(reaches(w, person.id) || distance < kAtIt))
+      if (distance > near_ || distance > nearest ||
+          !(reaches(w, person.id) || distance < kMaxArrived))
         continue;
       nearest = distance;
-      who = person.id;
+      nearest_person = person.id;
     }
-    if (who != person_) since_ = now;
-    person_ = who;
-    held_ = !who.empty() && now - since_ >= from_seconds(hold_);
+    if (nearest_person != person_) since_ = now;
+    person_ = nearest_person;
+    held_ = !nearest_person.empty() && now - since_ >= from_seconds(hold_);
     return nearest;
   }
   void forget() { person_.clear(), held_ = false; }
@@ -245,7 +246,7 @@ class ReachWatch {
   }
 
  private:
-  static constexpr double kAtIt = 0.15;  // it has come [m]
+  static constexpr double kMaxArrived = 0.15;  // max distance of a hand at the object [m]
   static bool reaches(const World& w, const std::string& person) {
     return w.facts && std::any_of(w.facts->facts.begin(), w.facts->facts.end(), [&](const Fact& f) {
              return f.kind == FactKind::reaching && f.subject == person &&
@@ -269,7 +270,7 @@ class Place : public Schema {
     const Vector3 p = body_.grasp_point(w.active->position, w.active->T_world_base);
     double hand = kInfinity;
     if (putting_down(w))
-      hand = reach_.look(w, p, now);
+      hand = reach_.observe(w, p, now);
     else
       reach_.forget();
     for (const SceneBox& box : w.scene->boxes) {
@@ -308,8 +309,8 @@ class Place : public Schema {
   Vector3 target_{Vector3::Zero()};
 };
 
-/// GIVE and RECEIVE watch the same thing, the person's hand at the exchange; they differ in who
-/// holds the object.
+/// Base of GIVE and RECEIVE, which both observe the person's hand at the exchange point but differ
+/// in the holder of the object.
 class Exchange : public Schema {
  public:
   Exchange(Behaviour kind, const Body& body, const MotorSettings& motor)
@@ -350,7 +351,8 @@ class Exchange : public Schema {
   std::optional<Vector3> target_shift() const override { return present_ ? shift_ : std::nullopt; }
 
  private:
-  /// To the hand that the receiver has extended for `shift_hold`, unless a hand is at the object.
+  /// Returns the shift to the hand that the receiver has extended for `shift_hold`, unless a hand
+  /// is at the object.
   std::optional<Vector3> shift_of_give(const World& w, const Person& person, TimePoint now) {
     const ActionPhase phase = w.action->phase;
     const Vector3 p_robot = body_.base_point(*w.active, Vector3::Zero());
@@ -363,7 +365,7 @@ class Exchange : public Schema {
     const bool held = shift && now - *extended_since_ >= from_seconds(motor_.shift_hold);
     return held ? shift : std::nullopt;
   }
-  /// To where the giver will have moved the object after `shift_lead`.
+  /// Returns the shift to the giver's predicted object position after `shift_lead`.
   std::optional<Vector3> shift_of_receive(const World& w) const {
     if (!doing(w, ActionKind::receive) || w.action->phase != ActionPhase::approach || !w.scene)
       return std::nullopt;

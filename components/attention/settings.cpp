@@ -20,7 +20,7 @@ E one_of(const std::string& text, std::span<const char* const> names, const std:
   throw ConfigError(place + ": \"" + text + "\" is none of " + list);
 }
 
-/// With the place before what is wrong.
+/// Throws the error with its place in the file.
 template <class F>
 void at(const std::string& place, const F& check) {
   try {
@@ -83,7 +83,7 @@ WorkSettings work_of(const settings::AttentionWork& w, const TextPlace& place) {
   return {one_of<Work>(w.name, kWorkNames, place.of("name")), w.p_min, w.p_max, w.period, w.serves};
 }
 
-/// Whether behaviours and works fit each other.
+/// Checks the consistency of behaviours and works.
 void check_together(const AttentionSettings& s, const TextPlace& root) {
   std::vector<Releaser> before;
   constexpr std::size_t kMaxBehaviours = 16;  // bound of AttentionState.behaviours
@@ -114,7 +114,7 @@ void check_together(const AttentionSettings& s, const TextPlace& root) {
             ": behaviour \"" + s.works[i].serves[k] + "\" is not described");
 }
 
-/// Whether limits that belong together are in order.
+/// Checks the order of related limits.
 void check_order(const settings::AttentionSettings& read, const SettingsText& text) {
   double inner = 0.0;
   for (double limit :
@@ -123,7 +123,7 @@ void check_order(const settings::AttentionSettings& read, const SettingsText& te
       text.refuse("contact_zone", "the zones must grow: contact, danger, interaction, social");
     inner = limit;
   }
-  constexpr double kMinWidth = 1e-6;  // [m]
+  constexpr double kMinWidth = 1e-6;  // min width of a range [m]
   const MotorSettings& m = read.motor;
   if (!(m.avoid_slow >= m.avoid_stop + kMinWidth))
     text.refuse("avoid_slow", "must be above avoid_stop");

@@ -7,7 +7,8 @@
 
 namespace handsel::attention {
 
-/// Throws ConfigError / MissingError naming file, line and key.
+/// Returns the settings of a file. Throws ConfigError or MissingError that names file, line and
+/// key.
 AttentionSettings load_settings(const std::filesystem::path& file);
 
 }  // namespace handsel::attention

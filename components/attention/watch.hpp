@@ -1,5 +1,5 @@
-// A behaviour that is described, not programmed: one input, a factor that falls with it, a target
-// of the gaze.
+// A behaviour defined by settings: one input, a speed factor that falls with the input, a gaze
+// target.
 #pragma once
 
 #include "components/attention/schema.hpp"
@@ -23,7 +23,7 @@ class Watch : public Schema {
   const Body& body_;
   MotorSettings motor_;
   WatchSettings settings_;
-  bool known_{};  // the input is there to be watched
+  bool known_{};  // whether the input is available
   double input_{};
   std::optional<Vector3> gaze_;
   std::optional<TimePoint> seen_;

@@ -1,5 +1,5 @@
 // Distance zones around the robot with hysteresis in space and time (formulas: section 4). Own
-// method: the chapter's section on attention is missing.
+// method: the chapter has no section on attention.
 #pragma once
 
 #include <array>
@@ -14,16 +14,16 @@ enum class Zone { contact, danger, interaction, social, far };
 struct ZoneSettings {
   /// Outer limits of contact, danger, interaction and social zone [m].
   std::array<double, 4> limits{0.1, 0.45, 1.2, 3.6};
-  double margin{0.05};  ///< a zone is left only beyond its limit plus this [m] ...
-  double dwell{0.3};    ///< ... and after this long [s]; coming nearer counts at once
+  double margin{0.05};  ///< distance beyond the limit at which a zone is left [m]
+  double dwell{0.3};    ///< time beyond this distance before a zone is left [s]
 };
 
 class ZoneTracker {
  public:
   explicit ZoneTracker(const ZoneSettings& settings) : settings_(settings) {}
-  /// Takes a distance [m] and returns the zone; +inf is far. A nearer zone counts at once.
+  /// Takes a distance [m] and returns the zone; +inf is far. A nearer zone applies immediately.
   Zone update(double distance, TimePoint now);
-  /// Zone of the last update(); far before the first.
+  /// Returns the zone of the last update(); far before the first.
   Zone zone() const { return zone_; }
 
  private:
