@@ -5,7 +5,7 @@
 
 namespace handsel::supervisor {
 namespace {
-constexpr std::size_t kRememberedGoals = 256;
+constexpr std::size_t kMaxKnownGoals = 256;  // max number of stored ids
 }  // namespace
 
 bool GoalInbox::knows(std::uint64_t id) const {
@@ -23,7 +23,7 @@ GoalInbox::Admission GoalInbox::put(const TaskGoal& goal) {
     return Admission::turned_away;
   }
   known_.push_back(goal.id);
-  if (known_.size() > kRememberedGoals) known_.pop_front();
+  if (known_.size() > kMaxKnownGoals) known_.pop_front();
   waiting_.push_back(goal);
   return Admission::taken;
 }

@@ -1,4 +1,4 @@
-// Task goals that wait for the next cycle of the supervisor, bounded, each id once. Pure.
+// A bounded queue of task goals for the next cycle of the supervisor, each id once. Pure.
 #pragma once
 
 #include <cstddef>
@@ -10,41 +10,41 @@
 
 namespace handsel::supervisor {
 
-/// Pause, resume, cancel, acknowledge, speed, clear_person: they have room of their own, so that a
-/// flood of tasks does not keep them out.
+/// Returns whether the kind is a control: pause, resume, cancel, acknowledge, speed, clear_person.
+/// Controls have a separate quota, so that many tasks do not exclude them.
 inline bool is_control(TaskKind kind) {
   return kind >= TaskKind::pause && kind <= TaskKind::clear_person;
 }
 
 class GoalInbox {
  public:
-  /// `max`: tasks that may wait, and as many controls.
+  /// `max`: max number of waiting tasks, and of waiting controls.
   explicit GoalInbox(std::size_t max) : max_(max) {}
 
   enum class Admission {
     taken,
-    known,  ///< the id came before
-    /// As many as may wait do; the goal is refused in the next cycle, or only counted when too many
-    /// are refused already.
+    known,  ///< a goal with this id was received before
+    /// The quota is reached; the goal is refused in the next cycle, or only counted if too many are
+    /// refused already.
     turned_away,
   };
-  /// Queues a goal for the next cycle and remembers its id. Tasks and controls are counted
-  /// separately; the newest 256 ids are remembered.
+  /// Queues a goal for the next cycle and stores its id. Tasks and controls have separate quotas;
+  /// the newest 256 ids are stored.
   Admission put(const TaskGoal& goal);
-  /// The goals that wait, in the order in which they came.
+  /// Removes and returns the waiting goals in the order of arrival.
   std::vector<TaskGoal> take();
-  /// A goal that cannot be answered yet waits for the next cycle.
+  /// Returns a goal that cannot be answered yet to the queue for the next cycle.
   void put_back(const TaskGoal& goal) { waiting_.push_back(goal); }
-  /// Goals to refuse, for want of room.
+  /// Returns the goals to refuse because of the quota.
   std::vector<TaskGoal> take_turned_away();
 
-  /// Returns whether no goal waits; goals to refuse do not count.
+  /// Returns whether no goal waits, except goals to refuse.
   bool empty() const { return waiting_.empty(); }
-  /// Number of goals that wait, tasks and controls together.
+  /// Returns the number of waiting tasks and controls.
   std::size_t size() const { return waiting_.size(); }
-  /// Number of tasks that may wait, and separately of controls.
+  /// Returns the max number of waiting tasks, and of waiting controls.
   std::size_t max() const { return max_; }
-  /// Returns whether a goal with this id was taken and is still remembered.
+  /// Returns whether a goal with this id was taken and its id is still stored.
   bool knows(std::uint64_t id) const;
   std::uint64_t turned_away() const { return turned_away_; }  ///< so far
 

@@ -9,8 +9,8 @@
 namespace handsel::supervisor {
 namespace {
 
-/// Modes of the robot side are sampled this often: no stop that must be seen is shorter than ten
-/// set-points (10 ms).
+/// Period of sampling the modes of the robot side; every stop lasts at least ten set-points (10
+/// ms).
 constexpr Duration kDrivePeriod = std::chrono::milliseconds(5);
 
 settings::SupervisorSettings load_settings(const NodeContext& context) {
@@ -25,11 +25,11 @@ std::shared_ptr<const StateStore> open_store(const NodeContext& context) {
   return context.state.empty() ? nullptr : std::make_shared<const StateStore>(context.state);
 }
 
-/// Returns what the store has kept; without a store, or without a file, the state of a system that
-/// a person has just started.
+/// Returns the stored state; without a store or a file the state of a system just started by a
+/// person.
 DurableState restore(const StateStore* store, double override_factor, Stamp now) {
-  const DurableState fresh = fresh_state(static_cast<std::uint64_t>(now), override_factor);
-  return store != nullptr ? store->restore(fresh, now) : fresh;
+  const DurableState initial = fresh_state(static_cast<std::uint64_t>(now), override_factor);
+  return store != nullptr ? store->restore(initial, now) : initial;
 }
 
 Ability ability_of(const settings::SupervisorSettings& settings, const NodeContext& context) {
@@ -46,7 +46,7 @@ Ability ability_of(const settings::SupervisorSettings& settings, const NodeConte
   return ability;
 }
 
-/// Returns the arms that have a hand, as they are placed in the scene.
+/// Returns the arms with a hand at their poses in the scene.
 std::vector<Ability::Arm> arms_of(const RobotModel& robot, const Scene& scene) {
   std::vector<Ability::Arm> arms;
   for (const Manipulator& hand : hands_of(robot)) {
@@ -104,7 +104,7 @@ void Node::on_scene(const Scene& scene, TimePoint arrival) {
   core_.on(scene, arrival);
 }
 
-/// Writes off the executor: a slow disk delays no Go.
+/// Writes outside the executor, so that a slow disk does not delay a Go.
 void Node::store(const DurableState& state) {
   const std::uint64_t revision = state.safety.revision;
   if (store_ == nullptr) return core_.on_stored(revision);

@@ -1,4 +1,4 @@
-// The supervisor on a Bus.
+// Binds the supervisor to a bus.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ class Node {
   Bus& bus_;
   settings::SupervisorSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
-  std::shared_ptr<const StateStore> store_;  ///< none: nothing is kept
+  std::shared_ptr<const StateStore> store_;  ///< null: the state is not stored
   Supervisor core_;
   std::uint64_t turned_away_counted_{0};
   std::unique_ptr<Publisher<ActionGoal>> action_out_;

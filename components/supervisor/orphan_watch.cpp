@@ -3,8 +3,8 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::size_t kMaxReported = 64;  // tasks that are remembered
-constexpr double kTimeout = 5.0;          // time in which a goal may come again [s]
+constexpr std::size_t kMaxReported = 64;  // max number of stored tasks
+constexpr double kTimeout = 5.0;          // max time until a goal is sent again [s]
 
 }  // namespace
 

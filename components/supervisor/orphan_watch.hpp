@@ -1,4 +1,4 @@
-// Tasks of which only the running action is left after a restart of the supervisor. Pure.
+// Detects tasks of which only the running action remains after a restart of the supervisor. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace handsel::supervisor {
 
-/// Finds a task whose action runs although no goal asks for the task: this process was started anew
-/// while the action ran.
+/// Finds a task whose action runs without a goal, because this process was restarted during the
+/// action.
 class OrphanWatch {
  public:
-  /// Returns the failed status of a task that has been without a goal for the timeout; each task is
-  /// reported once. `id`: task of the running action that no goal asks for; nothing: there is none.
+  /// Returns the failed status of a task without a goal for the timeout, once per task. `id`: task
+  /// of the running action without a goal; nullopt: none.
   std::optional<TaskStatus> step(std::optional<std::uint64_t> id, TimePoint now);
 
  private:

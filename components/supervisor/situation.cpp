@@ -2,7 +2,7 @@
 
 namespace handsel::supervisor {
 namespace {
-constexpr std::size_t kMaxMet = 1024;  // people that are remembered to have been seen
+constexpr std::size_t kMaxMet = 1024;  // max number of stored people
 }  // namespace
 
 void Situation::on(const Facts& facts, TimePoint now) {
@@ -31,7 +31,7 @@ void Situation::on(const ActionStatus& status) {
 World& Situation::world() {
   if (world_) return *world_;
   world_ = make_world(*facts_, *scene_, ability_, people_);
-  // The hand knows of its load before SPARK does.
+  // The hand measures its load before SPARK reports it.
   const Atom empty{predicate_of(Derived::hand_empty)};
   if (action_ && action_->holding && world_->is(Type::object, action_->object) &&
       world_->state.holds(empty)) {

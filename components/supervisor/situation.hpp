@@ -1,4 +1,4 @@
-// What the supervisor knows now: facts, scene, the running action. Pure.
+// The present knowledge of the supervisor: facts, scene, the running action. Pure.
 #pragma once
 
 #include <optional>
@@ -16,37 +16,37 @@ class Situation {
  public:
   explicit Situation(Ability ability) : ability_(std::move(ability)) {}
 
-  /// Replaces the facts and remembers the people they are about, see met(). `now`: time of arrival.
+  /// Replaces the facts and stores their people for met(). `now`: time of arrival.
   void on(const Facts& facts, TimePoint now);
   /// Replaces the scene. `now`: time of arrival.
   void on(const Scene& scene, TimePoint now);
-  /// Replaces the people, whose places count for a robot that drives.
+  /// Replaces the people, whose positions matter for a mobile robot.
   void on(const HumanState& people) {
     if (!ability_.drives) return;
     people_ = people;
     world_.reset();
   }
-  /// Replaces the status of the running action; what the hand holds enters world() at once.
+  /// Replaces the status of the running action; the held object enters world() immediately.
   void on(const ActionStatus& status);
-  /// Sets the arms of the robot, whose reach counts from then on.
+  /// Sets the arms of the robot, whose reach applies from then on.
   void set_arms(std::vector<Ability::Arm> arms) { ability_.arms = std::move(arms); }
 
   /// Returns whether facts and scene have both arrived.
   bool known() const { return facts_.has_value() && scene_.has_value(); }
-  /// Time for which known() has been true [s]; 0 while it is not.
+  /// Returns the time for which known() has been true [s]; 0 while false.
   double known_for(TimePoint now) const { return known() ? to_seconds(now - known_since_) : 0.0; }
   /// Only when known().
   World& world();
-  /// Newest scene; valid only when known().
+  /// Returns the newest scene; valid only if known().
   const Scene& scene() const { return *scene_; }
-  /// Newest status of an action; nothing before the first one.
+  /// Returns the newest status of an action; nullopt before the first.
   const std::optional<ActionStatus>& action() const { return action_; }
   /// Returns whether a fact about this person has arrived since the start (at most 1024 people).
   bool met(const std::string& person) const { return met_.contains(person); }
 
-  std::string held();                                 ///< what the robot holds; empty: nothing
-  std::string surface_of(const std::string& object);  ///< empty: it stands on none
-  /// What became of an object, one phrase for people; empty: nothing that is known.
+  std::string held();                                 ///< Returns the held object; empty: none.
+  std::string surface_of(const std::string& object);  ///< Returns its surface; empty: none.
+  /// Returns what happened to an object as one phrase; empty: unknown.
   std::string fate_of(const std::string& object);
 
  private:

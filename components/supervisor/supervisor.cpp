@@ -5,7 +5,7 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::size_t kMaxGoals = 64;
+constexpr std::size_t kMaxGoals = 64;  // max number of waiting goals
 
 }  // namespace
 
@@ -41,10 +41,10 @@ void Supervisor::on(const ExecutionStatus& status, TimePoint arrival) {
 void Supervisor::on(const TaskGoal& goal, TimePoint) {
   const bool turned_away = inbox_.put(goal) == GoalInbox::Admission::turned_away;
   if (turned_away && goal.kind == TaskKind::pause)
-    latches_.pause();  // a person's wish to stop is never lost
+    latches_.pause();  // a pause by a person always takes effect
 }
 
-/// Returns false when the goal cannot be evaluated yet.
+/// Executes a goal; returns false if the goal cannot be evaluated yet.
 bool Supervisor::begin(const TaskGoal& goal, TimePoint now, Outbox& out) {
   if (TaskRun* running = slot_.task(); running != nullptr) {
     slot_.refuse(
@@ -114,7 +114,7 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
     case TaskKind::speed:
       latches_.set_override(goal.value);
       break;
-    case TaskKind::clear_person:  // SPARK receives the goal, too
+    case TaskKind::clear_person:  // SPARK also receives the goal
       lost_.clear(goal.human);
       break;
     default:
@@ -123,7 +123,7 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
   keeper_.answer_when_stored(latches_.state().permission_revision, done);
 }
 
-/// Changes the task as attention advises, once for each change of the advice.
+/// Changes the task by the advice of attention, once per change of the advice.
 void Supervisor::follow_advice(TimePoint now, TaskWishes& wishes) {
   TaskRun* task = slot_.task();
   if (task == nullptr || advice_.change == followed_) {
@@ -149,13 +149,14 @@ void Supervisor::follow_advice(TimePoint now, TaskWishes& wishes) {
                   now, wishes);
       break;
     case TaskChange::give:
-      if (!task->give_instead(advice_.person, now, wishes)) return;  // perhaps soon
+      // Tried again in the next cycle.
+      if (!task->give_instead(advice_.person, now, wishes)) return;
       break;
   }
   followed_ = advice_.change;
 }
 
-/// Returns the task of the running action if no goal asks for the task.
+/// Returns the task of the running action if there is no goal for this task.
 std::optional<std::uint64_t> Supervisor::unasked_task() const {
   const auto& action = situation_.action();
   const bool unasked = slot_.task() == nullptr && inbox_.empty() && action &&
@@ -164,7 +165,7 @@ std::optional<std::uint64_t> Supervisor::unasked_task() const {
   return unasked ? std::optional(action->task) : std::nullopt;
 }
 
-/// A record of people alone that could not be written stops nothing: no latch depends on it.
+/// A failure to store only people does not stop the robot, because no latch depends on people.
 void Supervisor::on_store_failure(const std::string& reason, TimePoint now) {
   keeper_.on_store_failure(reason, now);
   if (!keeper_.is_stored(latches_.state().permission_revision)) latches_.on_store_failure(reason);

@@ -1,5 +1,5 @@
-// The task planner and supervision (chapter section 2.1): goals become actions one at a time; their
-// outcome is monitored and reported. Pure.
+// Task planning and supervision (chapter section 2.1): executes goals as successive actions, and
+// monitors and reports their outcome. Pure.
 #pragma once
 
 #include <cstdint>
@@ -27,23 +27,23 @@ namespace handsel::supervisor {
 struct Outbox {
   std::vector<ActionGoal> action_goals;   ///< to be sent, in order
   std::vector<TaskStatus> task_statuses;  ///< to be sent, in order
-  std::optional<Go> go;                   ///< to be sent: on a change, and repeated at the Go rate
+  std::optional<Go> go;                   ///< to be sent on a change, and repeated at the Go rate
   std::optional<SafetyState> safety;      ///< to be published; ages count from now
-  /// To be stored; on_stored() or on_store_failure() answers, until then no other comes.
+  /// To be stored; the next follows only after on_stored() or on_store_failure().
   std::optional<DurableState> store;
 };
 
 class Supervisor {
  public:
-  /// `first_action`: ids of action goals grow from here; unique over restarts. `restored`: what the
-  /// store has kept, ages as of `now`.
+  /// `first_action`: first id of action goals, unique over restarts. `restored`: stored state, ages
+  /// as of `now`.
   Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
              std::uint64_t first_action, const DurableState& restored, TimePoint now);
-  /// The same, started by a person: no latch stands.
+  /// Creates a supervisor started by a person, without latches.
   Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
              std::uint64_t first_action);
 
-  /// Queues the goal for the next step(). A pause that finds no room takes effect at once.
+  /// Queues the goal for the next step(). A pause beyond the quota takes effect immediately.
   void on(const TaskGoal& goal, TimePoint arrival);
   /// Replaces the facts of the world model.
   void on(const Facts& facts, TimePoint arrival) { situation_.on(facts, arrival); }
@@ -53,29 +53,29 @@ class Supervisor {
   void on(const ActionStatus& status, TimePoint) { situation_.on(status); }
   /// Notes that a required component is alive or stopping; that of SPARK also gives its start time.
   void on(const ComponentHealth& health, TimePoint arrival);
-  /// Takes the status of the controller; a fault, or a stop this process has missed, is latched.
+  /// Takes the status of the controller; latches a fault, or a stop missed by this process.
   void on(const ExecutionStatus& status, TimePoint arrival);
   /// Latches a protective, user or emergency stop when the robot side enters one.
   void on(const RobotState& robot, TimePoint) { latches_.on(robot); }
-  /// Updates the people lost from sight. `writer`: identifies the SPARK process.
+  /// Updates the lost people. `writer`: identifies the SPARK process.
   void on(const HumanState& people, TimePoint arrival, std::uint64_t writer) {
     lost_.on(people, arrival, writer);
     situation_.on(people);
   }
   /// Takes the advice of attention; the next step() acts on its change of the task.
   void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }
-  /// Sets the arms of the robot, whose reach counts from then on.
+  /// Sets the arms of the robot, whose reach applies from then on.
   void set_arms(std::vector<Ability::Arm> arms) { situation_.set_arms(std::move(arms)); }
 
-  /// Goals that found no room so far.
+  /// Returns the number of goals beyond the quota so far.
   std::uint64_t goals_turned_away() const { return inbox_.turned_away(); }
-  /// Scene and facts have come: tasks can be evaluated.
+  /// Returns whether scene and facts have arrived, so that tasks can be evaluated.
   bool knows_world() const { return situation_.known(); }
-  /// The state of this revision has been stored.
+  /// Notes that the state of this revision has been stored.
   void on_stored(std::uint64_t revision) { keeper_.on_stored(revision); }
-  /// It has not; `reason` names the file, one sentence.
+  /// Notes a failure to store the state; `reason` names the file, one sentence.
   void on_store_failure(const std::string& reason, TimePoint now);
-  /// Why the state cannot be stored, one sentence; empty: the last attempt succeeded.
+  /// Returns why the state cannot be stored, one sentence; empty: the last attempt succeeded.
   const std::string& store_failure() const { return keeper_.store_failure(); }
   /// Runs one cycle: controls, goals, the running task, permission and storage; fills `out`.
   /// `stamp`: system clock, from which stored ages count.
@@ -102,7 +102,7 @@ class Supervisor {
   TaskSlot slot_;
   OrphanWatch orphans_;
   AttentionAdvice advice_;
-  TaskChange followed_{TaskChange::none};  ///< change of the advice that was acted on last
+  TaskChange followed_{TaskChange::none};  ///< last executed change of the advice
   bool suspended_{false};                  ///< by attention
 };
 

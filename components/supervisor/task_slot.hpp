@@ -1,4 +1,4 @@
-// The place of the one task that may run, and the task statuses that are reported. Pure.
+// Holds the one running task and reports task statuses. Pure.
 #pragma once
 
 #include <memory>
@@ -11,24 +11,24 @@
 
 namespace handsel::supervisor {
 
-/// Owns the running task, reports its status and repeats the status reported last.
+/// Owns the running task, reports its status and repeats the last report.
 class TaskSlot {
  public:
   using Statuses = std::vector<TaskStatus>;
 
-  /// The running task; nullptr: none.
+  /// Returns the running task; nullptr: none.
   TaskRun* task() const { return task_.get(); }
-  /// Takes a task that has begun and reports its status.
+  /// Takes a new task and reports its status.
   void begin(std::unique_ptr<TaskRun> task, Statuses& out);
-  /// Reports that a goal is refused, for a reason of at most one message.
+  /// Reports the refusal of a goal with a reason, cut to the size of a message.
   void refuse(const TaskGoal& goal, const std::string& reason, Statuses& out);
-  /// Reports the end of a task that does not run here.
+  /// Reports the end of a task that is not in the slot.
   void report_end(const TaskStatus& status, Statuses& out);
-  /// Reports the status of the running task; a task that is over leaves the slot.
+  /// Reports the status of the running task; removes a finished task.
   void report(Statuses& out);
   /// Shows the running task as paused while `halted`. Returns whether its status has changed.
   bool show_pause(bool halted);
-  /// Repeats the last status when `out` is empty and the last report is older than `period` [s].
+  /// Repeats the last status if `out` is empty and the last report is older than `period` [s].
   void repeat(TimePoint now, double period, Statuses& out);
 
  private:

@@ -10,9 +10,9 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr double kEdge = 0.08;      // a thing stands this far inside the edge of a surface [m]
-constexpr double kStep = 0.05;      // [m]
-constexpr double kMostPlaces = 24;  // more are not counted
+constexpr double kMinEdge = 0.08;  // min distance of an object from the edge of a surface [m]
+constexpr double kStep = 0.05;     // step of the grid of tested places [m]
+constexpr double kMaxPlaces = 24;  // max number of counted places
 
 std::vector<Type> types_of(FactKind kind) {
   using T = Type;
@@ -56,39 +56,39 @@ bool reaches(const Ability::Arm& arm, const Vector3& p) {
   return (p - arm.shoulder).norm() <= arm.reach;
 }
 
-/// Returns whether one of the arms reaches a point; true where none is known.
+/// Returns whether an arm reaches a point; true if no arm is known.
 bool reach(const std::vector<Ability::Arm>& arms, const Vector3& p) {
   return arms.empty() || std::any_of(arms.begin(), arms.end(),
                                      [&](const Ability::Arm& arm) { return reaches(arm, p); });
 }
 
-/// Returns the number of free places within reach of one of the arms, at most kMostPlaces. `spot`:
-/// distance kept between things [m].
+/// Returns the number of free places within reach of an arm, at most kMaxPlaces. `spot`: min
+/// distance between objects [m].
 double places_on(const SceneBox& box, const Scene& scene, const std::vector<Ability::Arm>& arms,
                  double spot) {
   const double top = box.size.z() / 2;
-  std::vector<Vector3> taken;  // box frame
+  std::vector<Vector3> occupied;  // box frame
   for (const auto& object : scene.objects)
     if (object.holder == Holder::surface && object.holder_id == box.id)
-      taken.push_back(box.T_world_box.inverse() * object.T_world_object.translation());
+      occupied.push_back(box.T_world_box.inverse() * object.T_world_object.translation());
   double found = 0;
-  const double x_end = std::max(0.0, box.size.x() / 2 - kEdge),
-               y_end = std::max(0.0, box.size.y() / 2 - kEdge);
-  for (double x = -x_end; x <= x_end + 1e-9 && found < kMostPlaces; x += kStep)
-    for (double y = -y_end; y <= y_end + 1e-9 && found < kMostPlaces; y += kStep) {
+  const double x_end = std::max(0.0, box.size.x() / 2 - kMinEdge),
+               y_end = std::max(0.0, box.size.y() / 2 - kMinEdge);
+  for (double x = -x_end; x <= x_end + 1e-9 && found < kMaxPlaces; x += kStep)
+    for (double y = -y_end; y <= y_end + 1e-9 && found < kMaxPlaces; y += kStep) {
       const Vector3 p(x, y, top);
       if (!reach(arms, box.T_world_box * p)) continue;
-      const bool free = std::all_of(taken.begin(), taken.end(), [&](const Vector3& t) {
+      const bool free = std::all_of(occupied.begin(), occupied.end(), [&](const Vector3& t) {
         return (t - p).head<2>().norm() >= spot;
       });
       if (!free) continue;
-      taken.push_back(p);
+      occupied.push_back(p);
       ++found;
     }
   return found;
 }
 
-/// Returns the arms within whose reach a surface has a free place.
+/// Returns the arms with a free place of the surface within reach.
 std::vector<Ability::Arm> arms_with_room(const SceneBox& box, const Scene& scene,
                                          const Ability& ability) {
   std::vector<Ability::Arm> out;
@@ -97,8 +97,7 @@ std::vector<Ability::Arm> arms_with_room(const SceneBox& box, const Scene& scene
   return out;
 }
 
-/// Returns whether a person is within reach of an arm that is held out toward them; true where none
-/// is known.
+/// Returns whether a person is within reach of an extended arm; true if no arm is known.
 bool is_near(const Person& person, const Ability& ability) {
   const Vector3& torso =
       person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
@@ -108,8 +107,8 @@ bool is_near(const Person& person, const Ability& ability) {
          });
 }
 
-/// Returns whether the arm that holds an object, or one that reaches the object, is among `near`. A
-/// person brings what they hold within reach of any arm.
+/// Returns whether the arm that holds or reaches an object is among `near`. A person brings a held
+/// object within reach of any arm.
 bool can_bring(const SceneObject& object, const Ability& ability,
                const std::vector<Ability::Arm>& near) {
   if (ability.arms.empty()) return true;
@@ -215,8 +214,8 @@ std::uint64_t State::hash() const {
 }
 
 Symbol World::symbol(const std::string& text) {
-  const auto [at, fresh] = symbols_.try_emplace(text, static_cast<Symbol>(texts_.size()));
-  if (fresh) texts_.push_back(text);
+  const auto [at, is_new] = symbols_.try_emplace(text, static_cast<Symbol>(texts_.size()));
+  if (is_new) texts_.push_back(text);
   return at->second;
 }
 
@@ -273,7 +272,7 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability,
   for (const Person& person : people_now.people)
     if (ability.drives && people.contains(person.id) && is_near(person, ability))
       set_near(person.id);
-  Ability anywhere = ability;  // a platform brings the arms to any place of a surface
+  Ability anywhere = ability;  // a mobile robot reaches any place of a surface
   if (ability.drives) anywhere.arms.clear();
   for (const auto& object : scene.objects) {
     const Symbol o = world.symbol(object.id);

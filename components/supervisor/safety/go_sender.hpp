@@ -1,4 +1,4 @@
-// When a Go is sent: on every change, and repeated at the Go rate. Pure.
+// Sends a Go after every change, and repeats it at the Go rate. Pure.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace handsel::supervisor {
 
-/// Repeats the motion permission in force.
+/// Repeats the present motion permission.
 class GoSender {
  public:
-  /// `period`: between two Go without a change [s].
+  /// `period`: time between two Go without a change [s].
   explicit GoSender(double period) : period_(period) {}
 
-  /// Returns the Go if it has to be sent now.
+  /// Returns the Go if it must be sent now.
   std::optional<Go> step(const Go& go, TimePoint now);
-  /// Motion-permission counter of the Go sent last; 0: none was sent.
+  /// Returns the epoch of the last Go; 0: none was sent.
   std::uint64_t epoch() const { return sent_.epoch; }
 
  private:

@@ -18,7 +18,7 @@ void LostPeople::on(const HumanState& people, TimePoint arrival, std::uint64_t w
     for (Known& known : known_) {
       changed_ = changed_ || !known.lost;
       known.here = false;
-      known.lost = true;  // until the new SPARK shows them
+      known.lost = true;  // until the new SPARK process reports the person
     }
   }
   std::vector<Known> next;
@@ -70,7 +70,7 @@ void LostPeople::keep_most_recent(TimePoint now) {
 bool LostPeople::changed(TimePoint now) {
   for (Known& known : known_) {
     if (known.lost || known.age(now) <= after_) continue;
-    known.lost = changed_ = true;  // SPARK is silent
+    known.lost = changed_ = true;  // SPARK does not report
   }
   return std::exchange(changed_, false);
 }

@@ -1,5 +1,4 @@
-// People lost from sight: which must be remembered over a restart of SPARK, and for how long nobody
-// has seen them. Pure.
+// Stores the lost people over a restart of SPARK, with the time since their last observation. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,34 +10,35 @@
 
 namespace handsel::supervisor {
 
-/// A person counts as lost when nobody has seen them for longer than `after`. They stay until the
-/// SPARK that has shown them lost shows them seen or no longer (gone, or cleared by an operator); a
-/// SPARK that has just started, and does not know them yet, removes nobody.
+/// A person counts as lost if not observed for longer than `after`. The person remains until the
+/// SPARK process that has reported the person lost reports the person observed or no longer (gone,
+/// or cleared by an operator). A SPARK process that has just started does not remove anybody.
 class LostPeople {
  public:
-  /// `after`: age from which a person counts as lost [s]; `max_people`: those lost most recently
-  /// are remembered; `restored`: people lost before the start, `age` counts from `now`.
+  /// `after`: age from which a person counts as lost [s]; `max_people`: max number of stored
+  /// people, the most recently lost ones; `restored`: people lost before the start, with `age` at
+  /// `now`.
   LostPeople(double after, std::size_t max_people, const std::vector<Person>& restored,
              TimePoint now);
 
-  /// Takes what SPARK shows. `writer` tells one SPARK process from another.
+  /// Takes the state from SPARK. `writer` identifies the SPARK process.
   void on(const HumanState& people, TimePoint arrival, std::uint64_t writer);
-  /// SPARK has run since `started`: it knows of itself everybody who was last seen later.
+  /// Sets the start of SPARK, which itself knows all people observed later.
   void on_spark_started(TimePoint started);
-  /// An operator says that a lost person is gone: `id`, or everybody lost when it is empty.
+  /// Removes the lost person `id`, or all lost people if empty, by order of an operator.
   void clear(const std::string& id);
-  /// Returns whether somebody was lost or found since the last call.
+  /// Returns whether a person was lost or found since the last call.
   bool changed(TimePoint now);
   /// Returns the lost people, `age` as of `now`.
   std::vector<Person> people(TimePoint now) const;
-  /// Returns how many were left out because there were more than `max_people`.
+  /// Returns the number of lost people left out beyond `max_people`.
   std::uint64_t left_out() const { return left_out_; }
 
  private:
   struct Known {
     Person person;
-    TimePoint shown{};  ///< when SPARK showed them last; the age in `person` counts from then
-    bool here{};        ///< shown by the present SPARK process
+    TimePoint shown{};  ///< last report by SPARK, to which the age in `person` refers
+    bool here{};        ///< whether the present SPARK process has reported the person
     bool lost{};
     double age(TimePoint now) const { return person.age + to_seconds(now - shown); }
   };

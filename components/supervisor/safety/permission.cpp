@@ -30,7 +30,7 @@ void Permission::find_missing(TimePoint now) {
   }
 }
 
-/// Returns what the controller reports that a person has to acknowledge.
+/// Returns the reported state that a person must acknowledge.
 Permission::Acknowledgement Permission::awaited() const {
   constexpr std::uint32_t kDrive = 1U << static_cast<unsigned>(Cause::drive_not_enabled);
   if (!status_known_) return Acknowledgement::none;
@@ -58,8 +58,8 @@ void Permission::withdraw(const std::string& reason) {
   go_.reason = reason;
 }
 
-/// A drive that was stopped by a person or by its own reflex waits for a person's acknowledgement;
-/// the permission to move comes after it.
+/// Returns whether a drive stopped by a person or its own reflex waits for an acknowledgement,
+/// which must precede the permission.
 void Permission::acknowledge_drives() {
   ++go_.epoch;
   go_.acknowledge = true;
@@ -80,7 +80,7 @@ void Permission::grant(bool fault) {
 const Go& Permission::step(const PermissionState& state, TimePoint now) {
   find_missing(now);
   if (acknowledgement_ != awaited())
-    acknowledgement_ = Acknowledgement::none;  // what was acknowledged is over
+    acknowledgement_ = Acknowledgement::none;  // the acknowledged state is over
   go_.state_revision = state.revision;
   go_.override_factor = state.override_factor;
   const bool running =

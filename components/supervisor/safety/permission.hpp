@@ -1,4 +1,4 @@
-// When the robot may move: the motion-permission counter, "epoch", that each Go carries
+// Decides whether the robot may move: the epoch (number of the motion permission) in each Go
 // (architecture: mode machine). Pure.
 #pragma once
 
@@ -15,47 +15,47 @@
 
 namespace handsel::supervisor {
 
-/// What the durable state says about motion (safety_latches.hpp).
+/// The durable state with regard to motion (safety_latches.hpp).
 struct PermissionState {
-  std::uint64_t revision{};     ///< of the state, carried by each Go
-  bool permits{};               ///< no latch stands
-  bool stored{};                ///< the state of this revision is on disk
+  std::uint64_t revision{};     ///< revision of the state, contained in each Go
+  bool permits{};               ///< whether no latch is set
+  bool stored{};                ///< whether this revision is on disk
   double override_factor{1.0};  ///< speed override, [0, 1]
-  std::string reason;           ///< why it does not permit motion
+  std::string reason;           ///< why the state does not permit motion
 };
 
-/// A new epoch is granted when nothing but the missing permission holds the robot back, no latch
-/// stands and the state is stored; permission is withdrawn at once while a latch stands or the task
-/// is suspended, and, once the running trajectory has ended, when a required component is gone.
+/// Grants a new epoch if only the missing permission stops the robot, no latch is set and the state
+/// is stored. Withdraws the permission immediately while a latch is set or the task is suspended,
+/// and after the end of the running trajectory if a required component is gone.
 class Permission {
  public:
   explicit Permission(const settings::SupervisorSettings& settings) : settings_(settings) {}
 
   /// Notes that a required component is alive (ok, degraded) or gone (stopping).
   void on(const ComponentHealth& health, TimePoint arrival);
-  /// Takes the status of the controller; the epoch never falls behind the one reported there.
+  /// Takes the status of the controller; the epoch is at least the reported one.
   void on(const ExecutionStatus& status, TimePoint arrival);
-  /// Attention suspends the task: no permission until it resumes.
+  /// Suspends or resumes the task by attention; a suspended task has no permission.
   void suspend(bool suspended) { suspended_ = suspended; }
-  /// A person has acknowledged the fault or stop that the controller reports now, if any: the next
-  /// Go says so once its cause is gone.
+  /// Notes that a person has acknowledged the reported fault or stop, if any; the next Go after the
+  /// end of its cause contains the acknowledgement.
   void acknowledge();
-  /// Returns the motion-permission counter at which the last fault was acknowledged; reports of a
-  /// fault from older epochs are old. Returns the largest number while that Go has yet to come.
+  /// Returns the epoch at which the last fault was acknowledged; fault reports of older epochs are
+  /// outdated. Returns the max number before that Go is sent.
   std::uint64_t acknowledged() const;
 
-  /// Returns whether the controller waits for a person because of a stop that this process has
-  /// missed: it has the Go in force, which permits motion, or said so in its first report since a
+  /// Returns whether the controller waits for a person after a stop that this process has missed:
+  /// the controller has the present Go, which permits motion, or waits in its first report after a
   /// start whose state permitted motion.
   bool missed_stop(bool permitted_at_start) const;
-  /// Decides about the permission and returns the Go in force. A new epoch is granted only after
-  /// the conditions have held for the configured resume delay.
+  /// Updates the permission and returns the present Go. Grants a new epoch only after the
+  /// conditions have held for the configured resume delay.
   const Go& step(const PermissionState& state, TimePoint now);
-  /// Required components that are not there; empty when all are.
+  /// Returns the missing required components; empty: none.
   const std::vector<std::string>& missing() const { return missing_; }
 
  private:
-  /// Given by a person and not yet passed on by a Go.
+  /// Acknowledgement by a person that no Go contains yet.
   enum class Acknowledgement { none, of_drives, of_fault };
   Acknowledgement awaited() const;
   void find_missing(TimePoint now);

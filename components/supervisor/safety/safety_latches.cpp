@@ -9,15 +9,15 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr const char* kHint =
-    "; next: handsel task ";  // begins what a person can do about it, at the end of a reason
-constexpr std::size_t kMaxDetail =
-    100;  // characters of a cause inside the reason, which has room for 256
+// Start of the remedy at the end of a reason.
+constexpr const char* kHint = "; next: handsel task ";
+// Max length of a cause in a reason, which has at most 256 characters.
+constexpr std::size_t kMaxDetail = 100;
 
 constexpr std::uint32_t kFaultCauses = bit(Cause::tracking_error) | bit(Cause::limit_violation);
 
-/// Returns whether the robot side stands in this mode because of a person or of its own protection,
-/// not for want of set-points.
+/// Returns whether a person or the robot's own protection causes this mode of the robot side, not
+/// missing set-points.
 bool is_stop(DriveMode mode) {
   return mode == DriveMode::protective_stop || mode == DriveMode::user_stop ||
          mode == DriveMode::emergency_stop;

@@ -1,5 +1,5 @@
-// The latches that hold the robot until a person releases them: pause, fault, stop of the robot,
-// failed storage; and the speed override. Pure.
+// Latches that prevent motion until a person releases them: pause, fault, stop of the robot, failed
+// storage; and the speed override. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,16 @@
 
 namespace handsel::supervisor {
 
-/// What outlives the process: the safety state and the revision its permissions carry.
+/// The state that outlives the process: safety state and revision of its permissions.
 struct DurableState {
   SafetyState safety;  ///< ages of `lost` count from `safety.stamp`
-  /// `safety.revision` at the last change that matters to Go; lost people do not matter.
+  /// `safety.revision` at the last change relevant to Go; lost people are not relevant.
   std::uint64_t permission_revision{};
 };
 
 /// Returns the state of a system that a person has just started.
 DurableState fresh_state(std::uint64_t revision, double override_factor);
-/// Returns the state that a missing, damaged or unwritable record stands for: paused, waiting for a
-/// person.
+/// Returns the state for a missing, damaged or unwritable record: paused, waiting for a person.
 DurableState unknown_state(std::uint64_t revision, const std::string& reason);
 
 /// Transitions of the durable state. Every change gives a new revision.
@@ -30,29 +29,27 @@ class SafetyLatches {
  public:
   explicit SafetyLatches(DurableState restored);
 
-  /// A person pauses the robot.
+  /// Pauses the robot by order of a person.
   void pause();
-  /// A person resumes: ends the pause and the wait after a stop. Returns why not, one sentence;
+  /// Ends the pause and the wait after a stop by order of a person. Returns why not, one sentence;
   /// empty: done.
   std::string resume();
-  /// A person has dealt with the cause of a fault or stop. Returns why not, one sentence; empty:
-  /// done.
+  /// Acknowledges a fault or stop by order of a person. Returns why not, one sentence; empty: done.
   std::string acknowledge();
-  /// A person sets the speed override, [0, 1].
+  /// Sets the speed override by order of a person, [0, 1].
   void set_override(double factor);
 
   /// Latches a protective, user or emergency stop when the robot side enters one.
   void on(const RobotState& robot);
-  /// Latches a fault of the controller. `acknowledged`: motion-permission counter at which the last
-  /// fault was acknowledged; reports of an older epoch are old, unless the cause of the fault still
-  /// holds.
+  /// Latches a fault of the controller. `acknowledged`: epoch at which the last fault was
+  /// acknowledged; reports of older epochs are outdated, unless the cause of the fault still holds.
   void on(const ExecutionStatus& status, std::uint64_t acknowledged);
-  /// The controller has seen a stop that this process has missed: it has the Go in force and still
-  /// waits for a person.
+  /// Latches a stop that only the controller has observed: it has the present Go and still waits
+  /// for a person.
   void on_missed_stop();
-  /// The state could not be stored: latches a wait for a person. `reason` names the file.
+  /// Latches a wait for a person because the state could not be stored. `reason` names the file.
   void on_store_failure(const std::string& reason);
-  /// Takes the people lost from sight; `safety.stamp` becomes `stamp`, from which their ages count.
+  /// Takes the lost people, with ages at `stamp`, which becomes `safety.stamp`.
   void set_lost(std::vector<Person> lost, Stamp stamp);
 
   /// Returns whether no pause, fault or wait for a person is latched.
@@ -61,9 +58,9 @@ class SafetyLatches {
   }
   /// Returns whether the state permitted motion when it was restored.
   bool permitted_at_start() const { return permitted_at_start_; }
-  /// Current safety state; its reason says why permits() is false.
+  /// Returns the current safety state, with the reason for which permits() is false.
   const SafetyState& safety() const { return state_.safety; }
-  /// Current state as it has to be stored.
+  /// Returns the current state for storage.
   const DurableState& state() const { return state_; }
 
  private:

@@ -15,9 +15,9 @@ namespace handsel::supervisor {
 namespace {
 
 constexpr const char* kHeader = "handsel safety state 1 ";
-constexpr double kMaxAge = 1e8;         // [s]
-constexpr double kMaxCoordinate = 1e4;  // [m]
-constexpr int kMaxPeople = 16, kMaxJoints = 32;
+constexpr double kMaxAge = 1e8;                  // max age of a lost person [s]
+constexpr double kMaxCoordinate = 1e4;           // max coordinate of a joint [m]
+constexpr int kMaxPeople = 16, kMaxJoints = 32;  // max numbers of people, joints of a person
 
 /// Returns the CRC-32 of IEEE 802.3.
 std::uint32_t checksum(const std::string& text) {
@@ -29,7 +29,7 @@ std::uint32_t checksum(const std::string& text) {
   return ~crc;
 }
 
-/// Drops what the parser would print.
+/// Suppresses the messages of the parser.
 struct Silent : google::protobuf::io::ErrorCollector {
   void AddError(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
 };

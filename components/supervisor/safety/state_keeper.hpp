@@ -1,4 +1,4 @@
-// When the durable state is stored and published, and when a person is answered. Pure.
+// Decides when the durable state is stored and published, and when a person is answered. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,35 +14,35 @@
 
 namespace handsel::supervisor {
 
-/// What the keeper asks for in one cycle.
+/// Requests of the keeper in one cycle.
 struct StateOutput {
-  std::optional<DurableState> store;  ///< to be stored; until the answer no other comes
+  std::optional<DurableState> store;  ///< to be stored; the next follows only after the answer
   std::optional<SafetyState> safety;  ///< to be published; ages count from now
 };
 
-/// Keeps storage and readers up to date with the latches, and holds answers to people back until
-/// the state they depend on is stored.
+/// Stores and publishes changes of the latches, and delays answers to people until the relevant
+/// state is stored.
 class StateKeeper {
  public:
-  /// `stored`: revision that the store holds at the start.
+  /// `stored`: stored revision at the start.
   StateKeeper(const settings::SupervisorSettings& settings, std::uint64_t stored);
 
-  /// The state of this revision has been stored.
+  /// Notes that the state of this revision has been stored.
   void on_stored(std::uint64_t revision);
-  /// The state could not be stored; `reason` names the file, one sentence.
+  /// Notes that the state could not be stored; `reason` names the file, one sentence.
   void on_store_failure(const std::string& reason, TimePoint now);
   /// Returns whether this revision, or a later one, is stored.
   bool is_stored(std::uint64_t revision) const { return stored_ >= revision; }
-  /// Why the state cannot be stored, one sentence; empty: the last attempt succeeded.
+  /// Returns why the state cannot be stored, one sentence; empty: the last attempt succeeded.
   const std::string& store_failure() const { return failure_; }
 
-  /// Notes the lost people in the latches, then returns what has to be stored and published.
-  /// `stamp`: system clock, from which stored ages count.
+  /// Adds the lost people to the latches, then returns the states to store and publish. `stamp`:
+  /// system clock, the reference of stored ages.
   StateOutput step(TimePoint now, Stamp stamp, SafetyLatches& latches, LostPeople& lost);
 
-  /// Holds back an answer to a person until the revision is stored or cannot be stored.
+  /// Delays an answer to a person until the revision is stored or cannot be stored.
   void answer_when_stored(std::uint64_t revision, const TaskStatus& status);
-  /// Moves the answers that are due to the end of `out`, in order.
+  /// Moves the due answers to the end of `out`, in order.
   void take_answers(std::vector<TaskStatus>& out);
 
  private:

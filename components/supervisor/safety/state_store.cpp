@@ -12,7 +12,7 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;  // a full state takes 40 kB
+constexpr std::size_t kMaxBytes = 1 << 20;  // max size of a file; a full state has 40 kB
 
 /// A file descriptor that closes itself.
 class File {
@@ -96,7 +96,7 @@ std::optional<DurableState> StateStore::read(std::uint64_t revision, Stamp now) 
 
 DurableState StateStore::restore(const DurableState& fresh, Stamp now) const {
   DurableState state = read(fresh.safety.revision, now).value_or(fresh);
-  // A state that cannot be written now could not be written when it matters.
+  // A state that cannot be written now could not be written later either.
   if (const std::string why = save(state, now); !why.empty()) {
     std::vector<Person> lost = std::move(state.safety.lost);
     state = unknown_state(std::max(fresh.safety.revision, state.safety.revision + 1), why);

@@ -1,5 +1,5 @@
-// Keeps the durable state in a file of its own folder. The only part of this component that touches
-// the disk.
+// Stores the durable state in a file in a separate folder. The only part of this component with
+// disk access.
 #pragma once
 
 #include <filesystem>
@@ -10,27 +10,27 @@
 
 namespace handsel::supervisor {
 
-/// The file safety_state. A write replaces it whole or not at all: temporary file in the same
-/// folder, fsync, rename, fsync of the folder.
+/// The file safety_state. A write is atomic: temporary file in the same folder, fsync, rename,
+/// fsync of the folder.
 class StateStore {
  public:
   explicit StateStore(std::filesystem::path folder);
 
-  /// Returns what is stored, or `fresh` when there is no file yet. A folder or file that cannot be
-  /// read, is damaged or cannot be written gives unknown_state(`fresh`.revision), whose reason
-  /// names the file: nothing may move until a person says so. What it returns is stored, except in
-  /// that last case. Throws nothing.
+  /// Returns the stored state, or `fresh` without a file. A folder or file that is unreadable,
+  /// damaged or unwritable gives unknown_state(`fresh`.revision), whose reason names the file and
+  /// which prevents motion until a person permits it. Stores the result unless unwritable. Does not
+  /// throw.
   DurableState restore(const DurableState& fresh, Stamp now) const;
-  /// Returns what is stored, unknown_state(`revision`) when it cannot be read or is damaged;
-  /// nothing: there is no file. Writes nothing.
+  /// Returns the stored state; unknown_state(`revision`) if unreadable or damaged; nullopt: no
+  /// file. Does not write.
   std::optional<DurableState> read(std::uint64_t revision, Stamp now) const;
   /// Returns why the state could not be stored, one sentence that names the file; empty: done.
-  /// Blocks until it is on the disk.
+  /// Blocks until the state is on disk.
   std::string save(const DurableState& state, Stamp now) const;
-  /// Removes the file: the system has ended in order. Returns why not, one sentence; empty: there
-  /// is none any more.
+  /// Removes the file at the regular end of the system. Returns why not, one sentence; empty:
+  /// removed.
   std::string forget() const;
-  /// Path of the file, which need not exist.
+  /// Returns the path of the file, which need not exist.
   const std::filesystem::path& file() const { return file_; }
 
  private:

@@ -1,5 +1,4 @@
-// Whether planned actions can be done, have shown their effects and still make sense in a state.
-// Pure.
+// Checks conditions and effects of planned actions in a state. Pure.
 #pragma once
 
 #include <string>
@@ -9,17 +8,17 @@
 
 namespace handsel::supervisor {
 
-/// Why an action cannot be done in this state; empty: it can.
+/// Returns why an action cannot be done in this state; empty: it can.
 std::string why_not(const Domain& domain, World& world, const PlannedAction& action,
                     const State& state);
-/// Changes the state by the effects of the action, whose conditions are not tested.
+/// Applies the effects of the action to the state without a test of its conditions.
 void apply(const Domain& domain, World& world, const PlannedAction& action, State& state);
-/// Returns whether all that the action adds holds already.
+/// Returns whether all added atoms of the action hold already.
 bool shows(const Domain& domain, World& world, const PlannedAction& action, const State& state);
-/// Which condition that must hold while it runs does not; empty: all do.
+/// Returns the violated condition of the running action; empty: none.
 std::string broken(const Domain& domain, World& world, const PlannedAction& action,
                    const State& state);
-/// Which condition of a task that was done does not hold; empty: all do.
+/// Returns the violated condition of a finished task; empty: none.
 std::string unachieved(const Domain& domain, World& world, int task,
                        const std::vector<std::string>& args, const State& state);
 

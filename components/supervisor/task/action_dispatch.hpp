@@ -1,4 +1,4 @@
-// Sends the actions of a task: one at a time, repeated until the planner reports it. Pure.
+// Sends the actions of a task one at a time, each repeated until the planner reports it. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace handsel::supervisor {
 
-/// Gives each action its id, repeats its goal, and cancels it.
+/// Assigns the id of each action, repeats its goal, and cancels it.
 class ActionDispatch {
  public:
   enum class State { idle, running, stopping };
@@ -19,7 +19,7 @@ class ActionDispatch {
   /// `retry`: period after which a goal without an answer is sent again [s].
   explicit ActionDispatch(double retry) : retry_(retry) {}
 
-  /// State of the action that was begun last.
+  /// Returns the state of the last started action.
   State state() const { return state_; }
   /// Returns whether any action was begun.
   bool has_begun() const { return has_begun_; }
@@ -29,7 +29,7 @@ class ActionDispatch {
   }
   /// Returns whether the last goal was sent long enough ago for another attempt.
   bool retry_due(TimePoint now) const { return to_seconds(now - sent_) >= retry_; }
-  /// Why the action is being stopped, or was stopped last.
+  /// Returns why the action is being stopped, or was last stopped.
   const std::string& stop_reason() const { return stop_reason_; }
 
   /// Begins an action. Returns whether it runs already, so that nothing has to be sent: after a
@@ -42,7 +42,7 @@ class ActionDispatch {
   void stop(const std::string& reason, TimePoint now, std::vector<ActionGoal>& out);
   /// Cancels the action without waiting for its end.
   void cancel(std::vector<ActionGoal>& out) const;
-  /// The action has ended or counts as ended. Returns whether it was being stopped.
+  /// Notes the end of the action. Returns whether it was being stopped.
   bool end();
 
  private:

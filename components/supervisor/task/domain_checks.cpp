@@ -11,7 +11,7 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr int kBoundRounds = 32;  // a bound over this many levels of tasks suffices
+constexpr int kBoundRounds = 32;  // levels of tasks considered by the lower bound
 
 /// Returns whether a task that begins with itself gives an argument that was not given before: that
 /// happens once.

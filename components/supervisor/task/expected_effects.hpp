@@ -1,4 +1,4 @@
-// Effects of the last action, which the facts may not show yet. Pure.
+// Expected effects of the last action before the facts show them. Pure.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@ class ExpectedEffects {
   /// `timeout`: time for which effects are assumed [s]. `domain` must outlive this object.
   ExpectedEffects(const Domain& domain, double timeout) : domain_(domain), timeout_(timeout) {}
 
-  /// An action has ended, successfully or not.
+  /// Notes the end of an action, successful or not.
   void on_end(TimePoint now) { ended_at_ = now; }
-  /// The action that has ended has succeeded.
+  /// Notes that the ended action has succeeded.
   void expect(const PlannedAction& action) { action_ = action; }
-  /// Expects nothing of the last action.
+  /// Deletes the expected effects.
   void forget() { action_.reset(); }
   /// Returns whether the facts may still lag behind the end of the last action.
   bool pending(TimePoint now) const { return to_seconds(now - ended_at_) < timeout_; }
-  /// Returns the state of the world with the effects that are expected.
+  /// Returns the state of the world with the expected effects.
   State believed(World& world, TimePoint now) const;
 
  private:

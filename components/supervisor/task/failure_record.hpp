@@ -1,4 +1,4 @@
-// Failures of the actions of one task: retries, and whether the task was given up. Pure.
+// Records failed actions of one task: retries, and whether the task was given up. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace handsel::supervisor {
 
-/// Counts failures against the limits of the settings. After give_up() the task only recovers: what
-/// the robot holds is put back.
+/// Counts failures against the limits of the settings. After give_up() the task only recovers by
+/// putting back the held object.
 class FailureRecord {
  public:
   /// `settings` must outlive this object.
@@ -21,18 +21,18 @@ class FailureRecord {
   const settings::FailureRule* rule(ActionKind kind, ActionFailure failure) const;
   /// Returns whether the rule allows another attempt at the action, and counts the attempt.
   bool retry(const settings::FailureRule* rule, const std::string& action);
-  /// Remembers the first action that failed for good.
+  /// Stores the first action that failed finally.
   void note(const std::string& action, const std::string& reason);
-  /// The first action that failed for good, with its reason; empty: none.
+  /// Returns the first action that failed finally, with its reason; empty: none.
   const std::string& first() const { return first_; }
 
-  /// The task is given up; actions may be tried again for the recovery.
+  /// Gives up the task; actions may be tried again for the recovery.
   void give_up(const std::string& reason);
   /// Returns whether the task was given up.
   bool recovering() const { return !given_up_.empty(); }
-  /// Why the task was given up; empty: it was not.
+  /// Returns why the task was given up; empty: it was not.
   const std::string& reason() const { return given_up_; }
-  /// Counts an action of the recovery that failed. Returns whether others may be tried.
+  /// Counts a failed action of the recovery. Returns whether other actions may be tried.
   bool may_recover_otherwise() { return ++failed_recoveries_ <= settings_.max_recoveries; }
 
  private:

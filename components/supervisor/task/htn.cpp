@@ -10,9 +10,9 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr double kAsMuch = 1e-9;  // costs closer than this are equal
+constexpr double kEqualCost = 1e-9;  // max difference of equal costs
 
-/// Without tasks that need no action.
+/// Returns the tree without tasks that need no action.
 std::vector<PlanLine> with_something_to_do(const std::vector<PlanLine>& tree) {
   std::vector<PlanLine> out;
   for (std::size_t i = 0; i < tree.size(); ++i) {
@@ -50,7 +50,7 @@ class Search {
   }
 
  private:
-  /// What is to be done: a call with its arguments bound, an `all`, or one of its instances.
+  /// Work to do: a call with bound arguments, an `all`, or one of its instances.
   struct Item {
     enum class Kind { call, all, one } kind{Kind::call};
     Call call;                   // index and whether it is an action; its arguments are `frame`
@@ -96,7 +96,7 @@ class Search {
     return ground_.fill(task.text, task.parameters, task.types, args);
   }
 
-  /// Of the alternatives that lead farthest the first reason counts.
+  /// Stores the reason of the first alternative that leads farthest.
   void blame(const std::string& reason) {
     if (reason.empty()) return;
     if (here_ != nullptr && here_->empty()) *here_ = reason;
@@ -109,7 +109,7 @@ class Search {
     if (nodes_ >= limits_.nodes) return;
     ++nodes_;
     const double min_cost = cost + (agenda ? agenda->min_cost : 0);
-    if (best_.found && min_cost >= best_.cost - kAsMuch) return;
+    if (best_.found && min_cost >= best_.cost - kEqualCost) return;
     if (!agenda) {
       best_.found = true;
       best_.cost = cost;
@@ -118,8 +118,8 @@ class Search {
       return;
     }
     std::uint64_t key = state.hash() * 31 + agenda->hash;
-    const auto [seen, fresh] = seen_.try_emplace(key, cost);
-    if (!fresh && seen->second <= cost + kAsMuch) return;
+    const auto [seen, is_new] = seen_.try_emplace(key, cost);
+    if (!is_new && seen->second <= cost + kEqualCost) return;
     seen->second = cost;
     const std::size_t lines = tree_.size();
     switch (agenda->item.kind) {
@@ -177,13 +177,13 @@ class Search {
       Frame frame = *item.frame;
       frame.resize(method.names.size(), kUnbound);
       const std::size_t before = choices.size();
-      lacking_.clear();
+      mismatch_.clear();
       const std::function<void()> found = [&] {
         const double own = method.cost + ground_.extra(method.extra, frame, state);
         choices.push_back({&method, frame, own, own + method.min_cost - method.cost});
       };
       bind({method.tests, method, state, found}, 0, frame);
-      if (choices.size() == before) blame(lacking_);
+      if (choices.size() == before) blame(mismatch_);
     }
     std::stable_sort(choices.begin(), choices.end(),
                      [](const Choice& a, const Choice& b) { return a.estimate < b.estimate; });
@@ -209,8 +209,8 @@ class Search {
   }
 
   void lack(const Test& test, const CompiledMethod& method, const Frame& frame) {
-    if (lacking_.empty() && !test.otherwise.empty())
-      lacking_ = ground_.fill(test.otherwise, method.names, method.types, frame);
+    if (mismatch_.empty() && !test.otherwise.empty())
+      mismatch_ = ground_.fill(test.otherwise, method.names, method.types, frame);
   }
 
   /// Tests that bind the variables of a method in one state.
@@ -339,7 +339,7 @@ class Search {
   bool too_deep_{false};
   std::string blame_;
   std::size_t blame_at_{0};
-  std::string lacking_;         // why the method looked at does not fit
+  std::string mismatch_;        // why the method looked at does not fit
   std::string* here_{nullptr};  // first reason inside the instance that might be left out
   Plan best_;
 };

@@ -1,4 +1,4 @@
-// A condition that counts only once it has held for some time. Pure.
+// A condition that applies only after it has held for some time. Pure.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace handsel::supervisor {
 
-/// Time for which a condition has held without a break; facts may flicker.
+/// The time for which a condition has held without interruption, because facts may alternate.
 class Persistent {
  public:
   /// Takes the condition as of `now`. Returns whether it has held for `time` [s].
@@ -19,9 +19,9 @@ class Persistent {
     if (!since_) since_ = now;
     return to_seconds(now - *since_) >= time;
   }
-  /// Returns whether the condition held when it was taken last.
+  /// Returns the last value of the condition.
   bool holds() const { return since_.has_value(); }
-  /// Starts anew.
+  /// Resets the time.
   void reset() { since_.reset(); }
 
  private:

@@ -5,13 +5,13 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::uint32_t kMaxDepth = 16;  // idl/task.idl
+constexpr std::uint32_t kMaxDepth = 16;  // max depth of the tree, as in idl/task.idl
 
 bool over(StepState state) {
   return state == StepState::done || state == StepState::failed || state == StepState::dropped;
 }
 
-/// Of a task from its parts: [first, last) of the tree.
+/// Returns the state of a task from its parts: [first, last) of the tree.
 StepState together(const std::vector<PlanStep>& tree, std::size_t first, std::size_t last,
                    const std::vector<bool>& leaf) {
   bool waiting = false, done = false, failed = false, dropped = false;
@@ -65,7 +65,7 @@ std::vector<PlannedAction> Progress::left(bool after) const {
   return {plan_.actions.begin() + static_cast<std::ptrdiff_t>(from), plan_.actions.end()};
 }
 
-/// What is over stays in the tree.
+/// Keeps finished lines in the tree.
 void Progress::put_away() {
   for (std::size_t i = 1; i < plan_.tree.size(); ++i) {
     const PlanLine& line = plan_.tree[i];
@@ -116,11 +116,11 @@ void Progress::write(const std::string& goal, TaskStatus& out) const {
   out.plan = past_plan_;
   for (const auto& action : plan_.actions) out.plan.push_back(cut(action.text(), kMaxText));
   out.step = static_cast<std::uint32_t>(past_plan_.size() + next_);
-  if (out.plan.size() > kMaxSteps) {  // what was done first goes
-    const std::size_t gone =
+  if (out.plan.size() > kMaxSteps) {  // removes the first finished actions
+    const std::size_t removed =
         std::min<std::size_t>(out.step > 8 ? out.step - 8 : 0, out.plan.size() - kMaxSteps);
-    out.plan.erase(out.plan.begin(), out.plan.begin() + static_cast<std::ptrdiff_t>(gone));
-    out.step -= static_cast<std::uint32_t>(gone);
+    out.plan.erase(out.plan.begin(), out.plan.begin() + static_cast<std::ptrdiff_t>(removed));
+    out.step -= static_cast<std::uint32_t>(removed);
     if (out.plan.size() > kMaxSteps) out.plan.resize(kMaxSteps);
     out.step = std::min<std::uint32_t>(out.step, kMaxSteps);
   }
@@ -148,8 +148,8 @@ void Progress::write(const std::string& goal, TaskStatus& out) const {
     if (!leaf[i] && end > i + 1) tree[i].state = together(tree, i + 1, end, leaf);
   }
   if (tree.size() > kMaxLines) {
-    const std::size_t gone = std::min(past_.size(), tree.size() - kMaxLines);
-    tree.erase(tree.begin() + 1, tree.begin() + 1 + static_cast<std::ptrdiff_t>(gone));
+    const std::size_t removed = std::min(past_.size(), tree.size() - kMaxLines);
+    tree.erase(tree.begin() + 1, tree.begin() + 1 + static_cast<std::ptrdiff_t>(removed));
     if (tree.size() > kMaxLines) tree.resize(kMaxLines);
   }
   for (PlanStep& step : tree) {

@@ -1,4 +1,4 @@
-// How far a plan has been carried out, and what became of the plans before it. Pure.
+// Tracks the execution of a plan and the outcome of previous plans. Pure.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace handsel::supervisor {
 
-/// What one TaskStatus has room for (idl/task.idl).
+/// Quotas of one TaskStatus (idl/task.idl).
 inline constexpr std::size_t kMaxSteps = 64, kMaxLines = 128, kMaxText = 128, kMaxReason = 256,
                              kMaxPhase = 64;
 /// Returns the text if it has at most `max_size` bytes, else its beginning with "..." at that
@@ -19,36 +19,36 @@ std::string cut(const std::string& text, std::size_t max_size);
 
 class Progress {
  public:
-  /// Continues with another plan. What is left of the old one and not in the new one was dropped,
-  /// `why` says for what reason.
+  /// Continues with another plan. Remaining actions of the old plan that are not in the new one
+  /// count as dropped, with the reason `why`.
   void adopt(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
-  /// The running action stays the first of the new plan.
+  /// Continues with another plan whose first action is the running one.
   void adopt_after_running(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
 
-  /// Action that is due or running; nullptr: all are over. Invalid after the plan is replaced.
+  /// Returns the due or running action; nullptr: all are over. Invalid after the plan is replaced.
   const PlannedAction* current() const {
     return next_ < plan_.actions.size() ? &plan_.actions[next_] : nullptr;
   }
-  /// Actions from the current one on, or after it.
+  /// Returns the actions from the current one on, or after it.
   std::vector<PlannedAction> left(bool after = false) const;
-  /// Plan adopted last, with its actions already done.
+  /// Returns the present plan, including finished actions.
   const Plan& plan() const { return plan_; }
-  /// Reasons for which actions were dropped, in order, each once.
+  /// Returns the reasons of dropped actions, in order, each once.
   const std::vector<std::string>& dropped() const { return dropped_; }
 
   /// Marks the current action as running.
   void begin() { mark(StepState::running, ""); }
-  /// Marks the current action as done and turns to the next one.
+  /// Marks the current action as done and proceeds to the next one.
   void done();
   /// Marks the current action as failed; it stays the current one.
   void failed(const std::string& reason) { mark(StepState::failed, reason); }
   /// Marks the current action as dropped and adds the reason to dropped(); it stays the current
   /// one.
   void drop(const std::string& reason);
-  /// It will be tried again.
+  /// Marks the current action for another attempt.
   void again(const std::string& reason) { mark(StepState::waiting, reason); }
 
-  /// Plan, step, tree and cost; `goal` is the first line of the tree.
+  /// Writes plan, step, tree and cost; `goal` is the first line of the tree.
   void write(const std::string& goal, TaskStatus& out) const;
 
  private:

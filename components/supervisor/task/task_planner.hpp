@@ -1,4 +1,4 @@
-// From a goal of a person to a task of the domain, or to the reason why it is refused. Pure.
+// Converts a person's goal to a task of the domain, or to the reason of its refusal. Pure.
 #pragma once
 
 #include <string>
@@ -14,19 +14,19 @@ struct TaskQuery {
   int task{-1};                   ///< index in Domain::tasks; -1: the domain has none
   std::vector<std::string> args;  ///< of the task; "-": left out
   std::string reason;             ///< why the goal is refused, and a remedy; empty: accepted
-  std::string unseen;             ///< thing or person that is named and not seen; empty: none
-  bool needs_person{false};       ///< a person is needed and none is seen
+  std::string unseen;             ///< named object or person that is not observed; empty: none
+  bool needs_person{false};       ///< whether a person is needed but none is observed
 };
 
 /// "give mug to anna", "take what anna offers", ...
 std::string text_of(const TaskGoal& goal);
 
-/// Resolves the names of the goal against the objects, surfaces and people of the world. The result
-/// has a reason when a name is missing, unknown or of the wrong type.
+/// Resolves the names of the goal with the objects, surfaces and people of the world. The result
+/// has a reason if a name is missing, unknown or of the wrong type.
 TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world,
                     const Scene& scene);
 
-/// Before anything is done: it is so already; empty: it is not.
+/// Returns that the goal holds already before any action, one phrase; empty: it does not.
 std::string already(const TaskGoal& goal);
 
 }  // namespace handsel::supervisor

@@ -8,7 +8,7 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::size_t kMaxRefusals = 64;
+constexpr std::size_t kMaxRefusals = 64;  // max number of stored refusals
 constexpr const char* kRunsActions = "manipulation_planner";
 
 bool only_rests(const Plan& plan) {
@@ -16,7 +16,7 @@ bool only_rests(const Plan& plan) {
                      [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
 }
 
-/// Returns to whom the plan of a recovery gave what the robot held, for people; empty: to nobody.
+/// Returns the receiver of the held object in the plan of a recovery, for people; empty: none.
 std::string fate_of_held(const Plan& plan) {
   std::string text;
   for (const PlannedAction& action : plan.actions) {
@@ -171,7 +171,7 @@ void TaskRun::search(TimePoint now, TaskWishes& wishes) {
          query.needs_person ? "nobody is in sight to " + problem_.text() : query.reason);
 }
 
-/// A required component that stays away ends the task, unless an action runs that may end without
+/// Ends the task if a required component stays missing, unless the running action can end without
 /// it.
 bool TaskRun::is_stranded(TimePoint now, const std::vector<std::string>& missing) {
   const bool long_missing = missing_.lasts(!missing.empty(), now, settings_.missing_timeout);
@@ -200,7 +200,7 @@ void TaskRun::step(TimePoint now, const std::vector<std::string>& missing, std::
     wishes.changed = true;
     const bool other = hopeless_.holds() ? false : replan(now);
     if (other) return;
-    // A fact may flicker: it must be so for a while before anything is given up for it.
+    // Facts may alternate; the condition must hold for a time before the task is given up.
     if (hopeless_.lasts(true, now, settings_.settle_time)) {
       hopeless_.reset();
       if (!replan(now)) give_up(status_.reason.empty() ? impossible : status_.reason, now);
@@ -212,7 +212,7 @@ void TaskRun::step(TimePoint now, const std::vector<std::string>& missing, std::
   wishes.changed = true;
 }
 
-/// Follows the action that was begun: its report, its end, and its goal until it is reported.
+/// Monitors the started action: its reports and end; repeats its goal until the first report.
 void TaskRun::follow(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id,
                      TaskWishes& wishes) {
   const auto& action = situation_.action();
@@ -221,7 +221,7 @@ void TaskRun::follow(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_
     wishes.changed = true;
     ended(now);
   } else if (dispatch_.state() == ActionDispatch::State::stopping) {
-    // A planner that was started anew knows nothing of the action any more.
+    // A restarted planner does not know the action.
     if (!reported && dispatch_.retry_due(now)) ended(now);
   } else {
     watch(now, wishes);
@@ -259,7 +259,7 @@ void TaskRun::send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id
   dispatch_.send(goal, now, wishes.action_goals);
 }
 
-/// Checks while an action runs whether it still makes sense, and the actions after it.
+/// Checks whether the running action and the following actions are still valid.
 void TaskRun::watch(TimePoint now, TaskWishes& wishes) {
   const PlannedAction& running = *progress_.current();
   const std::string why = problem_.why_broken(running);
@@ -276,7 +276,7 @@ void TaskRun::watch(TimePoint now, TaskWishes& wishes) {
   obsolete_.reset();
   if (replans_ >= settings_.max_replans) return;
   Plan plan = plan_from(after);
-  if (!plan.found) return;  // evaluated again when this action has ended
+  if (!plan.found) return;  // evaluated again at the end of this action
   ++replans_;
   progress_.adopt_after_running(std::move(plan), [this](const PlannedAction& action) {
     return problem_.why_replaced(action);
@@ -313,7 +313,7 @@ void TaskRun::ended(TimePoint now) {
     return;
   }
   if (last.kind != ActionKind::receive || !last.object.empty()) return;
-  // What was taken has a name now.
+  // The received object has an id now.
   const std::string taken = !action->object.empty() ? action->object : situation_.held();
   if (taken.empty()) return;
   TaskGoal goal = problem_.goal();
@@ -359,11 +359,11 @@ void TaskRun::all_done(TimePoint now) {
     return finish(TaskState::failed, failures_.reason() + fate_of_held(progress_.plan()));
   if (const std::string out = left_out(progress_.plan()); !out.empty())
     return finish(TaskState::failed, "not all of it was done: " + out);
-  const std::string lacking = problem_.unachieved(believed(now));
-  if (!lacking.empty()) {
+  const std::string unachieved = problem_.unachieved(believed(now));
+  if (!unachieved.empty()) {
     if (effects_.pending(now)) return;
     if (replan(now) && progress_.current() != nullptr) return;
-    if (left_out(progress_.plan()).empty()) return give_up(lacking, now);
+    if (left_out(progress_.plan()).empty()) return give_up(unachieved, now);
     return;
   }
   std::string reasons;

@@ -1,4 +1,4 @@
-// One task from its goal to its end: planned, carried out, watched, planned anew. Pure.
+// Runs one task from goal to end: planning, execution, monitoring, replanning. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace handsel::supervisor {
 
-/// What a task wants of its surroundings in one step.
+/// Requests of a task in one step.
 struct TaskWishes {
-  std::vector<ActionGoal> action_goals;  ///< to be sent, in order; a cancellation is one of them
-  bool changed{false};                   ///< true: the status has to be reported
+  std::vector<ActionGoal> action_goals;  ///< to be sent, in order, including cancellations
+  bool changed{false};                   ///< whether the status must be reported
 };
 
 class TaskRun {
@@ -41,9 +41,9 @@ class TaskRun {
   void pause(bool paused);
   /// Ends the task as cancelled at once and cancels its running action.
   void cancel(TaskWishes& wishes);
-  /// Ends in order: what is in the hand is put back.
+  /// Ends the task in an orderly sequence: puts back the held object.
   void abort(const std::string& reason, TimePoint now, TaskWishes& wishes);
-  /// What is in the hand goes to a person instead; false: nothing is, or that is being done.
+  /// Gives the held object to a person instead; false: no object, or already doing so.
   bool give_instead(const std::string& person, TimePoint now, TaskWishes& wishes);
 
   /// Returns whether the task has succeeded, failed or was cancelled.
