@@ -1,5 +1,5 @@
-// The reachable volume of one arm and its comfort, computed once for a body size and moved with the
-// person (chapter section 4.1.2).
+// The reachable volume of one arm with its comfort cost, computed once per body size and moved with
+// the person (chapter section 4.1.2).
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@ class ComfortVolume {
   ComfortVolume() = default;
   ComfortVolume(const ArmSize& arm, double resolution);
 
-  /// Made for an arm whose lengths differ by less than `tolerance` [m] from these.
+  /// Returns whether the volume is of an arm whose lengths differ by less than `tolerance` [m].
   bool suits(const ArmSize& arm, double tolerance) const;
-  /// Comfort cost at p from the shoulder along (forward, outward, up) of the torso [m],
-  /// interpolated; 1 where most of the neighbouring points of the volume are out of reach.
+  /// Returns the interpolated comfort cost at a point relative to the shoulder, along forward,
+  /// outward, up of the torso [m]; 1 if the majority of neighbouring points is out of reach.
   double cost(const Vector3& p_arm) const;
 
  private:
   struct Point {
-    float cost, reachable;  // 0, 0 out of reach
+    float cost, reachable;  // both 0 out of reach
   };
   ArmSize arm_;
   double resolution_{1};

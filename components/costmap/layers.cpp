@@ -12,11 +12,10 @@ namespace handsel::costmap {
 namespace {
 
 enum Layer { kSafety, kVisibility, kComfort, kTotal };
-constexpr std::uint8_t kNever = 255;
+constexpr std::uint8_t kUnreachable = 255;  // value of an unreachable point
 constexpr std::array kWatched = {"l_shoulder", "r_shoulder", "waist", "head"};
-constexpr double kArmTolerance =
-    0.01;  // [m] an arm that seems longer or shorter by less is the same arm
-constexpr std::size_t kVolumes = 24;  // that are kept: measured lengths go up and down
+constexpr double kArmTolerance = 0.01;   // max difference in length of equal arms [m]
+constexpr std::size_t kMaxVolumes = 24;  // max cached volumes, as measured lengths vary
 
 Vector3 shoulder_middle(const Person& person) {
   const BodyJoint *left = find_joint(person, "l_shoulder"),
@@ -33,7 +32,7 @@ void put(const Vector3& p, float (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(p[i]);
 }
 
-/// First and one past the last point of a row (along x) within reach of the arm.
+/// Returns first and one past last point of a row (along x) within reach of the arm.
 std::pair<int, int> within_reach(const PlacedArm& arm, const Vector3& first, double step, int n) {
   const Vector3 d = first - arm.shoulder;
   const double reach = arm.length() + kArmTolerance,
@@ -57,14 +56,14 @@ const Layers& MapMaker::make(const Person& person, const std::vector<SceneBox>& 
     for (int i = 0; i < 3; ++i)
       map.origin[i] = settings_.resolution * (std::round(middle[i] / settings_.resolution) - half);
     map.nx = map.ny = map.nz = static_cast<std::uint32_t>(2 * half + 1);
-    map.values.assign(std::size_t{map.nx} * map.ny * map.nz, kNever);
+    map.values.assign(std::size_t{map.nx} * map.ny * map.nz, kUnreachable);
   }
   fill_comfort(person, boxes, layers_[kComfort]);
   fill_others(person);
   return layers_;
 }
 
-/// References stay valid while fewer than kVolumes others are asked for.
+/// Returns the volume of an arm, valid until kMaxVolumes others are requested.
 const ComfortVolume& MapMaker::volume_of(const ArmSize& arm) {
   const auto known = std::find_if(volumes_.begin(), volumes_.end(), [&](const ComfortVolume& v) {
     return v.suits(arm, kArmTolerance);
@@ -73,7 +72,7 @@ const ComfortVolume& MapMaker::volume_of(const ArmSize& arm) {
     volumes_.splice(volumes_.begin(), volumes_, known);
   } else {
     volumes_.emplace_front(arm, settings_.resolution);
-    if (volumes_.size() > kVolumes) volumes_.pop_back();
+    if (volumes_.size() > kMaxVolumes) volumes_.pop_back();
   }
   return volumes_.front();
 }
@@ -101,9 +100,9 @@ void MapMaker::fill_comfort(const Person& person, const std::vector<SceneBox>& b
             row[i] = std::min(row[i], static_cast<std::uint8_t>(std::lround(cost * 254)));
       }
       for (int i = 0; i < n; ++i)
-        if (row[i] != kNever &&
+        if (row[i] != kUnreachable &&
             furniture.blocked_by(first + settings_.resolution * Vector3(i, 0, 0)))
-          row[i] = kNever;
+          row[i] = kUnreachable;
     }
 }
 
@@ -169,11 +168,11 @@ bool Watch::changed(const Person& person, const std::vector<SceneBox>& boxes) {
 
 const Person* nearest_person(const HumanState& people, const Vector3& point) {
   const Person* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const Person& person : people.people) {
     const double d = (shoulder_middle(person) - point).norm();
-    if (d >= least) continue;
-    least = d;
+    if (d >= min_distance) continue;
+    min_distance = d;
     best = &person;
   }
   return best;

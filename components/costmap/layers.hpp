@@ -1,5 +1,5 @@
-// The cost map of one person: safety, visibility, the arm's comfort validated against the
-// furniture, and their weighted sum over one grid (chapter section 4.1.2). Pure.
+// Computes the cost map of one person: safety, visibility, arm comfort with regard to furniture,
+// and their weighted sum over one grid (chapter section 4.1.2). Pure.
 #pragma once
 
 #include <array>
@@ -16,21 +16,21 @@ namespace handsel::costmap {
 /// Grid and cost functions of a cost map.
 struct MapSettings {
   double resolution{0.025};  ///< edge of a cell [m]
-  double reach{1.0};         ///< half edge of the grid around the middle of the shoulders [m]
-  double clearance{0.04};    ///< points nearer than this to a box are no place for a handover [m]
-  CostSettings cost;         ///< of the human-aware cost functions, with the weights of the layers
+  double reach{1.0};         ///< half edge of the grid around the midpoint of the shoulders [m]
+  double clearance{0.04};    ///< min distance of an exchange point from a box [m]
+  CostSettings cost;         ///< human-aware cost functions and weights of the layers
 };
 
 using Layers = std::array<Costmap, std::size(kOwnLayers)>;  ///< in the order of kOwnLayers
 
-/// Makes the layers of one person after another; keeps the volumes of arms by their lengths.
+/// Computes the layers of one person at a time; caches the comfort volumes by arm lengths.
 class MapMaker {
  public:
   explicit MapMaker(const MapSettings& settings) : settings_(settings) {}
-  /// Values as in Costmap. "arm_comfort" is 255 out of reach and where a ReachCheck says that
-  /// furniture blocks the arm; "total" counts such points as cost 1 of the arm; the other two are
-  /// never 255. The grid is aligned with the world, its points lie on multiples of the resolution.
-  /// Valid until the next call.
+  /// Returns the layers with values as in Costmap, valid until the next call. "arm_comfort" is 255
+  /// out of reach and where furniture blocks the arm (ReachCheck); "total" counts these points as
+  /// cost 1 of the arm; the other two are never 255. The grid is aligned with the world, with
+  /// points at multiples of the resolution.
   const Layers& make(const Person& person, const std::vector<SceneBox>& boxes);
 
  private:
@@ -39,16 +39,16 @@ class MapMaker {
   void fill_others(const Person& person);
 
   MapSettings settings_;
-  std::list<ComfortVolume> volumes_;  // the last asked for first
+  std::list<ComfortVolume> volumes_;  // most recently used first
   Layers layers_;
 };
 
-/// Where the person was when a map was made: tells when it has to be made anew.
+/// Detects changes of person and boxes that require a new map.
 class Watch {
  public:
   Watch(double moved, double turned) : moved_(moved), turned_(turned) {}
-  /// True when the person is another, moved, turned or turned the gaze, or the scene's boxes
-  /// changed since the last time it returned true.
+  /// Returns whether the person is another, moved, turned or changed the gaze, or the scene's boxes
+  /// changed since the last call that returned true.
   bool changed(const Person& person, const std::vector<SceneBox>& boxes);
 
  private:
@@ -59,7 +59,7 @@ class Watch {
   std::vector<SceneBox> boxes_;
 };
 
-/// The person whose shoulders are nearest to a point, or nullptr.
+/// Returns the person whose shoulders are nearest to a point; nullptr: none.
 const Person* nearest_person(const HumanState& people, const Vector3& point);
 
 }  // namespace handsel::costmap

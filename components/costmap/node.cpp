@@ -8,7 +8,7 @@
 namespace handsel::costmap {
 namespace {
 
-constexpr Duration kStale = std::chrono::seconds(1);
+constexpr Duration kMaxAge = std::chrono::seconds(1);  // max age of the people
 
 settings::CostmapSettings load(const NodeContext& context) {
   SettingsText text;
@@ -42,14 +42,14 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus.every(from_seconds(load(context).period), [this](TimePoint now) { step(now); });
 }
 
-/// Where the robot stands [m].
+/// Returns the position of the robot, world [m].
 Vector3 Node::p_world_robot() const {
   const Pose T = robot_ != nullptr ? T_world_platform(*robot_, *scene_) : scene_->T_world_base;
   return T.translation();
 }
 
 void Node::step(TimePoint now) {
-  const bool current = scene_ && bus_.lag<Scene>() < kStale && bus_.lag<HumanState>() < kStale;
+  const bool current = scene_ && bus_.lag<Scene>() < kMaxAge && bus_.lag<HumanState>() < kMaxAge;
   bus_.set_degraded(current ? "" : "no current Scene or HumanState: no cost map");
   if (!current || making_ || !advised_period_.due(now)) return;
   advised_period_.done(now);
@@ -84,7 +84,7 @@ void Node::make(const Person& person) {
       });
 }
 
-/// Each layer that is not what was sent last, or was sent long ago.
+/// Publishes each layer that has changed or was last sent longer than the repeat period ago.
 void Node::publish(TimePoint now) {
   if (made_ == nullptr) return;
   for (std::size_t i = 0; i < made_->size(); ++i) {

@@ -1,4 +1,4 @@
-// The cost map on a Bus.
+// Binds the cost map to a bus.
 #pragma once
 
 #include <memory>
@@ -33,7 +33,7 @@ class Node {
   std::unique_ptr<Publisher<Costmap>> map_out_;
   std::optional<Scene> scene_;
   HumanState people_;
-  const Layers* made_{};  // by the last job; null: nobody is there
+  const Layers* made_{};  // result of the last job; null: no person
   struct Sent {
     Costmap map;
     TimePoint time{};
