@@ -10,10 +10,9 @@ namespace handsel::collision_checker {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kOtherAxes =
-    0.01;  // [rad] the other axes may move this much before the scene is judged anew
-constexpr double kRestMotion = 1e-3;   // [rad] at rest, smaller motions change nothing
-constexpr double kFarClearance = 5.0;  // [m] clearances of a query beyond this are not looked for
+constexpr double kMaxOtherMotion = 0.01;  // max motion of other axes with cached results [rad]
+constexpr double kMaxRestMotion = 1e-3;   // max motion of a robot at rest [rad]
+constexpr double kMaxClearance = 5.0;     // max clearance computed by a query [m]
 
 std::string contact(const CollisionVerdict& verdict) {
   return verdict.first + " touches " + verdict.second;
@@ -126,7 +125,7 @@ void Forecaster::remember_for(const ActiveTrajectory& active, const Vector& now)
   const bool known = !memory_.empty() && trajectory_ == active.trajectory &&
                      same(attachment_, active.attachment) && allowed_ == active.allowed_contacts &&
                      same(path_, active.rest) && others_.size() == others.size() &&
-                     (others - others_).cwiseAbs().maxCoeff() < kOtherAxes;
+                     (others - others_).cwiseAbs().maxCoeff() < kMaxOtherMotion;
   if (known) return;
   if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts ||
       trajectory_ != active.trajectory)
@@ -154,15 +153,16 @@ CollisionVerdict Forecaster::scene_verdict(std::size_t index, const Vector& q) {
   return contacts_[index];
 }
 
-/// Of the links where `links_` has them.
+/// Returns the clearance of the links at the poses in `links_`.
 double Forecaster::distance_to_ball(const Vector3& centre, double radius) const {
-  double least = kInfinity;
+  double min_clearance = kInfinity;
   for (const LinkCapsule& capsule : capsules_) {
     const Pose T = T_world_base_ * links_[static_cast<std::size_t>(capsule.link)];
-    least = std::min(least, segment_distance(T * capsule.a, T * capsule.b, centre, centre) -
-                                capsule.radius - radius);
+    min_clearance =
+        std::min(min_clearance, segment_distance(T * capsule.a, T * capsule.b, centre, centre) -
+                                    capsule.radius - radius);
   }
-  return least;
+  return min_clearance;
 }
 
 /// `ahead`: time from now at which the robot is at `q` [s].
@@ -195,8 +195,8 @@ void Forecaster::sample_at(const Vector& q, double ahead, TrajectoryForecast& fo
                                    [&](const HandAhead& h) { return h.time > ahead; });
     if (next == hand.motion.begin() || next == hand.motion.end()) continue;
     const HandAhead& before = *std::prev(next);
-    const double share = (ahead - before.time) / (next->time - before.time);
-    const Vector3 expected = (1 - share) * before.position + share * next->position;
+    const double fraction = (ahead - before.time) / (next->time - before.time);
+    const Vector3 expected = (1 - fraction) * before.position + fraction * next->position;
     forecast.clearance = std::min(forecast.clearance, distance_to_ball(expected, hand.radius));
   }
   if (cost_.concerned()) forecast.cost = std::clamp(cost_(q), forecast.cost, 1.0);
@@ -219,7 +219,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   const bool backward = active.speed_factor < 0;
   if (active.trajectory == 0 || active.rest.size() == 0 || (!backward && active.time >= duration)) {
     const bool stood = rest_ && rest_position_.size() == now.size() &&
-                       (rest_position_ - now).cwiseAbs().maxCoeff() < kRestMotion;
+                       (rest_position_ - now).cwiseAbs().maxCoeff() < kMaxRestMotion;
     if (!stood) {
       if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts)
         remember_for(active, now);
@@ -238,8 +238,8 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     return static_cast<long>(std::clamp(t, 0.0, duration) / spacing);
   };
   const long last_index = static_cast<long>(std::ceil(duration / spacing));
-  // States lie on a fixed grid of the trajectory's own time; the first is the one about to be
-  // reached, then on in the sense of motion.
+  // States lie on a fixed grid of the trajectory's time; the first is the next state in the
+  // direction of motion.
   const long first =
       backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
   const long end = backward ? index_at(active.time - reach)
@@ -294,7 +294,7 @@ StateVerdict check_states(const RobotModel& robot, CollisionWorld& world, const 
     if (why.empty())
       verdict.clearance =
           std::min({verdict.clearance, world.distance_to_people(q),
-                    world.distance_to_scene(q, std::min(kFarClearance, verdict.clearance))});
+                    world.distance_to_scene(q, std::min(kMaxClearance, verdict.clearance))});
   }
   return verdict;
 }

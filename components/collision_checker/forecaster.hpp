@@ -1,5 +1,5 @@
-// Where the running trajectory leads: contact, clearance and cost over the next moments, against
-// the newest scene and people. Pure.
+// Forecasts contact, clearance and cost of the running trajectory with the newest scene and people.
+// Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace handsel::collision_checker {
 
 /// Range and sampling of a forecast.
 struct ForecastSettings {
-  double horizon{1.5};     ///< time ahead that is checked, at present speed [s]
+  double horizon{1.5};     ///< checked time ahead at present speed [s]
   double min_speed{0.25};  ///< speed factor assumed for a slower or held trajectory
-  double spacing{0.05};    ///< of states, in time of the trajectory [s]
-  /// Other robots are expected to keep their velocity for at most this long [s].
+  double spacing{0.05};    ///< time between checked states on the trajectory [s]
+  /// Max time for which other robots are expected to keep their velocity [s].
   double robot_ahead{0.5};
 };
 
-/// The fingers of all hands as last measured. Pure.
+/// The measured finger positions of all hands. Pure.
 class MeasuredFingers {
  public:
   explicit MeasuredFingers(const RobotModel& robot);
   /// Takes the measured position of all axes [rad].
   void set(const Vector& measured) { measured_ = measured; }
-  /// Returns a configuration with the fingers as measured, unchanged until they are known; all
-  /// axes.
+  /// Returns the configuration (all axes) with measured fingers; unchanged before the first
+  /// measurement.
   Vector in(Vector q) const;
 
  private:
@@ -38,29 +38,30 @@ class MeasuredFingers {
   Vector measured_;
 };
 
-/// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower
-/// the clearance, the controller's guard answers for them. A hand counts where it is and where
-/// SPARK expects it when the robot gets there. Another robot counts where it is and where its
-/// velocity leads meanwhile. Fingers count where they are measured: the set-point
-/// of a finger that presses on an object lies inside the object. What scene and robot themselves
-/// say about a state of a trajectory is remembered until one of them changes.
+/// Overlap with torso, head, upper arms and legs of people is a contact; forearms and hands only
+/// reduce the clearance, because the controller's guard handles them. A hand counts at its present
+/// position and at SPARK's prediction for the time of the robot's arrival. Another
+/// robot counts at its present position and where its velocity leads by then. Fingers count at
+/// measured positions, because the set-point of a pressing finger lies inside the object. Results
+/// for scene and robot without people are cached until one of them changes.
 class Forecaster {
  public:
   Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost,
              ForecastSettings settings);
 
-  /// Replaces the scene; verdicts of the old one are dropped when its revision or the base differs.
+  /// Replaces the scene; drops cached results if its revision or the base differs.
   void set_scene(const Scene& scene);
   /// Replaces the people and the predicted motion of their hands.
   void set_people(const HumanState& people);
-  /// Replaces the cost-map layers that the cost ahead is computed from.
+  /// Replaces the cost-map layers of the forecast cost.
   void set_layers(LayersNow layers);
 
-  /// At rest: no contact is reported, clearance and cost of where the robot stands. A trajectory
-  /// that does not fit the robot is reported as a collision now, with the reason.
+  /// Returns the forecast. At rest: no contact, with clearance and cost at the present
+  /// configuration. A trajectory that does not match the robot is an immediate collision with a
+  /// reason.
   TrajectoryForecast forecast(const ActiveTrajectory& active);
 
-  /// Number of configurations checked for collisions so far.
+  /// Returns the number of configurations checked for collisions so far.
   std::uint64_t checks() const { return world_.checks(); }
 
  private:

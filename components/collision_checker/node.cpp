@@ -7,9 +7,9 @@
 namespace handsel::collision_checker {
 namespace {
 
-constexpr int kTicks = 4;  // of the shortest period: periods between are rounded to them
-constexpr std::size_t kMaxQueries = 16;  // that wait; each may hold 4096 states
-constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
+constexpr int kTicksPerPeriod = 4;       // ticks per min period, to which periods are rounded
+constexpr std::size_t kMaxQueries = 16;  // max number of waiting queries of up to 4096 states
+constexpr Duration kLayerWatch = std::chrono::milliseconds(200);  // period of layer checks
 
 settings::CollisionCheckerSettings load(const NodeContext& context) {
   SettingsText text;
@@ -32,7 +32,7 @@ Node::Node(Bus& bus, const NodeContext& context)
                   core_settings(load(context))),
       query_world_(*context.robot, context.objects),
       advised_period_(load(context).period, load(context).max_period,
-                      load(context).period / kTicks),
+                      load(context).period / kTicksPerPeriod),
       forecast_out_(bus.advertise<TrajectoryForecast>()),
       verdict_out_(bus.advertise<StateVerdict>()) {
   const settings::CollisionCheckerSettings settings = load(context);
@@ -60,7 +60,8 @@ Node::Node(Bus& bus, const NodeContext& context)
   });
   bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
-  bus.every(from_seconds(settings.period / kTicks), [this](TimePoint now) { forecast(now); });
+  bus.every(from_seconds(settings.period / kTicksPerPeriod),
+            [this](TimePoint now) { forecast(now); });
 }
 
 void Node::forecast(TimePoint now) {
