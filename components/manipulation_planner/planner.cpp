@@ -77,7 +77,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   continue_action();
   ActionStatus& status = parts_.action;
   if (parts_.offers.has_accepted()) status.exchange_engaged = parts_.offers.is_engaged();
-  status.time_to_handover = time_to_handover(status, parts_.now);
+  status.time_to_handover = time_to_handover(status, parts_.now, parts_.settings);
   status.holding = parts_.held.is_holding();
   parts_.outbox.move_to(out);
 }

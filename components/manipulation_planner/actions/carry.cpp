@@ -15,9 +15,7 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kMaxTilt = 0.05;     // of what is carried, as planned [rad]
-constexpr double kCarrySpeed = 0.5;   // speed scale of two arms in a closed chain
 constexpr double kSamePlace = 0.004;  // what moved less is where it was planned to be taken [m]
-constexpr int kMaxGraspTries = 2;     // with both hands
 constexpr double kMassRatio = 0.5;    // of the object's mass that each hand bears
 constexpr std::size_t kSteps = 3;     // of a plan: two grasps and the place
 
@@ -133,7 +131,7 @@ Routine<Outcome> back_off(Parts& parts, const std::string& object, const Regrasp
 /// Tries to take the object with both hands.
 Routine<Outcome> try_to_take(Parts& parts, const std::string& object, const CarryPlan& plan) {
   Outcome done;
-  for (int tries = 0; tries < kMaxGraspTries; ++tries) {
+  for (std::uint32_t tries = 0; tries < parts.settings.two_hand_attempts; ++tries) {
     done = co_await take_together(parts, object, plan);
     if (done.good) break;
     parts.refuse("grasp with both hands", done.reason);
@@ -154,7 +152,7 @@ Routine<Outcome> move_together(Parts& parts, const std::string& object, const st
   if (!ready) co_return parts.link.not_permitted();
   MotionSpec together;
   together.allowed = {object};
-  together.speed = kCarrySpeed;
+  together.speed = parts.settings.two_hand_speed;
   const Vector start = parts.arm.configuration();
   const RobotModel& robot = parts.arm.robot();
   auto& timing = parts.clients.trajectory;

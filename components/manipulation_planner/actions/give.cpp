@@ -8,8 +8,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kRetryPause = 0.5;  // before the person's reach is checked again [s]
-
 /// Returns the motion that carries the object to the receiver.
 MotionSpec carry_motion(const Parts& parts, const std::string& object, const OtpSearch& search,
                         const Person& receiver) {
@@ -40,7 +38,7 @@ Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::st
         co_return last;
       }
       parts.action.phase = ActionPhase::waiting_for_person;
-      co_await parts.waiting.pause(kRetryPause);
+      co_await parts.waiting.pause(settings.reach_pause);
       continue;
     }
     ++attempt;

@@ -13,10 +13,7 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kPickRetryPause = 0.5;  // before the person's reach is checked again [s]
-constexpr double kFullStrain = 1;        // of a wrist at an end of its ranges
-constexpr int kRounds = 2;               // of asking for grasps
-constexpr int kMaxExecuted = 3;          // grasps, after which the object may have moved
+constexpr double kFullStrain = 1;  // of a wrist at an end of its ranges
 
 /// A grasp with which the object can be given to the person.
 struct Givable {
@@ -77,7 +74,7 @@ Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const 
     if (!result->givable.empty() || parts.now.time() >= deadline) break;
     if (drives(parts.arm.robot())) co_return Outcome{};  // it is given elsewhere
     parts.action.phase = ActionPhase::waiting_for_person;
-    co_await parts.waiting.pause(kPickRetryPause);
+    co_await parts.waiting.pause(parts.settings.reach_pause);
   }
   for (const auto& refusal : result->refused) parts.refuse(refusal.what, refusal.reason);
   if (result->givable.empty()) {
@@ -98,13 +95,15 @@ Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const 
 /// Tries grasps until one holds the object, or the object may have moved.
 Routine<Outcome> try_grasps(Parts& parts, const std::string& object, const std::string& for_human,
                             const std::vector<Grasp>& grasps, Outcome last) {
-  int executed = 0;
+  std::uint32_t executed = 0;
   for (const Grasp& grasp : grasps) {
     last = co_await try_grasp(parts, object, for_human, grasp);
     if (last.good) co_return last;
     parts.refuse("grasp " + std::to_string(grasp.id), last.reason);
     if (parts.held.is_holding()) co_return last;
-    if (parts.action.phase != ActionPhase::planning && ++executed >= kMaxExecuted) break;
+    if (parts.action.phase != ActionPhase::planning &&
+        ++executed >= parts.settings.max_executed_grasps)
+      break;
   }
   co_return last;
 }
@@ -115,7 +114,7 @@ Routine<Outcome> pick_by_arm(Parts& parts, const std::string& object, const std:
                              const std::string& onto) {
   Outcome last;
   const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.reach_timeout);
-  for (int round = 0; round < kRounds; ++round) {
+  for (std::uint32_t round = 0; round < parts.settings.grasp_rounds; ++round) {
     GraspList list;
     if (onto.empty())
       list = co_await ask_grasps(parts, object, for_human, parts.settings.max_grasps);

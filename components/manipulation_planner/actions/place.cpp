@@ -11,8 +11,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr std::size_t kMaxPlaces = 24;  // of a surface that are tried
-
 /// Returns whether a person is at the palm or about to be. Fingers that open move toward them, and
 /// no guard slows fingers.
 bool is_person_near_hand(const Parts& parts) {
@@ -103,7 +101,7 @@ Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
       parts.now.object(object) == nullptr)
     co_return list;
   parts.action.phase = ActionPhase::choosing_place;
-  const DestinationLimits limits{parts.settings.max_grasps, kMaxPlaces};
+  const DestinationLimits limits{parts.settings.max_grasps, parts.settings.surface_places};
   const ServingGrasps found = co_await find_destinations(parts, object, onto, list.grasps, limits);
   if (!found.outcome.good || found.at.empty()) {
     const std::string none =

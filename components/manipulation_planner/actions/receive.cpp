@@ -16,11 +16,8 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kObserveAgain = 0.02;  // [s]
-constexpr double kMaxShift = 0.03;      // of an object, after which its grasps are outdated [m]
-constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
 constexpr double kSameDistance =
     0.5;  // distances of the arm's farthest axis that count as equal [rad]
-constexpr std::size_t kMaxPlacesTried = 8;  // of a surface that are tried: the giver waits
 
 /// Uses the arm that is nearest to the giver: people hold back before that hand.
 Routine<Outcome> use_nearest_arm(Parts& parts, const std::string& giver) {
@@ -87,7 +84,7 @@ double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& gr
 /// that grasp. Leaves the best. Returns false where the object can be put down by none.
 Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
                           std::vector<Grasp>& grasps) {
-  const DestinationLimits limits{grasps.size(), kMaxPlacesTried};
+  const DestinationLimits limits{grasps.size(), parts.settings.receive_places};
   const ServingGrasps later = co_await find_destinations(parts, offer.object, onto, grasps, limits);
   for (const auto& [grasp, destination] : later.at) parts.destinations.add(destination);
   if (later.at.empty() && !later.objections.empty())
@@ -181,13 +178,14 @@ Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vecto
                                    const Outcome& why, Outcome last) {
   const auto has_moved = [&] {
     const SceneObject* held = parts.now.object(offer.object);
-    return held == nullptr || (held->T_world_object.translation() - p_asked).norm() > kMaxShift;
+    return held == nullptr ||
+           (held->T_world_object.translation() - p_asked).norm() > parts.settings.offer_moved;
   };
   if (has_moved()) co_return last;
   if (why.reason != last.reason) parts.refuse("offer", why.reason);
   if (parts.area.is_occupied(offer.giver))
     co_await clear_offer_area(parts, offer.giver, ClearUntil::clear_offer);
-  co_await parts.waiting.until(has_moved, kRetryPeriod);
+  co_await parts.waiting.until(has_moved, parts.settings.offer_retry);
   co_return why;
 }
 

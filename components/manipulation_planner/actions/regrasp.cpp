@@ -14,7 +14,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr int kMaxCloseTries = 2;  // of a hand on what the other one holds
 constexpr double kAsideDistances[] = {0.15, 0.25,
                                       0.35};             // of what an arm draws to its own side [m]
 constexpr double kMeetingOffsets[] = {0.0, 0.02, 0.04};  // of the place where the hands meet [m]
@@ -148,7 +147,7 @@ Routine<Outcome> meet(Parts& parts, const std::string& object, const RegraspStep
 Routine<Outcome> join_hands(Parts& parts, const std::string& object, const RegraspStep& step,
                             std::optional<Grasp>& grasp) {
   Outcome done = co_await meet(parts, object, step, grasp);
-  for (int tries = 0; grasp && tries < kMaxCloseTries; ++tries) {
+  for (std::uint32_t tries = 0; grasp && tries < parts.settings.close_attempts; ++tries) {
     done = co_await take_over(parts, object, *grasp);
     if (done.good) co_return done;
     parts.refuse("grasp by the other hand", done.reason);

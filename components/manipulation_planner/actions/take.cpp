@@ -12,14 +12,10 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kOfferCheckPeriod = 0.02;  // [s]
-constexpr double kMaxStandoffError = 0.02;  // of the hand, where the straight motion in begins [m]
-constexpr double kReleaseTime = 0.2;      // with the load, before what was taken is drawn away [s]
-constexpr double kMaxInHandError = 0.05;  // of an object that was put into the hand [m]
-constexpr double kNear = 0.5;             // to giver or object: the arm retreats straight first [m]
-constexpr double kMaxDetour = 1.3;        // length of a path over that of the straight one
+constexpr double kNear = 0.5;       // to giver or object: the arm retreats straight first [m]
+constexpr double kMaxDetour = 1.3;  // length of a path over that of the straight one
 constexpr double kDetourPerAttempt = 1.0;  // length that each attempt adds [rad, sum of max norms]
 constexpr std::uint32_t kMaxDirectAttempts = 2;  // after which a path may have any length
-constexpr int kMaxAims = 6;         // times the hand follows before the offer is awaited anew
 constexpr int kClearanceSteps = 6;  // checks of the straight motion in, and of the closing
 
 /// How far an attempt has come.
@@ -46,7 +42,7 @@ bool is_put_into_hand(const Parts& parts, const TakeAttempt& take) {
   const Vector3 p_tool_object =
       parts.arm.T_world_tool().inverse() * given->T_world_object.translation();
   return (p_tool_object - take.chosen.T_object_hand.inverse().translation()).norm() <
-         kMaxInHandError;
+         parts.settings.max_in_hand_error;
 }
 
 /// Returns whether the hand is so near to the object that it must not open or turn beside it.
@@ -179,8 +175,9 @@ Routine<Step> approach_offer(Parts& parts, const TakeAttempt& take, std::optiona
   const RobotModel& robot = parts.arm.robot();
   const Pose T_standoff = parts.now.T_world_base() * robot.link_pose(q, parts.arm.palm());
   const double error = (T_standoff.translation() - parts.arm.T_world_tool().translation()).norm();
-  co_return Step{error > kMaxStandoffError ? Progress::again : Progress::at_standoff,
-                 moved_away(object + " is moved about")};
+  co_return Step{
+      error > parts.settings.max_standoff_error ? Progress::again : Progress::at_standoff,
+      moved_away(object + " is moved about")};
 }
 
 /// Moves straight in from the stand-off.
@@ -241,7 +238,7 @@ bool is_left_in_hand(const Parts& parts, const std::string& object, const Grasp&
   if (seen == nullptr || seen->holder != Holder::surface) return false;
   const Pose T_world_object = parts.arm.T_world_tool() * grasp.T_object_hand.inverse();
   return (seen->T_world_object.translation() - T_world_object.translation()).norm() <
-         kMaxInHandError;
+         parts.settings.max_in_hand_error;
 }
 
 /// Waits until the giver has released the object. Fingers that press on the object feel some of its
@@ -262,7 +259,8 @@ Routine<Outcome> await_release(Parts& parts, const TakeAttempt& take, const Gras
   const double timeout = is_sure ? parts.settings.let_go_timeout : parts.settings.unsure_grip_time;
   const TimePoint deadline = parts.now.time() + from_seconds(timeout);
   TimePoint since = parts.now.time();
-  while (parts.now.time() < deadline && to_seconds(parts.now.time() - since) < kReleaseTime) {
+  while (parts.now.time() < deadline &&
+         to_seconds(parts.now.time() - since) < parts.settings.release_time) {
     if (!is_given()) since = parts.now.time();
     co_await parts.waiting.pause(kOfferCheckPeriod);
   }
@@ -327,7 +325,7 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   }
   if (!begun.good) co_return begun;
   Step step;
-  for (int aims = 0; aims < kMaxAims; ++aims) {
+  for (std::uint32_t aims = 0; aims < parts.settings.take_aims; ++aims) {
     step = co_await approach_offer(parts, take, grasp);
     if (step.progress == Progress::again) continue;
     if (step.progress == Progress::at_standoff) step = co_await reach_offer(parts, take, grasp);

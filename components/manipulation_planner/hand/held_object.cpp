@@ -9,11 +9,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMaxHandDistance = 0.15;  // middle of a hand to that of what it takes hold of [m]
-constexpr double kMaxOffset =
-    0.2;                           // farther from where the hand would have it: not in the hand [m]
-constexpr double kSlipTime = 0.2;  // so long out of the hand: slipped [s]
-
 using HandPoints = std::array<Vector3, 2>;
 
 /// Returns the middles of the hands of a person (world).
@@ -46,7 +41,7 @@ bool HeldObject::is_in_hand(const SceneObject& object) const {
   const int palm = hands[static_cast<std::size_t>(hand)].palm;
   const Pose T_world_palm = now_.T_world_base() * arm_.robot().link_pose(now_.set_point(), palm);
   const Vector3 p_held = T_world_palm * attachment_.T_tool_object.translation();
-  return (object.T_world_object.translation() - p_held).norm() < kMaxOffset;
+  return (object.T_world_object.translation() - p_held).norm() < settings_.max_slip;
 }
 
 bool HeldObject::is_held_by_hand(const std::string& object) const {
@@ -61,7 +56,7 @@ bool HeldObject::is_at_hand_of(const std::string& person, const std::string& obj
   if (thing == nullptr || found == nullptr) return false;
   const ObjectModel* model = now_.model_of(object);
   if (model == nullptr)
-    return has_hand_near(*found, thing->T_world_object.translation(), kMaxHandDistance);
+    return has_hand_near(*found, thing->T_world_object.translation(), settings_.person_hand_range);
   const HandPoints hands = hands_of_person(*found);
   const Pose T_object_world = thing->T_world_object.inverse();
   return std::any_of(hands.begin(), hands.end(), [&](const Vector3& p_hand) {
@@ -83,7 +78,7 @@ bool HeldObject::is_out_of_hand() const {
   const Vector3& p = held->T_world_object.translation();
   const auto& people = now_.people().people;
   return std::none_of(people.begin(), people.end(), [&](const Person& person) {
-    return has_hand_near(person, p, 2 * kMaxHandDistance);
+    return has_hand_near(person, p, 2 * settings_.person_hand_range);
   });
 }
 
@@ -92,7 +87,7 @@ void HeldObject::update(TimePoint now) {
 }
 
 bool HeldObject::has_slipped(TimePoint now) const {
-  return to_seconds(now - seen_in_hand_) > kSlipTime;
+  return to_seconds(now - seen_in_hand_) > settings_.slip_time;
 }
 
 }  // namespace handsel::manipulation_planner

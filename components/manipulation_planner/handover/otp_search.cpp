@@ -16,9 +16,7 @@ constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
 constexpr int kHeadings = 24;          // of the object at each place
 constexpr double kMinDistance = 0.05;  // between alternatives [m]
-constexpr double kMaxBarred = 0.5;     // cosine of a finger and the person's pull
 constexpr double kNoPartner = 2;       // strain that counts where no grasp of the person fits
-constexpr double kMinFacing = -0.3;    // cosine: the hand must not come from the person's side
 
 struct Candidate {
   Pose T_world_object;
@@ -125,11 +123,11 @@ class OtpCosts {
   /// Cost of how the hand holds the object toward the person; nullopt: they could not take it.
   std::optional<double> of_attitude(const Eigen::Matrix3d& R_world_object) const {
     const double facing = (R_world_object * object_in_hand_).normalized().dot(-toward_robot_);
-    if (facing < kMinFacing) return std::nullopt;
+    if (facing < settings_.otp_min_facing) return std::nullopt;
     double in_the_way = 0;
     for (const Vector3& normal : barred_)
       in_the_way = std::max(in_the_way, (R_world_object * normal).dot(-toward_robot_));
-    if (in_the_way > kMaxBarred) return std::nullopt;
+    if (in_the_way > settings_.otp_max_barred) return std::nullopt;
     return settings_.w_legibility * ((1 - facing) / 2 + in_the_way);
   }
   /// Returns whether grasps of the person count: some are known, of a body whose arm is known.

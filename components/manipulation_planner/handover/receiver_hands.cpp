@@ -7,8 +7,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kUsualStature = 1.7;  // of a person whose stature is not known [m]
-
 const Vector3& position_of(const Person& person, const char* joint) {
   return person.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
 }
@@ -44,7 +42,7 @@ ReceiverHands hands_of(const Person& person, const Scene& scene, const Vector3& 
   if (person.joints.size() != kBodyJoints.size()) return hands;
   hands.left_free = !is_busy(person, scene, Side::left, settings.busy_range);
   hands.right_free = !is_busy(person, scene, Side::right, settings.busy_range);
-  const double stature = person.stature > 0 ? person.stature : kUsualStature;
+  const double stature = person.stature > 0 ? person.stature : settings.assumed_stature;
   for (const Side side : {Side::right, Side::left}) {
     const double out = extension(person, side, p_world_robot) / stature,
                  other = extension(person, other_side(side), p_world_robot) / stature;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kSameGoal = 1e-6;        // [rad]
 constexpr double kMaxDuration = 600;      // a motion this long has been forgotten by everybody [s]
-constexpr double kAttemptPause = 0.3;     // before the next attempt [s]
 constexpr double kMaxRetreatRatio = 1.5;  // of the retreat distance, from people
 constexpr double kYieldRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
 
@@ -250,7 +249,7 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
       if (freed) continue;
     }
     parts.refuse(text_of(motion.phase), last.reason);
-    co_await parts.waiting.pause(kAttemptPause);
+    co_await parts.waiting.pause(parts.settings.attempt_pause);
   }
   co_return last;
 }

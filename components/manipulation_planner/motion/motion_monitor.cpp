@@ -8,11 +8,7 @@ namespace {
 
 constexpr std::uint32_t kBlocked = bit(Cause::forecast_collision);
 constexpr std::uint32_t kTooNear = bit(Cause::separation) | bit(Cause::attention_slow);
-constexpr double kCreeping = 0.04;      // slower, as a speed factor, the arm does not arrive
-constexpr double kMinFollowed = 0.02;   // shift of an object that the motion follows [m]
-constexpr double kHandLength = 0.3;     // palm to what is beyond the open fingers [m]
-constexpr double kMaxShiftRatio = 0.5;  // of the distance ahead, that an object may shift meanwhile
-constexpr double kMaxShiftBesideHand = 0.04;  // shift that is always permitted [m]
+constexpr double kMinFollowed = 0.02;  // shift of an object that the motion follows [m]
 
 }  // namespace
 
@@ -20,7 +16,7 @@ void MotionMonitor::update() {
   const auto& status = now_.execution();
   const ActiveTrajectory& active = now_.active();
   is_person_too_near_ = status && (status->causes & kTooNear) != 0 && active.trajectory != 0 &&
-                        std::abs(active.speed_factor) < kCreeping;
+                        std::abs(active.speed_factor) < settings_.creeping_factor;
   // An arm at rest has no collision ahead: it starts, and is held back again.
   if (status && (status->causes & kBlocked) != 0) held_back_at_ = now_.time();
   const bool is_held_back = to_seconds(now_.time() - held_back_at_) <= settings_.blocked_pause;
@@ -43,9 +39,10 @@ bool MotionMonitor::has_target_moved(const MotionSpec& motion) const {
   const Vector3 p_object = object->T_world_object.translation();
   const double shifted = (p_object - target.p_world).norm();
   if (!target.grasp) return shifted > target.max_shift;
-  const double ahead = (p_object - p_tool()).norm() - kHandLength;
+  const double ahead = (p_object - p_tool()).norm() - settings_.hand_length;
   const double max_shift =
-      std::clamp(kMaxShiftRatio * ahead, kMaxShiftBesideHand, target.max_shift);
+      std::min(std::max(settings_.approach_slack_ratio * ahead, settings_.min_approach_slack),
+               target.max_shift);
   return shifted > max_shift || !offers_.is_still_offered();
 }
 

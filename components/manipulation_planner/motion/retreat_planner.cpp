@@ -10,10 +10,7 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kNear = 0.12;  // nearer, the guard permits only motion away, about [m]
-constexpr double kMinAway =
-    0.6;                        // part of a link's motion that leads away; the guard asks for less
-constexpr double kStep = 0.01;  // of the retreat [m]
+constexpr double kStep = 0.01;       // of the retreat [m]
 constexpr double kLookahead = 0.02;  // of a motion, by its fastest axis [rad, m]
 constexpr double kDamping = 1e-3;    // of the least-squares solution
 constexpr double kMaxTurn = 0.1;     // of one axis for a step [rad, m]
@@ -29,8 +26,9 @@ Placed placed(const LinkCapsule& capsule, const std::vector<Pose>& T_root_link,
 
 }  // namespace
 
-RetreatPlanner::RetreatPlanner(const RobotModel& robot, const Group& arm)
-    : robot_(robot), arm_(arm), capsules_(robot_capsules(robot)) {}
+RetreatPlanner::RetreatPlanner(const RobotModel& robot, const Group& arm,
+                               const settings::ManipulationPlannerSettings& settings)
+    : robot_(robot), arm_(arm), settings_(settings), capsules_(robot_capsules(robot)) {}
 
 bool RetreatPlanner::within_limits(const Vector& q) const {
   return std::all_of(arm_.axes.begin(), arm_.axes.end(), [&](int axis) {
@@ -60,9 +58,9 @@ bool RetreatPlanner::leads_away(const Vector& from, const Vector& to, const Pose
         const double moved = std::max((now.a - old.a).norm(), (now.b - old.b).norm());
         if (moved < 1e-6) continue;
         const double was = nearest_points(old.a, old.b, part.a, part.b, on_robot, on_person);
-        if (std::sqrt(was) - link.radius - part.radius > kNear) continue;
+        if (std::sqrt(was) - link.radius - part.radius > settings_.retreat_range) continue;
         const double is = nearest_points(now.a, now.b, part.a, part.b, on_robot, on_person);
-        if (std::sqrt(is) - std::sqrt(was) < kMinAway * moved) return false;
+        if (std::sqrt(is) - std::sqrt(was) < settings_.retreat_ratio * moved) return false;
       }
     }
   }
@@ -110,7 +108,7 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
           Vector3 on_robot, on_person;
           const double apart =
               std::sqrt(nearest_points(arm.a, arm.b, part.a, part.b, on_robot, on_person));
-          if (apart < 1e-9 || apart - link.radius - part.radius > kNear) continue;
+          if (apart < 1e-9 || apart - link.radius - part.radius > settings_.retreat_range) continue;
           const Pose T_world_link = T_world_base * T_root_link[static_cast<std::size_t>(link.link)];
           near.push_back({link.link, T_world_link.inverse() * on_robot, on_robot,
                           (on_robot - on_person) / apart});

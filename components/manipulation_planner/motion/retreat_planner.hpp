@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/robot_capsules.hpp"
 
@@ -13,7 +14,8 @@ namespace handsel::manipulation_planner {
 class RetreatPlanner {
  public:
   /// The references must outlive what is made; a group that changes is followed.
-  RetreatPlanner(const RobotModel& robot, const Group& arm);
+  RetreatPlanner(const RobotModel& robot, const Group& arm,
+                 const settings::ManipulationPlannerSettings& settings);
 
   /// Returns whether the straight motion of all axes [rad, m] begins with every link that is near a
   /// person going clearly away from that person.
@@ -38,6 +40,7 @@ class RetreatPlanner {
 
   const RobotModel& robot_;
   const Group& arm_;
+  const settings::ManipulationPlannerSettings& settings_;
   std::vector<LinkCapsule> capsules_;
 };
 

@@ -10,7 +10,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr std::size_t kMaxPlaces = 24;         // of a surface that are tried first
 constexpr std::size_t kMaxAllPlaces = 400;     // that are tried where none of those serves
 constexpr std::size_t kMaxConfigurations = 6;  // that motions are planned to
 constexpr std::size_t kMaxPassedPlaces = 16;   // for an object that changes hands before
@@ -28,7 +27,8 @@ struct PlacingJob {
   PlacingMotion motion;
   double margin;  // preferred
   Vector q;
-  ArmReach reach;  // of the arm that is to reach the places well
+  ArmReach reach;          // of the arm that is to reach the places well
+  std::size_t max_places;  // of a surface that are tried first
 };
 
 PlacingJob placing_job(Parts& parts) {
@@ -42,7 +42,8 @@ PlacingJob placing_job(Parts& parts) {
           {.from_above = parts.settings.lift_height},
           parts.settings.place_margin,
           parts.arm.configuration(),
-          arm_reach(parts.arm.robot(), &parts.arm.group(), parts.arm.palm())};
+          arm_reach(parts.arm.robot(), &parts.arm.group(), parts.arm.palm()),
+          parts.settings.surface_places};
 }
 
 /// Searches for places that an arm of this name reaches well, from now on.
@@ -196,7 +197,7 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
                                      in = std::move(placing), T_now = parts.held.T_world_object(),
                                      place_drop = parts.settings.place_drop] {
     set_world(in);
-    std::vector<Pose> places = best_places_on(in, box, held.object, T_now, kMaxPlaces);
+    std::vector<Pose> places = best_places_on(in, box, held.object, T_now, in.max_places);
     if (chosen) places.insert(places.begin(), chosen->T_world_object);
     const std::vector<Pose> coarse = places;
     const Vector opened = RobotModel::with(in.q, in.fingers, opening);

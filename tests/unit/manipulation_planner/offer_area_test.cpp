@@ -27,10 +27,10 @@ class OfferAreaTest : public testing::Test {
   const Vector rest_ = robot_->rest_configuration();
   Snapshot now_{[](const std::string&) -> const ObjectModel* { return nullptr; }};
   const ActiveArm arm_{robot_, now_};
-  const RetreatPlanner retreat_{*robot_, arm_.group()};
   const settings::ManipulationPlannerSettings settings_ =
       settings::read_manipulation_planner_settings(std::filesystem::path(HANDSEL_SOURCE_DIR) /
                                                    "deploy/config/manipulation_planner.txtpb");
+  const RetreatPlanner retreat_{*robot_, arm_.group(), settings_};
   const OfferArea area_{settings_, arm_, retreat_, now_};
 };
 

@@ -31,7 +31,8 @@ class RetreatPlannerTest : public testing::Test {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
   const Group& arm = robot.require_group("arm");
   const Vector rest = robot.rest_configuration();
-  const RetreatPlanner retreat{robot, arm};
+  const settings::ManipulationPlannerSettings settings;
+  const RetreatPlanner retreat{robot, arm, settings};
   HumanState people;
 };
 
@@ -79,6 +80,15 @@ TEST_F(RetreatPlannerTest, with_nobody_near_every_direction_is_open_and_none_is_
   past[arm.axes[0]] += 0.3;
   EXPECT_TRUE(retreat.leads_away(rest, past, Pose::Identity(), people));
   EXPECT_TRUE(retreat.steps_away(rest, Pose::Identity(), people, 0.15).empty());
+}
+
+TEST_F(RetreatPlannerTest, the_range_within_which_people_are_near_is_a_setting) {
+  stand(0.07, 0.0);
+  settings::ManipulationPlannerSettings changed;
+  changed.retreat_range = 0.05;
+  const RetreatPlanner other{robot, arm, changed};
+  EXPECT_FALSE(retreat.steps_away(rest, Pose::Identity(), people, 0.05).empty());
+  EXPECT_TRUE(other.steps_away(rest, Pose::Identity(), people, 0.05).empty());
 }
 
 }  // namespace
