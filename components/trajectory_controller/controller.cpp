@@ -10,11 +10,6 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kStopSlack = 0.05;    // [s] after detection and the fastest stop the robot rests
-constexpr double kGuardSlack = 0.02;   // [s] the same when the guard asks for less speed: the rest
-                                       // is the person's
-constexpr double kRefusalShown = 0.2;  // [s] while another path runs or is to be rejoined
-
 void require(bool good, const char* sentence) {
   if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
 }
@@ -25,11 +20,13 @@ bool may_retreat_beside(const CommandQueue& path) noexcept {
 }
 
 ComplianceSettings compliance_settings(const ControllerSettings& s) {
-  return {s.yield_speed, s.yield_reach, s.retreat_speed, s.retreat_reach, s.contact.yield_torque};
+  return {s.yield_speed,   s.yield_reach,          s.retreat_speed,
+          s.retreat_reach, s.contact.yield_torque, s.yield_lead,
+          s.retreat_range, s.retreat_damping,      s.retreat_min_factor};
 }
 
 LookaheadSettings lookahead_settings(const ControllerSettings& s) {
-  return {s.guard, s.walls, s.look_ahead, s.look_far_ahead, s.rise};
+  return {s.guard, s.walls, s.look_ahead, s.look_far_ahead, s.rise, s.ahead_min_factor};
 }
 
 OutputCheckSettings output_settings(const ControllerSettings& s) {
@@ -76,8 +73,8 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       stop_space_(settings.view, proof_, *robot_),
       finger_limit_(proof_, *robot_, settings.guard),
-      arm_({settings.period, settings.start_tolerance, settings.switch_reach}, *robot_,
-           groups_.arm()),
+      arm_({settings.period, settings.start_tolerance, settings.switch_reach, settings.join_time},
+           *robot_, groups_.arm()),
       compliance_(compliance_settings(settings), *robot_, groups_.arm_joints().size(), arm_),
       follower_({settings.dry_run, settings.hand_rejoin, settings.timeouts.robot_state}, groups_),
       hands_(settings.hand, *robot_, settings.period),
@@ -169,7 +166,7 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   }
   if (reason.empty()) reason = arm_.accept(command, set_points_.sent());
   if (!reason.empty()) {
-    const int shown = static_cast<int>(kRefusalShown / settings_.period);
+    const int shown = static_cast<int>(settings_.refusal_time / settings_.period);
     commands_.refuse(command.id, reason, arm_.active() ? shown : 0);
     return reason;
   }
@@ -252,7 +249,7 @@ void Controller::step_arm(TimePoint now) noexcept {
       settings_.retreat_reach > 0.0 && may_retreat_beside(arm_.queue()))
     order = ArmOrder::leave;
   const bool too_fast = mode == Mode::hold || lookahead_.is_too_fast(arm_.speed_factor());
-  const double slack = mode == Mode::hold ? kStopSlack : kGuardSlack;
+  const double slack = mode == Mode::hold ? settings_.stop_slack : settings_.slow_slack;
   if (order == ArmOrder::run && arm_.running() && !arm_.path().standing() && too_fast &&
       deadline_.is_due(sent, slack, now))
     order = ArmOrder::leave;

@@ -43,17 +43,23 @@ struct ControllerSettings {
   double attention_lost_factor{0.2};  ///< speed factor while attention is silent
   double recoil_limit{1.0};           ///< largest speed factor back along the path, [0, 1]
   double max_command_age{0.5};        ///< older commands are refused [s]
+  double refusal_time{0.2};           ///< a refusal is shown this long while another path runs [s]
   /// A trajectory may start this far from the set-point; a short motion bridges the distance [rad].
   double start_tolerance{0.05};
   /// In motion, a trajectory is joined at most this far from the switch point [rad].
   double switch_reach{0.3};
+  double join_time{0.5};    ///< in motion, one that begins as the arm moves: joined within this [s]
   double yield_speed{0.2};  ///< largest speed of complying with a push at rest [rad/s]
   double yield_reach{0.3};  ///< largest travel of each axis while complying [rad]
+  double yield_lead{0.5};   ///< of motion that the target of an axis lies ahead then [s]
   /// Largest speed of each axis in a retreat from a person at rest, when attention asks for recoil
   /// [rad/s].
   double retreat_speed{1.0};
-  double retreat_reach{0.3};  ///< largest travel of each axis then; 0: never [rad]
-  bool dry_run{};             ///< no set-point is sent; everything else runs
+  double retreat_reach{0.3};       ///< largest travel of each axis then; 0: never [rad]
+  double retreat_range{1.2};       ///< links farther from the person do not count then [m]
+  double retreat_damping{0.02};    ///< of the axes in the direction of a retreat [m^2]
+  double retreat_min_factor{0.1};  ///< speed factor that the guard must allow for a retreat
+  bool dry_run{};                  ///< no set-point is sent; everything else runs
   /// A robot side that stands moves its fingers to set-points this near [rad; of a sliding one at
   /// its lever].
   double hand_rejoin{0.25};
@@ -61,20 +67,25 @@ struct ControllerSettings {
   double tracking_time{0.1};       ///< for this long [s]
   double forecast_hold{0.6};       ///< collision forecast within this time: Hold [s]
   double forecast_slow{2.0};       ///< within this time: slower in proportion [s]
-  double cost_from{0.5};           ///< human-aware cost ahead from which the arm is slower, [0, 1)
-  double cost_factor{0.4};         ///< speed factor at a cost of 1, (0, 1]
-  double head_dead_band{0.03};     ///< the head turns only for more than this [rad]
-  double look_ahead{0.15};         ///< the guard also checks the path this much later [s]
-  double look_far_ahead{0.45};     ///< and this much later: about the time of a stop [s]
-  SpeedRiseSettings rise;          ///< of the speed factor after people have slowed the arm
-  int late_limit{5};               ///< late cycles in a row: Hold
-  std::vector<Wall> walls;         ///< never passed: virtual walls and the sides of the workspace
-  TimeoutSettings timeouts;        ///< of the inputs
-  GuardSettings guard;             ///< speed and separation
-  StopProofSettings proof;         ///< proof of a harmless stop
-  ViewSettings view;               ///< observation of the space of a stop
-  HandSettings hand;               ///< of every hand
-  ContactSettings contact;         ///< detection of contact of the arm
+  /// A stop along the path may take this much longer than the fastest one; then it is ended beside
+  /// the path [s].
+  double stop_slack{0.05};
+  double slow_slack{0.02};       ///< the same where the guard asks for less speed [s]
+  double cost_from{0.5};         ///< human-aware cost ahead from which the arm is slower, [0, 1)
+  double cost_factor{0.4};       ///< speed factor at a cost of 1, (0, 1]
+  double head_dead_band{0.03};   ///< the head turns only for more than this [rad]
+  double look_ahead{0.15};       ///< the guard also checks the path this much later [s]
+  double look_far_ahead{0.45};   ///< and this much later: about the time of a stop [s]
+  double ahead_min_factor{0.6};  ///< least speed factor assumed until then
+  SpeedRiseSettings rise;        ///< of the speed factor after people have slowed the arm
+  int late_limit{5};             ///< late cycles in a row: Hold
+  std::vector<Wall> walls;       ///< never passed: virtual walls and the sides of the workspace
+  TimeoutSettings timeouts;      ///< of the inputs
+  GuardSettings guard;           ///< speed and separation
+  StopProofSettings proof;       ///< proof of a harmless stop
+  ViewSettings view;             ///< observation of the space of a stop
+  HandSettings hand;             ///< of every hand
+  ContactSettings contact;       ///< detection of contact of the arm
 };
 
 class Controller {

@@ -46,7 +46,10 @@ PathPiece piece_of(const TrajectoryCommand& command, double begin, double offset
 
 ArmMotion::ArmMotion(const ArmSettings& settings, const RobotModel& robot,
                      const std::vector<int>& axes)
-    : settings_(settings), robot_(robot), movers_(robot, axes), runner_(settings.period) {}
+    : settings_(settings),
+      robot_(robot),
+      movers_(robot, axes),
+      runner_(settings.period, settings.join_time) {}
 
 bool ArmMotion::joins(const TrajectoryCommand& command) const noexcept {
   const bool on_path = running() && !runner_.finished();

@@ -40,6 +40,7 @@ struct ArmSettings {
   double period{0.001};          ///< of control [s]
   double start_tolerance{0.05};  ///< from rest [rad]
   double switch_reach{0.3};      ///< in motion, from the switch point [rad]
+  double join_time{0.5};         ///< in motion, one that begins nearly as the arm moves [s]
 };
 
 class ArmMotion {

@@ -34,8 +34,6 @@ Compliance::Compliance(const ComplianceSettings& settings, const RobotModel& rob
 /// nearer a link, the more it counts. The guard lets only links that go clearly away move near a
 /// person, so one velocity for the nearest point alone would be refused.
 void Compliance::aim_away(const ComplianceInputs& in) noexcept {
-  constexpr double kFar = 1.2;       // beyond this a link does not count [m]
-  constexpr double kDamping = 0.02;  // of the axes [m^2]
   retreat_velocity_.setZero();
   if (in.nearest.link < 0) return;
   const Pose T_base_world = in.inputs.robot.state().T_world_base.inverse();
@@ -43,7 +41,7 @@ void Compliance::aim_away(const ComplianceInputs& in) noexcept {
   const Vector3 up = T_base_world.linear().col(2);
   robot_.forward(in.set_points.sent().position, links_);
   hessian_.setIdentity();
-  hessian_ *= kDamping;
+  hessian_ *= settings_.retreat_damping;
   gradient_.setZero();
   for (std::size_t i = 0; i < joints_; ++i) {
     one_axis_.setZero();
@@ -56,8 +54,8 @@ void Compliance::aim_away(const ComplianceInputs& in) noexcept {
     Vector3 away = links_[link].translation() - p_person;
     away -= std::min(0.0, away.dot(up)) * up;
     const double distance = away.norm(), lever = effects_[link].norm();
-    if (distance > kFar || distance < 1e-6 || lever < 1e-6) continue;
-    const double weight = 1.0 - distance / kFar;
+    if (distance > settings_.retreat_range || distance < 1e-6 || lever < 1e-6) continue;
+    const double weight = 1.0 - distance / settings_.retreat_range;
     hessian_.noalias() += weight * effects_[link].transpose().lazyProduct(effects_[link]);
     gradient_.noalias() += weight * lever / distance * effects_[link].transpose() * away;
   }
@@ -99,23 +97,22 @@ Compliance::Wish Compliance::find_wish(const ComplianceInputs& in) noexcept {
 
 /// Sets an axis in motion at a speed, within `reach` of where the motion of the arm began.
 void Compliance::move(int axis, double speed, double reach) noexcept {
-  constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
   AxisLimits limits = limits_of(robot_.comfort_limits(), axis);
   limits.velocity = std::clamp(std::abs(speed), 1e-3, limits.velocity);
   const Axis& bounds = robot_.axes()[static_cast<std::size_t>(axis)];
   const double now = arm_.movers()[axis].state().position;
-  const double wanted = now + std::copysign(kAhead * limits.velocity, speed);
+  const double wanted = now + std::copysign(settings_.lead * limits.velocity, speed);
   double target = std::clamp(wanted, from_[axis] - reach, from_[axis] + reach);
   if (bounds.lower < bounds.upper) target = std::clamp(target, bounds.lower, bounds.upper);
   arm_.movers().go_to(axis, target, limits);
 }
 
 void Compliance::step(const ComplianceInputs& in) noexcept {
-  constexpr double kMinFactor = 0.1;  // that the guard must allow
   wish_ = find_wish(in);
   const bool chooses = in.cycle % kEvery == 0;
   if (wish_ == Wish::retreat && chooses) aim_away(in);
-  const bool may_retreat = wish_ == Wish::retreat && in.retreat_factor >= kMinFactor;
+  const bool may_retreat =
+      wish_ == Wish::retreat && in.retreat_factor >= settings_.retreat_min_factor;
   const double factor = may_retreat ? in.retreat_factor : 0.0;
   const bool pushed = wish_ == Wish::comply;
   const bool wanted = pushed || factor > 0.0;

@@ -16,11 +16,15 @@ namespace handsel::trajectory_controller {
 
 /// How the arm complies and retreats.
 struct ComplianceSettings {
-  double speed{0.2};          ///< largest speed of an axis while complying [rad/s]; 0: never
-  double reach{0.3};          ///< largest travel of each axis while complying [rad]
-  double retreat_speed{1.0};  ///< largest speed of an axis in a retreat [rad/s]
-  double retreat_reach{0.3};  ///< largest travel of each axis in a retreat; 0: never [rad]
-  double torque{15.0};        ///< an axis pushed by more than this complies [Nm]
+  double speed{0.2};               ///< largest speed of an axis while complying [rad/s]; 0: never
+  double reach{0.3};               ///< largest travel of each axis while complying [rad]
+  double retreat_speed{1.0};       ///< largest speed of an axis in a retreat [rad/s]
+  double retreat_reach{0.3};       ///< largest travel of each axis in a retreat; 0: never [rad]
+  double torque{15.0};             ///< an axis pushed by more than this complies [Nm]
+  double lead{0.5};                ///< of motion that the target of an axis lies ahead [s]
+  double retreat_range{1.2};       ///< links farther from the person do not count in a retreat [m]
+  double retreat_damping{0.02};    ///< of the axes in the direction of a retreat [m^2]
+  double retreat_min_factor{0.1};  ///< of the speed of a retreat that must be allowed
 };
 
 /// Inputs of one step.

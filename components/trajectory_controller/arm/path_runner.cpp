@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kSlack = 1e-6;  // [rad] beyond a bound by rounding
 
-constexpr double kTogether = 0.5;  // [s] of a trajectory that begins nearly as the arm moves
-
 double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
@@ -99,7 +97,7 @@ std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& ne
   MotionState3 there = next.at(0.0);
   if (begins_alike(from, there, limits_.motion)) {
     settings.last =
-        from_rest || same_motion(from, there) ? 0.0 : std::min(kTogether, next.duration());
+        from_rest || same_motion(from, there) ? 0.0 : std::min(join_time_, next.duration());
   } else {
     constexpr int kLooks = 200;
     double nearest = std::numeric_limits<double>::infinity();

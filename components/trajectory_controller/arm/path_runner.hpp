@@ -17,7 +17,8 @@ struct PathLimits {
 
 class PathRunner {
  public:
-  explicit PathRunner(double period) : dt_(period) {}
+  /// `join_time`: a trajectory that begins nearly as the axes move is joined within this time [s].
+  explicit PathRunner(double period, double join_time = 0.5) : dt_(period), join_time_(join_time) {}
 
   /// From rest at its beginning, at once with factor 1. Empty, or why it cannot be run. May
   /// allocate.
@@ -71,7 +72,7 @@ class PathRunner {
                         bool from_rest, Switch&& go);
   std::string why_out_of_bounds() const;
 
-  double dt_;
+  double dt_, join_time_;
   PathLimits limits_;
   TimeScaling scaling_;
   mutable Trajectory path_;  // as law_ has it, unless stale

@@ -9,9 +9,7 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kSideways = 0.05;  // ratio to a link's speed
-constexpr double kAway = 0.5;       // ratio to a link's speed
-constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not closing
+constexpr double kStill = 1e-4;  // [m/s] closing more slowly counts as not closing
 
 /// No direction gives more.
 double fastest(const PersonCapsule& c, const GuardSettings& s) noexcept {
@@ -172,8 +170,8 @@ class Evaluation {
     const double left = at.distance - v_h * part.age;
     // What does not clearly lead away counts as closing both ways: until they meet the direction
     // between them may turn.
-    const double sideways = std::max(kStill, kSideways * link.quickest);
-    const double away = kAway * link.quickest;
+    const double sideways = std::max(kStill, settings_.sideways_ratio * link.quickest);
+    const double away = settings_.away_ratio * link.quickest;
     if (closing > -away)
       forward_ = allowed(left, v_h, std::max(closing, sideways), margin_, forward_);
     if (closing < away)

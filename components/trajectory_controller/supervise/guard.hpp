@@ -26,6 +26,8 @@ struct GuardSettings {
   double uncovered_factor{0.3};    ///< speed factor while "nobody" is not a fact
   double handover_speed{0.25};     ///< largest speed toward an exempt forearm or hand [m/s]
   double handover_range{0.30};     ///< within this distance [m]
+  double sideways_ratio{0.05};     ///< least closing speed of a link, ratio to its speed
+  double away_ratio{0.5};          ///< a link with more than this ratio of its speed leads away
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
   /// Fingers stop for a person only when that person comes toward the hand this fast [m/s].
   double finger_stop_speed{0.10};

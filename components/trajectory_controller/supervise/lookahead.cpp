@@ -9,7 +9,6 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kMinFactor = 0.6;  // lowest speed factor that the lookahead assumes
 constexpr double kBackward = 0.02;  // the path runs back
 constexpr int kEvery = 50;          // [cycles] at rest
 constexpr int kEveryRetreat = 10;   // [cycles] in a retreat
@@ -122,7 +121,8 @@ void Lookahead::set_motion(double ahead, const LookaheadInputs& in) noexcept {
   if (!in.arm.running()) return;
   motion_.velocity.setZero();
   motion_.acceleration.setZero();
-  const double factor = in.arm.path().factor(), speed = std::max(std::abs(factor), kMinFactor);
+  const double factor = in.arm.path().factor(),
+               speed = std::max(std::abs(factor), settings_.min_factor);
   const double time = in.arm.path().time() + ahead * (factor < -kBackward ? -speed : speed);
   const MotionState3& at = in.arm.path_at(time);
   for (std::size_t i = 0; i < in.arm.path_axes().size(); ++i) {

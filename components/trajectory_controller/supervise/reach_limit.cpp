@@ -17,8 +17,6 @@ double time_at(const StopTable& stop, double factor) noexcept {
   return (1.0 - rest) * stop.time[k] + rest * stop.time[k + 1];
 }
 
-constexpr double kMinContactRatio = 0.2;
-
 double gained(const FrameMotion& change, const ChainCapsule& link) noexcept {
   const Vector3 a = change.linear + change.angular.cross(change.R * link.a),
                 b = change.linear + change.angular.cross(change.R * link.b);
@@ -148,7 +146,7 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
       const RegionMotion& bounds = s.people[region];
       // What the arm's present acceleration adds before a stop begins counts, but never forbids all
       // motion.
-      const double contact_now = std::max(of_arm - gain, kMinContactRatio * contact[region]);
+      const double contact_now = std::max(of_arm - gain, s.min_contact_ratio * contact[region]);
       const PartApproach approach{part, bounds, contact_now,
                                   start_speed(part, s.speed_error, bounds),
                                   reaction + query.age + part.age};

@@ -184,6 +184,16 @@ TEST_F(GuardTest, moving_clearly_away_is_not_held_back_and_running_back_is) {
   EXPECT_FALSE(v.too_near);
 }
 
+TEST_F(GuardTest, how_clearly_a_link_must_lead_away_is_a_setting) {
+  q_[0] = 0.9;
+  dq_[0] = 0.5;
+  Person p = standing(1.0);
+  walk(p, Vector3(-1.5, 0, 0));
+  EXPECT_EQ(judge(p).forward, 1.0);
+  settings_.away_ratio = 1.0;
+  EXPECT_LT(judge(p).forward, 1.0);
+}
+
 TEST_F(GuardTest, what_leads_past_a_person_is_held_back_both_ways_the_faster_they_come) {
   swing(0.5);
   q_[0] = 0.2;

@@ -37,6 +37,9 @@ struct StopProofSettings {
   /// ReachLimit aims at this fraction of a contact speed, so that the proof seldom intervenes ...
   double limit_ratio{0.9};
   double limit_margin{0.02};  ///< ... and at this much more distance [m]
+  /// ReachLimit allows at least this fraction of a contact speed, whatever the acceleration of the
+  /// arm adds.
+  double min_contact_ratio{0.2};
   /// Fingers alone use this fraction of a contact speed where people can reach them; the arm has
   /// the rest.
   double finger_ratio{0.7};
