@@ -24,7 +24,7 @@ struct NodeContext {
   std::uint64_t seed{1};                    ///< of every random choice of the node
   /// Name of the robot for other robots in the domain: $HANDSEL_NAME, else that of the model.
   std::string name{};
-  bool sim_time{};                          ///< time advances as the simulator grants it
+  bool sim_time{};  ///< time advances as the simulator grants it
   /// Folder of what must survive a restart of the process; empty: nothing is kept.
   std::filesystem::path state{};
 };

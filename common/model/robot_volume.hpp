@@ -1,4 +1,4 @@
-// The volume of a robot in motion, as it is told to other robots. Own method: the capsules around
+// The volume of a robot in motion, as reported to other robots. Own method: the capsules around
 // the links, with the velocities of their ends.
 #pragma once
 

@@ -36,16 +36,6 @@ bool same(const Trajectory& a, const Trajectory& b) {
   return std::equal(a.axes.begin(), a.axes.end(), b.axes.begin(), b.axes.end(), same_axis);
 }
 
-/// Returns whether an axis of the robot moves the link.
-bool is_moved(const RobotModel& robot, int link) {
-  for (int joint = robot.links()[static_cast<std::size_t>(link)].parent_joint; joint >= 0;) {
-    const auto& above = robot.joints()[static_cast<std::size_t>(joint)];
-    if (above.dof >= 0) return true;
-    joint = robot.links()[static_cast<std::size_t>(above.parent)].parent_joint;
-  }
-  return false;
-}
-
 }  // namespace
 
 MeasuredFingers::MeasuredFingers(const RobotModel& robot) {
@@ -67,10 +57,8 @@ Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSetti
       world_(robot, std::move(library)),
       cost_(robot, cost),
       fingers_(robot),
-      capsules_(robot_capsules(robot)) {
-  for (const LinkCapsule& capsule : capsules_)
-    if (is_moved(robot, capsule.link)) moving_capsules_.push_back(capsule);
-}
+      capsules_(robot_capsules(robot)),
+      other_robots_(robot, settings.robot_ahead) {}
 
 void Forecaster::set_scene(const Scene& scene) {
   const bool moved = !scene.T_world_base.isApprox(T_world_base_, 1e-6);
@@ -82,12 +70,12 @@ void Forecaster::set_scene(const Scene& scene) {
   }
   if (moved || scene.revision != revision_) memory_.clear();
   revision_ = scene.revision;
-  rest_.reset();
+  rest_.forecast.reset();
 }
 
 void Forecaster::set_people(const HumanState& people) {
+  other_robots_.set(people.robots);
   HumanState without_robots = people;
-  other_robots_ = std::move(without_robots.robots);
   without_robots.robots.clear();
   world_.set_people(without_robots, PeopleParts::without_forearms_and_hands);
   cost_.set_people(people);
@@ -104,12 +92,12 @@ void Forecaster::set_people(const HumanState& people) {
       known.motion.push_back({0, joint->position, 0});
       known.motion.insert(known.motion.end(), hand.ahead.begin(), hand.ahead.end());
     }
-  rest_.reset();
+  rest_.forecast.reset();
 }
 
 void Forecaster::set_layers(LayersNow layers) {
   cost_.set_layers(std::move(layers));
-  rest_.reset();
+  rest_.forecast.reset();
 }
 
 bool Forecaster::fits(const ActiveTrajectory& active) const {
@@ -165,28 +153,6 @@ double Forecaster::distance_to_ball(const Vector3& centre, double radius) const 
   return min_clearance;
 }
 
-/// `ahead`: time from now at which the robot is at `q` [s].
-Forecaster::RobotApproach Forecaster::other_robot_at(const Vector& q, double ahead) {
-  RobotApproach nearest{kInfinity, nullptr, nullptr};
-  if (other_robots_.empty()) return nearest;
-  robot_.forward(q, links_);
-  const double moved = std::min(ahead, settings_.robot_ahead);
-  for (const LinkCapsule& capsule : moving_capsules_) {
-    const Pose T = T_world_base_ * links_[static_cast<std::size_t>(capsule.link)];
-    const Vector3 a = T * capsule.a, b = T * capsule.b;
-    for (const OtherRobot& robot : other_robots_)
-      for (const MovingPart& part : robot.parts) {
-        const Vector3 c = part.a + moved * part.velocity_a, d = part.b + moved * part.velocity_b;
-        const double radii = capsule.radius + part.radius;
-        const double bound = nearest.distance + radii + 0.5 * ((b - a).norm() + (d - c).norm());
-        if (bound > 0 && (a + b - c - d).squaredNorm() >= 4.0 * bound * bound) continue;
-        const double distance = segment_distance(a, b, c, d) - radii;
-        if (distance < nearest.distance) nearest = {distance, &capsule, &robot};
-      }
-  }
-  return nearest;
-}
-
 void Forecaster::sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast) {
   forecast.clearance = std::min(forecast.clearance, world_.distance_to_people(q));
   if (!hands_.empty()) robot_.forward(q, links_);
@@ -218,20 +184,20 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   const double duration = active.rest.duration();
   const bool backward = active.speed_factor < 0;
   if (active.trajectory == 0 || active.rest.size() == 0 || (!backward && active.time >= duration)) {
-    const bool stood = rest_ && rest_position_.size() == now.size() &&
-                       (rest_position_ - now).cwiseAbs().maxCoeff() < kMaxRestMotion;
+    const bool stood = rest_.forecast && rest_.position.size() == now.size() &&
+                       (rest_.position - now).cwiseAbs().maxCoeff() < kMaxRestMotion;
     if (!stood) {
       if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts)
         remember_for(active, now);
-      rest_ = forecast;
-      sample_at(now, 0, *rest_);
-      rest_position_ = now;
+      rest_.forecast = forecast;
+      sample_at(now, 0, *rest_.forecast);
+      rest_.position = now;
     }
-    rest_->trajectory = active.trajectory;
-    return *rest_;
+    rest_.forecast->trajectory = active.trajectory;
+    return *rest_.forecast;
   }
   remember_for(active, now);
-  rest_.reset();
+  rest_.forecast.reset();
   const double speed = std::max(std::abs(active.speed_factor), settings_.min_speed);
   const double reach = speed * settings_.horizon, spacing = settings_.spacing;
   const auto index_at = [&](double t) {
@@ -247,7 +213,8 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   sample_at(now, 0, forecast);
   // Robots that are too near to each other may move apart.
   constexpr double kNearer = 1e-3;  // [m]
-  const double allowed = std::min(0.0, other_robot_at(now, 0).distance - kNearer);
+  const double allowed =
+      std::min(0.0, other_robots_.approach(now, T_world_base_, 0).distance - kNearer);
   Vector q = now;
   for (long k = first;; k += backward ? -1 : 1) {
     const double t = std::min(duration, static_cast<double>(k) * spacing);
@@ -257,11 +224,9 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     CollisionVerdict verdict = scene_verdict(static_cast<std::size_t>(k), q);
     if (verdict.free) verdict = world_.check_people(q);
     const double ahead = std::max(0.0, std::abs(t - active.time) / speed);
-    const RobotApproach at = other_robot_at(q, ahead);
-    if (verdict.free && at.distance < allowed) {
-      const std::string& link = robot_.links()[static_cast<std::size_t>(at.link->link)].name;
-      verdict = {false, "link " + link, "robot " + at.other->name, at.other->name};
-    }
+    const RobotApproach at = other_robots_.approach(q, T_world_base_, ahead);
+    if (verdict.free && at.distance < allowed)
+      verdict = {false, "link " + at.link, "robot " + at.robot, at.robot};
     sample_at(q, ahead, forecast);
     if (!verdict.free) {
       forecast.collides = true;

@@ -11,6 +11,7 @@
 #include "common/cost/human_cost.hpp"
 #include "common/messages/execution.hpp"
 #include "common/model/robot_capsules.hpp"
+#include "components/collision_checker/robot_forecast.hpp"
 
 namespace handsel::collision_checker {
 
@@ -70,13 +71,6 @@ class Forecaster {
   void remember_for(const ActiveTrajectory& active, const Vector& now);
   void sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast);
   double distance_to_ball(const Vector3& centre, double radius) const;
-  /// A link and another robot, where they are nearest to each other.
-  struct RobotApproach {
-    double distance{};          // [m], +inf without other robots
-    const LinkCapsule* link{};  // nullptr without other robots
-    const OtherRobot* other{};
-  };
-  RobotApproach other_robot_at(const Vector& q, double ahead);
   CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
 
   const RobotModel& robot_;
@@ -100,12 +94,15 @@ class Forecaster {
     std::vector<HandAhead> motion;  // from now on
   };
   std::vector<Hand> hands_;
-  std::vector<OtherRobot> other_robots_;
-  std::vector<LinkCapsule> capsules_, moving_capsules_;  // all; on links that an axis moves
+  std::vector<LinkCapsule> capsules_;
   std::vector<Pose> links_;
 
-  Vector rest_position_;                    // where `rest_` was computed
-  std::optional<TrajectoryForecast> rest_;  // nullopt: to be computed
+  RobotForecast other_robots_;
+  struct AtRest {
+    Vector position;                             // configuration of the forecast
+    std::optional<TrajectoryForecast> forecast;  // nullopt: to be computed
+  };
+  AtRest rest_;
 };
 
 /// Checks the states of a query in order. `clearance` is over the free ones.

@@ -12,8 +12,8 @@
 
 namespace handsel::sim {
 
-/// What another robot does: goes to and fro between two configurations, each way in the same time,
-/// with minimum jerk.
+/// What another robot does: moves between two configurations again and again, each motion in the
+/// same time and with minimum jerk.
 struct OtherRobotMotion {
   std::string id;                           ///< name in RobotReport
   std::shared_ptr<const RobotModel> model;  ///< not null
@@ -43,7 +43,7 @@ class OtherRobotBody {
   const std::string& id() const { return motion_.id; }
 
  private:
-  /// Fraction of the way from `from` to `to`, and its rate [1/s].
+  /// Completed fraction of the motion from `from` to `to`, and its rate [1/s].
   struct Progress {
     double fraction{}, rate{};
   };

@@ -13,8 +13,8 @@ namespace handsel::spark {
 
 class RobotsLink {
  public:
-  /// `name`: of the robot in RobotReport; empty: that of its model. Subscribes and publishes on `bus`, which must outlive
-  /// this.
+  /// `name`: of the robot in RobotReport; empty: that of its model. Subscribes and publishes on
+  /// `bus`, which must outlive this.
   RobotsLink(Bus& bus, const settings::SparkSettings& settings,
              std::shared_ptr<const RobotModel> robot, const std::string& name);
 
