@@ -60,13 +60,12 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
                " with a size above 0";
   }
   apply_quota(samples);
-  correct_swapped_ids(samples, objects_, seen);
+  correct_swapped_ids(samples, objects_, seen, settings_);
   for (const ObservedObject& observed : samples) {
     ObjectTrack& track = objects_[observed.id];
-    if (seen < track.seen ||
-        !accept_source(track, observed, observation.source, seen, settings_.doubt_time))
+    if (seen < track.seen || !accept_source(track, observed, observation.source, seen, settings_))
       continue;
-    add_sample(track, observed, seen, settings_.doubt_time);
+    add_sample(track, observed, seen, settings_);
     if (robot_.known())
       track.T_palm_object =
           robot_.hands()[track.robot_hand].T_world_palm.inverse() * observed.T_world_object;
@@ -152,11 +151,11 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
   for (auto& [id, track] : objects_) {
     track.object.age = std::max(0.0, to_seconds(now - track.seen));
     holders.attribute_grips(track);
-    if (track.object.age > kVelocityGap) track.object.velocity.setZero();
+    if (track.object.age > settings_.object_velocity_gap) track.object.velocity.setZero();
     if (!holders.carry(track)) holders.assign(track);
     update_uncertainty(track, people, now, settings_);
     SceneObject object = track.object;
-    if (object.holder == Holder::robot && object.age > kFollowHandAfter)
+    if (object.holder == Holder::robot && object.age > settings_.follow_hand_after)
       object.T_world_object = robot_.hands()[track.robot_hand].T_world_palm * track.T_palm_object;
     out.objects.push_back(std::move(object));
   }

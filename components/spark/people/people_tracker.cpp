@@ -9,7 +9,6 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameIdBonus = 0.15;  // reduction of the distance to a body of the same id [m]
 // Max time without observation for which walking is assumed under another id [s].
 constexpr double kMaxOtherIdGap = 0.3;
 constexpr double kGridStep = 0.3;       // distance of the tested places of a lost person [m]
@@ -67,7 +66,7 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation,
         continue;
       const double d = distance(track, body);
       if (d <= reach)
-        pairs.emplace_back(d - (same_id ? kSameIdBonus : 0.0), static_cast<int>(b),
+        pairs.emplace_back(d - (same_id ? settings_.same_id_distance : 0.0), static_cast<int>(b),
                            static_cast<int>(t));
     }
   }
@@ -318,7 +317,8 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
     person.gaze_known =
         track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory;
     person.inflation = inflation(track, now);
-    if (person.age <= settings_.lost_after) person.hands = hands_ahead(track, person, now);
+    if (person.age <= settings_.lost_after)
+      person.hands = hands_ahead(track, person, now, settings_);
     out.people.push_back(std::move(person));
   }
   std::vector<Coverage> observed;

@@ -10,11 +10,8 @@ namespace handsel::spark {
 namespace {
 
 constexpr double kMergeTime = 0.1;       // max time between observations merged to one body [s]
-constexpr double kMaxPersonSpeed = 2.2;  // max speed of a person [m/s]
-constexpr double kJumpTolerance = 0.08;  // tolerance of the distance between two samples [m]
 constexpr double kConfirmTime = 0.15;    // inflation time of a lost person after the return [s]
 constexpr double kMaxHandGap = 0.5;      // max gap of samples before a hand's motion restarts [s]
-constexpr double kMinConfidence = 0.05;  // min confidence of a used joint
 constexpr double kUnseenNoise = 3;       // factor of the noise of an unobserved joint
 constexpr int kPredictions = 5;          // number of predictions of a hand
 constexpr double kPredictionStep = 0.1;  // time between predictions [s]
@@ -133,7 +130,7 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   std::array<bool, kJoints> observed{};
   for (const ObservedJoint& joint : body.joints) {
     const int i = body_joint_index(joint.name);
-    if (i < 0 || !(joint.confidence >= kMinConfidence)) continue;
+    if (i < 0 || !(joint.confidence >= settings.min_confidence)) continue;
     const auto k = static_cast<std::size_t>(i);
     if (track.joint_seen[k] && *track.joint_seen[k] > seen) continue;
     merged.joints.push_back(joint);
@@ -169,7 +166,7 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   };
   if (known && dt > settings.lost_after)
     inflate(settings.lost_speed * dt + jump, kConfirmTime);
-  else if (known && jump > kMaxPersonSpeed * (dt + behind) + kJumpTolerance)
+  else if (known && jump > settings.person_max_speed * (dt + behind) + settings.settled_distance)
     inflate(jump, settings.doubt_time);
   person.joints = std::move(fitted);
   update_hands(track, observed, at, settings.joint_noise);
@@ -179,7 +176,8 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   track.adopted = false;
 }
 
-std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) {
+std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now,
+                                        const settings::SparkSettings& settings) {
   std::vector<HandPrediction> out;
   for (std::size_t side = 0; side < kHands.size(); ++side) {
     if (!track.hand_seen[side]) continue;
@@ -189,7 +187,8 @@ std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person
       const HandPredictor::Ball ball = track.hands[side].at(since + k * kPredictionStep);
       // The arm's length bounds the distance from the shoulder, which may have moved.
       const double arm = (ball.centre - joint_position(person, kShoulders[side])).norm() +
-                         arm_length(person) + kMaxPersonSpeed * (since + k * kPredictionStep);
+                         arm_length(person) +
+                         settings.person_max_speed * (since + k * kPredictionStep);
       hand.ahead.push_back(
           {k * kPredictionStep, ball.centre, std::min(ball.radius, arm) + person.inflation});
     }

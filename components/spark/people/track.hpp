@@ -56,6 +56,7 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
 
 /// Returns predictions of the track's hands. `person`: the track's person at `now`, whose inflation
 /// enlarges the volumes.
-std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now);
+std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now,
+                                        const settings::SparkSettings& settings);
 
 }  // namespace handsel::spark

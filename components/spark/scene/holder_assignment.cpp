@@ -91,30 +91,24 @@ bool HolderAssignment::assign_by_grip(SceneObject& object) const {
 /// Returns the robot hand that holds the object: the present holder while it measures some of the
 /// load, else the hand with the max load.
 std::optional<std::size_t> HolderAssignment::loaded_hand(const ObjectTrack& track) const {
-  // Max distance of the palm from a held object, and from an object that begins to be held: an
-  // object that leans on the fingertips is not held [m].
-  constexpr double kMaxHeldDistance = 0.35, kMaxGraspDistance = 0.30;
-  // Min load of all hands on a held object, and of a hand that remains the holder, divided by the
-  // object's mass.
-  constexpr double kMinHeldRatio = 0.4, kMinHolderRatio = 0.2;
   const ObjectModel* model = in_.library ? in_.library(track.object.model) : nullptr;
   if (model == nullptr || !in_.robot.known()) return std::nullopt;
   std::optional<std::size_t> strongest;
   double total_load = 0;
   for (std::size_t i = 0; i < in_.robot.hands().size(); ++i) {
     const RobotPlacement::Hand& hand = in_.robot.hands()[i];
-    const double reach =
-        track.object.holder == Holder::robot ? kMaxHeldDistance : kMaxGraspDistance;
+    const double reach = track.object.holder == Holder::robot ? in_.settings.robot_hold_range
+                                                              : in_.settings.robot_take_range;
     if (!(palm_distance(hand.T_world_palm.translation(), *model, track.object.T_world_object) <
           reach))
       continue;
     total_load += hand.payload;
     if (!strongest || hand.payload > in_.robot.hands()[*strongest].payload) strongest = i;
   }
-  if (!strongest || !(total_load > kMinHeldRatio * model->mass)) return std::nullopt;
+  if (!strongest || !(total_load > in_.settings.held_load_ratio * model->mass)) return std::nullopt;
   const RobotPlacement::Hand& before = in_.robot.hands()[track.robot_hand];
-  const bool is_same_holder =
-      track.object.holder == Holder::robot && before.payload > kMinHolderRatio * model->mass;
+  const bool is_same_holder = track.object.holder == Holder::robot &&
+                              before.payload > in_.settings.kept_load_ratio * model->mass;
   return is_same_holder ? track.robot_hand : *strongest;
 }
 
@@ -199,7 +193,7 @@ bool HolderAssignment::carry(ObjectTrack& track) const {
   const auto person = std::find_if(in_.people.people.begin(), in_.people.people.end(),
                                    [&](const Person& p) { return p.id == object.holder_id; });
   if (person == in_.people.people.end()) return false;
-  if (track.object.age <= kFollowHandAfter) {
+  if (track.object.age <= in_.settings.follow_hand_after) {
     if (track.hand_offset_time == track.seen) return false;
     track.hand_offset_time = track.seen;
     double min_distance = std::numeric_limits<double>::infinity();

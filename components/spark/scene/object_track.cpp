@@ -9,14 +9,9 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kMaxAveragedMove = 0.004;    // max distance of an averaged sample [m]
-constexpr double kMaxAveragedTurn = 0.06;     // max rotation of an averaged sample [rad]
-constexpr int kMaxAveragedSamples = 15;       // max number of averaged samples
-constexpr double kVelocityMemory = 0.06;      // time constant of the velocity filter [s]
-constexpr double kMaxCarrySpeed = 2.5;        // max speed of a carried object [m/s]
-constexpr double kJumpMargin = 0.1;           // min length of a jump beyond carrying [m]
-constexpr double kMaxSourceSilence = 0.2;     // max silence of the selected source [s]
-constexpr double kMaxSourceDeviation = 0.01;  // max deviation of agreeing sources [m]
+constexpr double kMaxAveragedMove = 0.004;  // max distance of an averaged sample [m]
+constexpr double kMaxAveragedTurn = 0.06;   // max rotation of an averaged sample [rad]
+constexpr int kMaxAveragedSamples = 15;     // max number of averaged samples
 
 /// Averages the pose of an object at rest over several noisy samples. A moving object has its last
 /// observed pose, as does an object in a person's hand, where averaging would hide slow motions.
@@ -37,13 +32,14 @@ Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
 
 /// Filters the velocity by a first-order filter over the samples; steps of the averaged position
 /// would cause false velocities.
-void update_velocity(ObjectTrack& track, const ObservedObject& observed, TimePoint seen) {
+void update_velocity(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
+                     const settings::SparkSettings& settings) {
   const Vector3 at = observed.T_world_object.translation();
   const double dt = to_seconds(seen - track.seen);
-  if (track.samples == 0 || dt > kVelocityGap) {
+  if (track.samples == 0 || dt > settings.object_velocity_gap) {
     track.object.velocity.setZero();
   } else if (dt > 0) {
-    track.object.velocity += -std::expm1(-dt / kVelocityMemory) *
+    track.object.velocity += -std::expm1(-dt / settings.object_velocity_time) *
                              ((at - track.last_seen_at) / dt - track.object.velocity);
   }
   track.last_seen_at = at;
@@ -65,7 +61,7 @@ bool select_shape(ObservedObject& observed, const ObjectLibrary& library) {
 }
 
 void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTracks& tracks,
-                         TimePoint at) {
+                         TimePoint at, const settings::SparkSettings& settings) {
   for (std::size_t i = 0; i < observed.size(); ++i) {
     for (std::size_t k = i + 1; k < observed.size(); ++k) {
       const auto a = tracks.find(observed[i].id), b = tracks.find(observed[k].id);
@@ -78,7 +74,8 @@ void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTrac
         return (sample.T_world_object.translation() - track.last_seen_at).norm();
       };
       const double possible =
-          kJumpMargin + kMaxCarrySpeed * to_seconds(at - std::min(a->second.seen, b->second.seen));
+          settings.object_jump +
+          settings.object_max_speed * to_seconds(at - std::min(a->second.seen, b->second.seen));
       const bool jumped =
           apart(observed[i], a->second) > possible && apart(observed[k], b->second) > possible;
       if (jumped && apart(observed[i], b->second) < possible &&
@@ -89,9 +86,9 @@ void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTrac
 }
 
 bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
-                   TimePoint seen, double doubt_time) {
+                   TimePoint seen, const settings::SparkSettings& settings) {
   if (track.samples == 0 || track.source == source ||
-      to_seconds(seen - track.seen) > kMaxSourceSilence) {
+      to_seconds(seen - track.seen) > settings.source_timeout) {
     track.source = source;
     return true;
   }
@@ -99,20 +96,21 @@ bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std
   const double apart =
       (observed.T_world_object.translation() - track.last_seen_at).norm() - between;
   const bool wider = apart > track.spread || seen > track.spread_until;
-  if (apart > kMaxSourceDeviation && wider) track.spread = apart;
-  if (apart > kMaxSourceDeviation) track.spread_until = seen + from_seconds(doubt_time);
+  if (apart > settings.source_agreement && wider) track.spread = apart;
+  if (apart > settings.source_agreement)
+    track.spread_until = seen + from_seconds(settings.doubt_time);
   return false;
 }
 
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
-                double doubt_time) {
+                const settings::SparkSettings& settings) {
   const double distance = (observed.T_world_object.translation() - track.last_seen_at).norm();
   if (track.samples > 0 &&
-      distance > kJumpMargin + kMaxCarrySpeed * to_seconds(seen - track.seen)) {
+      distance > settings.object_jump + settings.object_max_speed * to_seconds(seen - track.seen)) {
     track.jump = distance;
-    track.jump_until = seen + from_seconds(doubt_time);
+    track.jump_until = seen + from_seconds(settings.doubt_time);
   }
-  update_velocity(track, observed, seen);
+  update_velocity(track, observed, seen, settings);
   track.object.id = observed.id;
   track.object.model = observed.model;
   track.object.primitive = observed.primitive;

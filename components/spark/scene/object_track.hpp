@@ -14,11 +14,6 @@
 
 namespace handsel::spark {
 
-/// Max time without observation for which the velocity of an object is known [s].
-inline constexpr double kVelocityGap = 0.3;
-/// Time without observation after which a held object is moved with the hand [s].
-inline constexpr double kFollowHandAfter = 0.1;
-
 /// The grasp of a robot hand at its last measurement of the load.
 struct RobotGrip {
   Vector fingers;         ///< RobotPlacement::Hand::fingers
@@ -56,16 +51,16 @@ bool select_shape(ObservedObject& observed, const ObjectLibrary& library);
 /// Swaps the ids of two objects of a kind that have exchanged places faster than a person can carry
 /// them. `at`: capture time of the observation.
 void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTracks& tracks,
-                         TimePoint at);
+                         TimePoint at, const settings::SparkSettings& settings);
 
 /// Returns whether a sample is used. One source is selected at a time, so that an object at rest
 /// does not alternate between two sources; the distance of another source is `spread` for
-/// `doubt_time` [s].
+/// doubt_time.
 bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
-                   TimePoint seen, double doubt_time);
-/// Adds a sample to the estimate. `doubt_time`: time for which a jump adds to the uncertainty [s].
+                   TimePoint seen, const settings::SparkSettings& settings);
+/// Adds a sample to the estimate. A jump adds to the uncertainty for doubt_time.
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
-                double doubt_time);
+                const settings::SparkSettings& settings);
 /// Computes the uncertainty of an unobserved object from the distance that it may have moved, up to
 /// a limit of the settings. For an object in a person's hand that person's inflation is added.
 void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint now,

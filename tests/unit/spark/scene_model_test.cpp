@@ -251,6 +251,17 @@ TEST_F(SceneObjects, of_two_sources_one_is_believed_and_the_other_takes_over) {
   EXPECT_EQ(find(scene, "mug")->uncertainty, 0);
 }
 
+TEST_F(SceneObjects, how_far_apart_two_sources_agree_is_a_setting) {
+  settings_.source_agreement = 0.05;
+  model_.emplace(
+      settings_, std::make_shared<const RobotModel>(),
+      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+      std::vector<SceneBox>{});
+  see(0, {mug("mug", {0.70, 0, 0.74})}, "left");
+  see(0.01, {mug("mug", {0.73, 0, 0.74})}, "right");
+  EXPECT_EQ(find(wait(0.02, 0.02), "mug")->uncertainty, 0);
+}
+
 TEST_F(SceneObjects, exchanged_names_move_nothing) {
   const Vector3 here(0.5, 0.2, 0.74), there(0.9, -0.2, 0.74);
   for (int i = 0; i < 30; ++i) see(i / 30.0, {mug("one", here), mug("two", there)});
