@@ -71,12 +71,9 @@ DomainView discovered_domain(dds_entity_t participant) {
         writes ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION;
     each<dds_builtintopic_endpoint_t>(
         participant, topic, [&](const dds_builtintopic_endpoint_t& sample) {
-          // Of another system in the domain, which has a name of its own.
           const DomainParticipant& owner = known[key_of(sample.participant_key)];
           const TopicRow* row = find_topic(sample.topic_name);
-          if (row != nullptr && !owner.component.empty() &&
-              partitions(sample.qos) != partitions(reader_qos(*row).get()))
-            return;
+          if (row != nullptr && is_of_other_system(sample.qos, *row, owner.component)) return;
           if (writes && std::strcmp(sample.topic_name, TopicOf<JointCommand>::row.topic) == 0)
             view.commanders.push_back(owner);
           if (key_of(sample.participant_key) == key_of(self)) return;

@@ -75,8 +75,6 @@ std::string in_seconds(dds_duration_t d) {
   return text;
 }
 
-}  // namespace
-
 std::vector<std::string> partitions(const dds_qos_t* qos) {
   std::vector<std::string> out;
   std::uint32_t n = 0;
@@ -89,6 +87,8 @@ std::vector<std::string> partitions(const dds_qos_t* qos) {
   dds_free(names);
   return out;
 }
+
+}  // namespace
 
 std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested) {
   std::vector<std::string> out;
@@ -183,6 +183,11 @@ Qos topic_qos(const TopicRow& row) {
       qos.get(),
       meaning(row.profile).reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
   return qos;
+}
+
+bool is_of_other_system(const dds_qos_t* endpoint, const TopicRow& row,
+                        const std::string& component) {
+  return !component.empty() && partitions(endpoint) != partitions(reader_qos(row).get());
 }
 
 }  // namespace handsel

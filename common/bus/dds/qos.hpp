@@ -31,8 +31,10 @@ Qos recorder_qos(const TopicRow& row);
 Qos writer_qos(const TopicRow& row);
 /// Returns the QoS of a topic entity: reliability only, the rest stands at readers and writers.
 Qos topic_qos(const TopicRow& row);
-/// Returns the partitions that a QoS names.
-std::vector<std::string> partitions(const dds_qos_t* qos);
+/// Returns whether an endpoint of a topic belongs to a system of another name: to a process that is
+/// a component, in another partition. `component`: of the process; empty: none.
+bool is_of_other_system(const dds_qos_t* endpoint, const TopicRow& row,
+                        const std::string& component);
 /// Returns each policy for which a writer that offers this is not matched with a reader that
 /// requests that: "DEADLINE is none, asked for is 0.2 s or shorter".
 std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested);

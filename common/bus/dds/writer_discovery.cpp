@@ -129,9 +129,9 @@ void WriterDiscovery::take(
       const bool followed =
           row != nullptr && has_one_writer(*row) && std::string(row->topic) == endpoint.topic_name;
       if (followed && (writers_.size() < kMaxWriters || writers_.contains(writer))) {
-        Found& found = writers_[writer];
-        found = {row, identity_of(endpoint, *row)};
-        visit(writer, *row, &found);
+        Found found{row, identity_of(endpoint, *row)};
+        if (!is_of_other_system(endpoint.qos, *row, found.identity.components))
+          visit(writer, *row, &(writers_[writer] = std::move(found)));
       }
     }
     dds_return_loan(publications_, samples, n);

@@ -208,8 +208,10 @@ TEST_F(Forecast, an_arm_that_is_too_near_to_another_robot_may_move_away) {
   HumanState around;
   const double angle = -0.5 - 0.06;
   const Vector3 beside(std::cos(angle), std::sin(angle), 0);
-  around.robots.push_back(
-      {"left", {{beside - Vector3(0, 0, 0.3), beside + Vector3(0, 0, 0.3), 0.05, {}, {}}}, 0});
+  around.robots.push_back({"left",
+                           {{beside - Vector3(0, 0, 0.3), beside + Vector3(0, 0, 0.3), 0.05,
+                             Vector3::Zero(), Vector3::Zero()}},
+                           0});
   forecaster_.set_people(around);
   EXPECT_FALSE(forecaster_.forecast(active).collides);
 }

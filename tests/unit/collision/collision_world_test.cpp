@@ -36,7 +36,8 @@ TEST_F(World, names_what_touches_what) {
 
 TEST_F(World, other_robots_are_obstacles_that_no_distance_to_people_counts) {
   HumanState around;
-  around.robots.push_back({"left", {{{1.0, 0, -0.5}, {1.0, 0, 0.5}, 0.05, {}, {}}}, 0});
+  around.robots.push_back(
+      {"left", {{{1.0, 0, -0.5}, {1.0, 0, 0.5}, 0.05, Vector3::Zero(), Vector3::Zero()}}, 0});
   world_.set_people(around);
   const CollisionVerdict verdict = world_.check(q_);
   EXPECT_FALSE(verdict.free);
