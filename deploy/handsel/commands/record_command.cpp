@@ -57,7 +57,7 @@ void require_silence(DdsBus& bus, const std::vector<std::string>& topics) {
   for (const DomainEndpoint& end : bus.discovered_domain().endpoints) {
     const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;
     if (!row || (row->profile != Profile::sensor && !has_one_writer(*row)) ||
-        !fed.contains(row->topic))
+        is_of_all_systems(*row) || !fed.contains(row->topic))
       continue;
     throw ConfigError((end.owner.component.empty() ? "process " + std::to_string(end.owner.pid)
                                                    : end.owner.component) +
