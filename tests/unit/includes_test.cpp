@@ -145,6 +145,7 @@ TEST(Includes, cores_know_no_clock_thread_or_logger) {
                                    "server_state.hpp",
                                    "ros_topics.hpp",
                                    "trajectory_link.hpp",
+                                   "robots_link.hpp",
                                    "grasp_store.cpp",
                                    "state_store.cpp",
                                    "list_preparation.hpp"};
