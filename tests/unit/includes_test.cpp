@@ -137,18 +137,10 @@ TEST(Includes, cores_know_no_clock_thread_or_logger) {
       "thread", "mutex", "condition_variable", "spdlog/spdlog.h", "unistd.h", "time.h", "ctime"};
   // Processes, their nodes and what binds a part to the bus, and the files that are there for the
   // outside: the page's server, the file of found grasps, the file of the safety state.
-  const std::set<std::string> thin{"node.cpp",
-                                   "node.hpp",
-                                   "main.cpp",
-                                   "server.cpp",
-                                   "server.hpp",
-                                   "server_state.hpp",
-                                   "ros_topics.hpp",
-                                   "trajectory_link.hpp",
-                                   "robots_link.hpp",
-                                   "grasp_store.cpp",
-                                   "state_store.cpp",
-                                   "list_preparation.hpp"};
+  const std::set<std::string> thin{
+      "node.cpp",        "node.hpp",         "main.cpp",        "server.cpp",
+      "server.hpp",      "server_state.hpp", "ros_topics.hpp",  "trajectory_link.hpp",
+      "robots_link.hpp", "grasp_store.cpp",  "state_store.cpp", "list_preparation.hpp"};
   for (const Include& include : includes_below("components")) {
     if (thin.count(fs::path(include.file).filename())) continue;
     EXPECT_FALSE(outside.count(include.target)) << where(include);
