@@ -14,6 +14,10 @@ RobotVolume::RobotVolume(std::shared_ptr<const RobotModel> robot)
   capsules_.resize(kMaxReportParts);
 }
 
+bool RobotVolume::fits(const Vector& values) const {
+  return values.size() == robot_->dof() && values.allFinite();
+}
+
 std::vector<MovingPart> RobotVolume::parts(const Vector& position, const Vector& velocity,
                                            const Pose& T_world_base) {
   constexpr double kStep = 1e-3;  // of the differences that give the velocities [s]

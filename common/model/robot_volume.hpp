@@ -17,9 +17,11 @@ class RobotVolume {
  public:
   explicit RobotVolume(std::shared_ptr<const RobotModel> robot);
 
-  /// Returns the volume of the robot at a configuration. `position`, `velocity`: of all axes;
-  /// `T_world_base`: pose of the root link. At most kMaxReportParts parts: of a robot with more
-  /// capsules the smallest ones are left out. Not thread safe.
+  /// Returns whether `values` has one finite value for each axis of the robot.
+  bool fits(const Vector& values) const;
+  /// Returns the volume of the robot at a configuration, see fits(). `position`, `velocity`: of all
+  /// axes; `T_world_base`: pose of the root link. At most kMaxReportParts parts: of a robot with
+  /// more capsules the smallest ones are left out. Not thread safe.
   std::vector<MovingPart> parts(const Vector& position, const Vector& velocity,
                                 const Pose& T_world_base);
 

@@ -16,6 +16,7 @@ RobotsLink::RobotsLink(Bus& bus, const settings::SparkSettings& settings,
 }
 
 void RobotsLink::update(const RobotState& state) {
+  if (!volume_.fits(state.position) || !volume_.fits(state.velocity)) return;
   state_ = state;
   const TimePoint now = bus_.now();
   if (to_seconds(now - published_) >= 0.99 * period_) publish(now);

@@ -18,7 +18,7 @@ class RobotsLink {
   RobotsLink(Bus& bus, const settings::SparkSettings& settings,
              std::shared_ptr<const RobotModel> robot, const std::string& name);
 
-  /// Takes the state of the own robot.
+  /// Takes the state of the own robot; one of another number of axes changes nothing.
   void update(const RobotState& state);
   /// Adds the other robots, as they are now, to the people.
   void add_to(HumanState& people, TimePoint now, const Coverage& reach) const;

@@ -83,6 +83,9 @@ TEST(RobotVolume, contains_the_links_and_moves_with_them) {
   const Vector q = robot->rest_configuration();
   Vector velocity = Vector::Zero(robot->dof());
   for (const int axis : robot->require_group("arm").axes) velocity[axis] = 0.3;
+  EXPECT_TRUE(volume.fits(q));
+  EXPECT_FALSE(volume.fits(q.head(3)));
+  EXPECT_FALSE(volume.fits(Vector::Constant(q.size(), std::nan(""))));
   const Pose base = make_pose({1, 2, 0});
   const std::vector<MovingPart> now = volume.parts(q, velocity, base);
   constexpr double kLater = 0.01;
