@@ -29,12 +29,46 @@ function(handsel_unity target)
   target_compile_options(${target} PRIVATE $<$<BOOL:${HANDSEL_UNITY}>:-Wno-subobject-linkage>)
 endfunction()
 
+# Headers of the standard library, Eigen and GoogleTest are parsed once, not again for every source.
+option(HANDSEL_PRECOMPILED "Parse headers of other projects once: a full build is faster" ON)
+
+set(HANDSEL_HEADERS <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <iostream> <map> <memory> <mutex> <optional>
+    <random> <set> <sstream> <string> <thread> <unordered_map> <variant> <vector> <Eigen/Dense>)
+
+# handsel_parsed_headers(<target> <header> ...): lets the target, which has no code, parse headers for others.
+function(handsel_parsed_headers target)
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${target}.cpp CONTENT "")
+  target_sources(${target} PRIVATE ${CMAKE_BINARY_DIR}/generated/${target}.cpp)
+  if(HANDSEL_PRECOMPILED)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# handsel_precompiled(<target> <headers>): compiles the sources of the target with the headers that the target <headers> has
+# parsed; not those with compile options of their own, which the parsed headers do not fit.
+function(handsel_precompiled target headers)
+  if(NOT HANDSEL_PRECOMPILED)
+    return()
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+  # Of a parsed header the compiler forgets that the header is another project's, and warns of GCC 12's own std::string.
+  target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    get_source_file_property(options ${source} COMPILE_OPTIONS)
+    if(options)
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+endfunction()
+
 # handsel_library(<name> SOURCES a.cpp ... LINK lib ...): static library handsel_<name>.
 function(handsel_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(handsel_${name} STATIC ${ARG_SOURCES})
   target_link_libraries(handsel_${name} PUBLIC handsel_options Eigen3::Eigen ${ARG_LINK})
   handsel_unity(handsel_${name})
+  handsel_precompiled(handsel_${name} handsel_headers)
 endfunction()
 
 # handsel_component(<name> CORE a.cpp ... NODE node.cpp ... LINK lib ...): core library handsel_<name>_core (no DDS),
@@ -61,4 +95,5 @@ function(handsel_test name)
   if(ARG_LABEL MATCHES "^(system|fault)$")
     target_compile_options(test_${name} PRIVATE -O1)
   endif()
+  handsel_precompiled(test_${name} handsel_test_headers)
 endfunction()
