@@ -115,8 +115,8 @@ std::optional<Duration> System::wait_ready(Duration limit) {
     }
     return missing;
   };
-  // Time in which a process waited for a processor does not count: of two systems on one processor
-  // each starts more slowly.
+  // Time in which a process waited for a processor does not count, and the limit begins anew with
+  // every process that becomes ready: of two systems on one processor each starts more slowly.
   std::map<std::string, ThreadDelay> delays;
   const auto starved = [&] {
     Duration longest{};
@@ -124,18 +124,23 @@ std::optional<Duration> System::wait_ready(Duration limit) {
       if (process.pid > 0) longest = std::max(longest, delays[process.name].update(process.pid));
     return longest;
   };
-  bool ready = false;
-  for (Duration left = limit; !ready && left > Duration::zero() && !interrupted();
-       left = limit + starved() - (monotonic_now() - begin))
-    ready = wait(std::min(left, kStarvedCheck), [&] { return lacking().empty(); });
-  if (!ready) {
-    if (interrupted()) return std::nullopt;
-    throw MissingError("the system is not ready after " +
-                       std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
-                       join(lacking()) + "; logs are in " + log_directory_.string());
+  std::size_t fewest = lacking().size();
+  TimePoint end = begin + limit;
+  while (!interrupted() && monotonic_now() < end + starved()) {
+    if (wait(kStarvedCheck, [&] { return lacking().empty(); })) {
+      launcher_.set_ready();
+      return monotonic_now() - begin;
+    }
+    if (const std::size_t now = lacking().size(); now < fewest) {
+      fewest = now;
+      end = monotonic_now() - starved() + limit;
+    }
   }
-  launcher_.set_ready();
-  return monotonic_now() - begin;
+  if (interrupted()) return std::nullopt;
+  throw MissingError("the system is not ready after " +
+                     std::to_string(static_cast<int>(to_seconds(monotonic_now() - begin))) +
+                     " s; waiting for " + join(lacking()) + "; logs are in " +
+                     log_directory_.string());
 }
 
 std::string System::web_address() const {
