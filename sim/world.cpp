@@ -50,7 +50,7 @@ SimWorld::Impl::Impl(const RobotModel& robot_model, const ObjectLibrary& library
     other_robots.emplace_back(std::move(motion));
   if (!other_robots.empty()) robot_hull = robot_capsules(model);
   prepare_sight();
-  if (people->any_needs_finger_distance()) finger_capsules = robot_capsules(model);
+  if (people->size() > 0) links = robot_capsules(model);
   std::uint64_t salt = seed;
   for (const SensorSettings& sensor : setup.human_sensors)
     human_sensors.emplace_back(sensor, salt += 0x1000193);
@@ -129,7 +129,7 @@ void SimWorld::Impl::step() {
   if (odometry)
     people->set_platform(
         T_world_platform(model, robot->position(), setup.T_world_base).translation());
-  people->move(settings.step, robot_hands);
+  people->move(settings.step, robot_hands, robot_parts);
   for (Hand& hand : hands) hold_with(hand);
   dynamics.stepSimulation(settings.step, 0);
   ++steps;

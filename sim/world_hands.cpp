@@ -23,6 +23,11 @@ BodyState SimWorld::Impl::tool_state(const Hand& hand) const {
 }
 
 void SimWorld::Impl::update_robot_hands() {
+  robot_parts.clear();
+  for (const LinkCapsule& c : links) {
+    const Pose& T = robot->T_world_link(c.link);
+    robot_parts.push_back({T * c.a, T * c.b, c.radius});
+  }
   robot_hands.resize(hands.size());
   for (std::size_t i = 0; i < hands.size(); ++i) {
     RobotHandState& seen = robot_hands[i];
@@ -30,10 +35,9 @@ void SimWorld::Impl::update_robot_hands() {
     seen.gripped = hands[i].gripped;
     seen.holds_firmly = holds_firmly(hands[i]);
     seen.fingers.clear();
-    for (const LinkCapsule& c : finger_capsules) {
-      if (hands[i].grasp.chain_of(robot->body_of(c.link)) < 1) continue;
-      const Pose& T = robot->T_world_link(c.link);
-      for (const Vector3& p : {c.a, c.b}) seen.fingers.push_back({T * p, c.radius});
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      if (hands[i].grasp.chain_of(robot->body_of(links[k].link)) >= 1)
+        seen.fingers.push_back(robot_parts[k]);
     }
   }
 }

@@ -153,7 +153,8 @@ struct SimWorld::Impl {
   std::vector<RobotHandState> robot_hands;  // as observed by people, in the order of `hands`
   Sight sight;
   std::vector<LinkCapsule> hiding_links;
-  std::vector<LinkCapsule> finger_capsules;  // of all links; empty if nobody needs them
+  std::vector<LinkCapsule> links;     // capsules of all links; empty without people
+  std::vector<HandPart> robot_parts;  // the same, world
   std::vector<HumanSensor> human_sensors;
   std::vector<ObjectSensor> object_sensors;
 

@@ -37,6 +37,19 @@ Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>
   return make_pose(Vector3(offset, 0, 0), *turn);
 }
 
+/// Returns the distance of the nearest end of a part from the object's surface [m].
+double distance_of(const std::vector<HandPart>& parts, const ObjectModel& model,
+                   const Pose& T_world_object) {
+  double min_distance = std::numeric_limits<double>::infinity();
+  const Pose T_object_world = T_world_object.inverse();
+  for (const HandPart& part : parts) {
+    for (const Vector3& p : {part.a, part.b})
+      min_distance =
+          std::min(min_distance, surface_distance(model, T_object_world * p) - part.radius);
+  }
+  return min_distance;
+}
+
 bool is_hand(BodyPart part) { return part == BodyPart::hand_left || part == BodyPart::hand_right; }
 int hand_number(BodyPart part) { return part == BodyPart::hand_left ? 0 : 1; }
 
@@ -80,8 +93,9 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
     const int code = number * kMaxCapsules + static_cast<int>(c);
     if (is_hand(capsule.part)) {
       const int hand = hand_number(capsule.part);
-      person.hands[hand] = std::make_unique<PersonHand>(
-          settings.person_hand, person.model.hand(hand), world_, kPerson, kRobot);
+      person.hands[hand] =
+          std::make_unique<PersonHand>(settings.person_hand, person.model.hand(hand),
+                                       person.model.hand_shape(hand), world_, kPerson, kRobot);
       own(person.hands[hand]->body(), Owner::person, code);
       person.colliders.push_back(nullptr);
       continue;
@@ -137,14 +151,10 @@ bool People::any_reacts_to_announcements() const {
                      [](const Body& person) { return person.model.reacts_to_announcements(); });
 }
 
-bool People::any_needs_finger_distance() const {
-  return std::any_of(people_.begin(), people_.end(),
-                     [](const Body& person) { return person.model.needs_finger_distance(); });
-}
-
-void People::move(double dt, const std::vector<RobotHandState>& robot_hands) {
+void People::move(double dt, const std::vector<RobotHandState>& robot_hands,
+                  const std::vector<HandPart>& robot) {
   for (Body& person : people_) {
-    observe(person, dt, robot_hands);
+    observe(person, dt, robot_hands, robot);
     hold_or_release(person);
     pull(person, dt);
   }
@@ -174,12 +184,14 @@ const RobotHandState& People::hand_for(const Body& person,
   return *found;
 }
 
-void People::observe(Body& person, double dt, const std::vector<RobotHandState>& robot_hands) {
-  const RobotHandState& robot = hand_for(person, robot_hands);
-  const int gripped = robot.gripped;
+void People::observe(Body& person, double dt, const std::vector<RobotHandState>& robot_hands,
+                     const std::vector<HandPart>& robot) {
+  const RobotHandState& robot_hand = hand_for(person, robot_hands);
+  const int gripped = robot_hand.gripped;
   PersonView view;
+  view.robot = &robot;
   view.platform = platform_;
-  view.robot_hand = robot.palm.T_world_body.translation();
+  view.robot_hand = robot_hand.palm.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
     person.object = person.fetches >= 0          ? person.fetches
                     : gripped >= 0               ? gripped
@@ -191,15 +203,12 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.T_world_object = object.T_world_object();
     view.object_velocity = object.state().velocity;
     view.held_by_robot = gripped == person.object;
-    view.held_firmly = view.held_by_robot && robot.holds_firmly;
+    view.held_firmly = view.held_by_robot && robot_hand.holds_firmly;
     view.grip_force = person.grip.wrench().force;
     view.p_hand_object =
         person.hand().state().T_world_body.inverse() * view.T_world_object.translation();
-    const Pose T_object_world = view.T_world_object.inverse();
-    for (const Ball& ball : robot.fingers) {
-      const double distance = surface_distance(object.model(), T_object_world * ball.p_world);
-      view.finger_distance = std::min(view.finger_distance, distance - ball.radius);
-    }
+    if (person.model.needs_finger_distance())
+      view.finger_distance = distance_of(robot_hand.fingers, object.model(), view.T_world_object);
   }
   for (int s = 0; s < 2; ++s) {
     view.hand_pushed[s] = person.hands[s]->state().T_world_body.translation() -
@@ -229,7 +238,11 @@ void People::hold_or_release(Body& person) {
 void People::pull(Body& person, double dt) {
   const bool in_handover = person.model.in_handover();
   person.capsules = body_capsules(person.model.body());
-  for (int s = 0; s < 2; ++s) person.hands[s]->pull_to(person.model.hand(s), dt);
+  for (int s = 0; s < 2; ++s) {
+    const bool takes = person.model.side() == (s == 0 ? Side::left : Side::right);
+    person.hands[s]->set_configuration(takes ? person.model.hand_configuration() : std::nullopt);
+    person.hands[s]->pull_to(person.model.hand(s), dt);
+  }
   for (std::size_t c = 0; c < person.colliders.size(); ++c) {
     const BodyCapsule& capsule = person.capsules[c];
     if (person.colliders[c])

@@ -23,18 +23,12 @@ using ObjectBodies = std::deque<ObjectBody>;
 /// Returns the index of the object with this id; -1: none.
 int object_index(const ObjectBodies& objects, const std::string& id);
 
-/// A sphere.
-struct Ball {
-  Vector3 p_world{Vector3::Zero()};  ///< centre [m]
-  double radius{};                   ///< radius [m]
-};
-
 /// The state of a robot hand as people observe it.
 struct RobotHandState {
-  BodyState palm;             ///< state of the palm, world
-  std::vector<Ball> fingers;  ///< spheres at the ends of finger links; empty if nobody needs them
-  int gripped{-1};            ///< index of the held object; -1: none
-  bool holds_firmly{};        ///< whether all hands on that object can bear its weight
+  BodyState palm;                 ///< state of the palm, world
+  std::vector<HandPart> fingers;  ///< parts of the finger links, world
+  int gripped{-1};                ///< index of the held object; -1: none
+  bool holds_firmly{};            ///< whether all hands on that object can bear its weight
 };
 
 class People {
@@ -65,12 +59,11 @@ class People {
   /// Returns whether any person follows observations from outside.
   bool any_follows_source() const;
   /// Advances decisions, motions and grips of all people by dt [s]. `robot_hands`: not empty.
-  void move(double dt, const std::vector<RobotHandState>& robot_hands);
+  /// `robot`: parts of all links of the robot, world.
+  void move(double dt, const std::vector<RobotHandState>& robot_hands,
+            const std::vector<HandPart>& robot);
   /// Sets the position of the robot's mobile platform, world [m].
   void set_platform(const Vector3& p_world) { platform_ = p_world; }
-  /// Returns whether any person needs the distance of the robot's fingers.
-  bool any_needs_finger_distance() const;
-
   bool grips(int object) const;  ///< Returns whether a person's hand holds the object.
   /// Returns whether a person's hand holds the object, or reaches for the object and is within 12
   /// mm of contact.
@@ -102,7 +95,8 @@ class People {
   };
   void build(const StartPerson&, const SimSettings&, int number, ShapeStore&);
   const RobotHandState& hand_for(const Body&, const std::vector<RobotHandState>& robot_hands) const;
-  void observe(Body&, double dt, const std::vector<RobotHandState>& robot_hands);
+  void observe(Body&, double dt, const std::vector<RobotHandState>& robot_hands,
+               const std::vector<HandPart>& robot);
   void hold_or_release(Body&);
   void pull(Body&, double dt);
   double hand_gap(const Body&) const;

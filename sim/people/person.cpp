@@ -133,6 +133,7 @@ void PersonModel::step(double dt, const PersonView& view) {
       feet_ = home_ -
               distance_from_place(settings_.steps_in, settings_.approach_from, clock_) * forward();
     step_aside(dt);
+    update_hand(view);
     if (!followed_) turn_gaze(gaze_target(view), dt);
   }
   placed_ = false;
@@ -216,7 +217,7 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
     case PersonPhase::closing:
       if (view.object == nullptr || hand_to_surface(view) > kPalm + 0.03) {
         give_up();
-      } else if (phase_time() > 0.25) {
+      } else if (phase_time() > kCloseTime) {
         wants_grip_ = true;
         from_ = hand_target_;
         enter(PersonPhase::pulling);
@@ -298,21 +299,24 @@ void PersonModel::watch(double dt, const PersonView& view) {
   else if (offer_time_ <= 0)
     choose_hand(view);
   offer_time_ = takes && cooldown_ <= 0 && is_offered_to(view, hand_index()) ? offer_time_ + dt : 0;
-  if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
+  if (offer_time_ <= 0) return taking_.forget();
+  if (chooses_place()) choose_place(view);
+  if (offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
+  if (chooses_place() && !taking_.has_place()) return;
   offer_time_ = 0;
-  const Vector3 centre = object_centre(view);
-  const Vector3 toward =
-      (shoulder(hand_index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
-  const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
-  side_of_object_ =
-      (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero())))
-          .normalized();
+  side_of_object_ = side_to_take(view);
   from_ = hand_point();
   const Vector3 goal = grasp_point(view);
   duration_ =
       std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
   lean_from_ = lean_;
-  const double excess = (goal - shoulder(hand_index())).norm() - 0.95 * reach_;
+  const double palm = (points_[kHand[hand_index()]] - points_[kWrist[hand_index()]]).norm();
+  const double excess = taking_.has_place()
+                            ? (goal - palm * taking_.goal(view.T_world_object).linear().col(2) -
+                               shoulder(hand_index()))
+                                      .norm() -
+                                  0.95 * (reach_ - palm)
+                            : (goal - shoulder(hand_index())).norm() - 0.95 * reach_;
   lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[hand_index()]].z() -
                                                            template_[kWaist].z()),
                         0.0, 0.35);
@@ -337,7 +341,8 @@ void PersonModel::reach_out(double dt, const PersonView& view) {
   if (view.object == nullptr) return;
   const double s = reach_fraction();
   lean_ = lean_from_ + s * (lean_to_ - lean_from_);
-  hand_target_ = from_ + s * (grasp_point(view) - from_);
+  hand_target_ = taking_.has_place() ? taking_.position_at(from_, s, view.T_world_object)
+                                     : Vector3(from_ + s * (grasp_point(view) - from_));
   if (s >= kMidwayFraction && settings_.behaviour.withdraws && !first_attempt_over_)
     return give_up();
   if (s < 1) return;

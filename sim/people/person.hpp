@@ -18,6 +18,7 @@
 #include "sim/people/moving_offer.hpp"
 #include "sim/people/recording.hpp"
 #include "sim/people/step_in.hpp"
+#include "sim/people/taking_hand.hpp"
 #include "sim/physics/grip.hpp"
 
 namespace handsel::sim {
@@ -89,6 +90,7 @@ struct PersonView {
   std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
   bool grip_broke{};                    ///< the object slipped out of this person's hand
   Vector3 grip_force{Vector3::Zero()};  ///< force of this person's hand on the object, world [N]
+  const std::vector<HandPart>* robot{nullptr};  ///< parts of the robot, world; nullptr: unobserved
   /// Distance of the robot's nearest finger from the surface of `object` [m].
   double finger_distance{std::numeric_limits<double>::infinity()};
   /// Position of `object` in the frame of the hand that holds it [m].
@@ -159,6 +161,10 @@ class PersonModel {
   const BodyState& hand() const { return hands_[hand_index()]; }
   /// Returns the commanded state; 0 left, 1 right.
   const BodyState& hand(int side) const { return hands_[side]; }
+  /// Returns the configuration of the handover hand; nullopt: a fist.
+  const std::optional<HandConfiguration>& hand_configuration() const { return hand_configuration_; }
+  /// Returns the shape of a hand; 0 left, 1 right.
+  HandShape hand_shape(int side) const;
   bool placed() const { return placed_; }  ///< the body was placed elsewhere without a motion
   double reach() const { return reach_; }  ///< shoulder to the centre of the hand [m]
   static constexpr double kPalm = 0.03;    ///< centre of the hand to the held object [m]
@@ -201,6 +207,10 @@ class PersonModel {
   bool is_offered_to(const PersonView&, int side) const;
   bool is_unavailable(const PersonView&) const;
   void choose_hand(const PersonView&);
+  bool chooses_place() const;
+  void choose_place(const PersonView&);
+  Vector3 side_to_take(const PersonView&) const;
+  void update_hand(const PersonView&);
   void raise_hand_in_advance(double dt, const PersonView&);
   bool has_changed_hands() const;
   Side preferred_side() const;
@@ -258,6 +268,11 @@ class PersonModel {
   std::optional<FollowedBody> followed_;    // body of an external person
   std::optional<MovingOffer> moving_;       // motion of the offer; nullopt: not begun
   Vector3 p_hand_object_{Vector3::Zero()};  // the moved object in the hand frame [m]
+  TakingHand taking_;                       // place of the hand on an object that is taken
+  std::optional<HandConfiguration> hand_configuration_;  // of the handover hand; nullopt: a fist
+  // Orientation of the handover hand before a reach.
+  Eigen::Quaterniond R_world_rest_{Eigen::Quaterniond::Identity()};
+  double bend_{0};  // how far the wrist bends as the hand needs, 0 to 1
   // Rotation of the handover hand from the neutral wrist configuration.
   Eigen::Quaterniond hand_turn_{Eigen::Quaterniond::Identity()};
   // Offset of the hand from its reported position, world [m].

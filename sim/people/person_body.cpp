@@ -39,8 +39,13 @@ void PersonModel::bend_arm(int s, const Vector3& target) {
                palm = (hand - wrist).norm();
   const double away = min_jerk((target - hand).norm() / 0.3);
   const Vector3 along = (target - root).stableNormalized();
-  const Vector3 palm_vector =
-      palm * ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
+  Vector3 palm_direction =
+      ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
+  if (hand_configuration_ && s == hand_index()) {
+    const Vector3 fingers = hand_configuration_->R_world_hand * Vector3::UnitZ();
+    palm_direction = ((1 - bend_) * palm_direction + bend_ * fingers).stableNormalized();
+  }
+  const Vector3 palm_vector = palm * palm_direction;
   Vector3 to = target - palm_vector - root;
   const double d = std::clamp(to.norm(), std::abs(upper - lower) + 1e-3, upper + lower - 1e-6);
   to = to.norm() > 1e-9 ? Vector3(to.normalized()) : forward();
@@ -115,9 +120,10 @@ Vector3 PersonModel::nearest_grasp_point(const PersonView& view, const Vector3& 
   return p;
 }
 
-/// Returns the position of the hand's centre at contact, on a line from the object's centre along
-/// side_of_object_, world [m].
+/// Returns the position of the hand's centre at contact, in the chosen place, else on a line from
+/// the object's centre along side_of_object_, world [m].
 Vector3 PersonModel::grasp_point(const PersonView& view) const {
+  if (taking_.has_place()) return taking_.goal(view.T_world_object).translation();
   const Vector3 centre = object_centre(view);
   const Pose T_object_world = view.T_world_object.inverse();
   double t = 0.4;

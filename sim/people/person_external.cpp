@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kMaxGuideSpeed = 0.6;    // max speed of guiding the hand [m/s]
 constexpr double kMaxTouchGap = 0.012;    // max distance of palm and surface at which it closes [m]
-constexpr double kCloseTime = 0.25;       // duration of closing the hand [s]
 constexpr double kPullStiffness = 200.0;  // pull force per distance to the reported hand [N/m]
 constexpr double kMaxPullSpeed = 0.1;     // max speed of the hand while it pulls [m/s]
 // Max distance of the reported hand from the held hand before the person releases the object [m].

@@ -17,13 +17,19 @@ GripSettings spring_of(const PersonHandSettings& s) {
 }  // namespace
 
 PersonHand::PersonHand(const PersonHandSettings& settings, const BodyState& start,
-                       btDynamicsWorld& world, int group, int mask)
+                       const HandShape& shape, btDynamicsWorld& world, int group, int mask)
     : settings_(settings),
       world_(world),
       spring_(spring_of(settings)),
-      shape_(std::make_unique<btSphereShape>(settings.radius)) {
+      shape_(shape),
+      fist_(std::make_unique<btSphereShape>(settings.radius)),
+      open_(std::make_unique<btCompoundShape>(false, kHandParts)) {
+  for (const HandPart& part : shape_.parts({})) {
+    capsules_.push_back(std::make_unique<btCapsuleShapeZ>(part.radius, (part.b - part.a).norm()));
+    open_->addChildShape(btTransform::getIdentity(), capsules_.back().get());
+  }
   btRigidBody::btRigidBodyConstructionInfo info(
-      settings.mass, nullptr, shape_.get(),
+      settings.mass, nullptr, fist_.get(),
       btVector3(settings.inertia, settings.inertia, settings.inertia));
   info.m_startWorldTransform = to_bt(start.T_world_body);
   info.m_friction = settings.friction;
@@ -48,6 +54,29 @@ void PersonHand::place(const BodyState& at) {
   body_->setLinearVelocity(to_bt(at.velocity));
   body_->setAngularVelocity(to_bt(at.angular_velocity));
   spring_.hold(Pose::Identity());
+}
+
+void PersonHand::set_configuration(const std::optional<HandConfiguration>& configuration) {
+  if (!configuration) return use(fist_.get());
+  const Pose T_body_hand(state().T_world_body.linear().transpose() *
+                         configuration->R_world_hand.toRotationMatrix());
+  int child = 0;
+  for (const HandPart& part : shape_.parts(configuration->closures)) {
+    const Vector3 axis = part.b - part.a;
+    const Pose T_hand_part = make_pose((part.a + part.b) / 2,
+                                       Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis));
+    open_->updateChildTransform(child++, to_bt(T_body_hand * T_hand_part), false);
+  }
+  open_->recalculateLocalAabb();
+  use(open_.get());
+}
+
+void PersonHand::use(btCollisionShape* shape) {
+  if (body_->getCollisionShape() == shape) return;
+  body_->setCollisionShape(shape);
+  // Contacts of the other shape are not those of this one.
+  world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
+      body_->getBroadphaseHandle(), world_.getDispatcher());
 }
 
 void PersonHand::pull_to(const BodyState& wanted, double dt) {

@@ -1,9 +1,13 @@
 // A person's hand as a free rigid body: a spring and damper of limited force pull the hand toward
-// its commanded pose. Own method: the limit bounds the forces between hand and robot.
+// its commanded pose. A hand that takes an object has a palm and digits, any other hand is a fist.
+// Own method: the limit bounds the forces between hand and robot.
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
+#include "sim/people/taking_hand.hpp"
 #include "sim/physics/bullet.hpp"
 #include "sim/physics/grip.hpp"
 
@@ -12,7 +16,7 @@ namespace handsel::sim {
 struct PersonHandSettings {
   double mass{0.6};         ///< hand and moved part of the forearm [kg]
   double inertia{3e-3};     ///< moment of inertia about any axis [kg m^2]
-  double radius{0.045};     ///< radius of the sphere that stands for the hand [m]
+  double radius{0.045};     ///< radius of the sphere that stands for a fist [m]
   double friction{0.6};     ///< Coulomb coefficient
   double frequency{100.0};  ///< natural frequency of the hand on the spring [rad/s]
   double max_force{60.0};   ///< max force of the spring, hence of the arm [N]
@@ -21,8 +25,8 @@ struct PersonHandSettings {
 
 class PersonHand {
  public:
-  PersonHand(const PersonHandSettings&, const BodyState& start, btDynamicsWorld&, int group,
-             int mask);
+  PersonHand(const PersonHandSettings&, const BodyState& start, const HandShape&, btDynamicsWorld&,
+             int group, int mask);
   ~PersonHand();
   PersonHand(const PersonHand&) = delete;
   PersonHand& operator=(const PersonHand&) = delete;
@@ -31,16 +35,23 @@ class PersonHand {
   BodyState state() const;                ///< state after the last physics step, world
   /// Moves the hand to a pose in no time, with these velocities.
   void place(const BodyState&);
+  /// Gives the hand this configuration about its present position; nullopt: a fist.
+  void set_configuration(const std::optional<HandConfiguration>&);
   /// Applies the spring's force and torque toward `wanted` for the next step of length dt [s].
   void pull_to(const BodyState& wanted, double dt);
   /// Applies a wrench at a world point for the next step.
   void push(const Vector3& point, const Wrench&);
 
  private:
+  void use(btCollisionShape*);
+
   PersonHandSettings settings_;
   btDynamicsWorld& world_;
   Grip spring_;
-  std::unique_ptr<btSphereShape> shape_;
+  HandShape shape_;
+  std::unique_ptr<btSphereShape> fist_;
+  std::vector<std::unique_ptr<btCapsuleShapeZ>> capsules_;  // in the order of HandShape::parts()
+  std::unique_ptr<btCompoundShape> open_;                   // of the capsules
   std::unique_ptr<btRigidBody> body_;
 };
 

@@ -39,8 +39,9 @@ class System {
 
   /// Listens until every component started here is ready; returns the time it took, or nullopt on
   /// Ctrl-C. Throws MissingError naming what is missing when no further component has become ready
-  /// within `limit`, in which time that a process waited for a processor does not count; ConfigError
-  /// or MissingError when a process gave up. Once ready, no death of a process ends the system.
+  /// within `limit`, in which time that a process waited for a processor does not count;
+  /// ConfigError or MissingError when a process gave up. Once ready, no death of a process ends the
+  /// system.
   std::optional<Duration> wait_ready(Duration limit);
   /// Throws ConfigError / MissingError when a process gave up.
   void require_alive() const;

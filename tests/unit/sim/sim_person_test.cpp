@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "common/geometry/segments.hpp"
 #include "common/model/object_surface.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
@@ -76,6 +77,37 @@ TEST(SimPerson, reaches_smoothly_and_its_hand_ends_at_the_mug) {
   const double gap = surface_distance(
       *view.object, view.T_world_object.inverse() * person.hand().T_world_body.translation());
   EXPECT_NEAR(gap, PersonModel::kPalm, 0.013);
+}
+
+TEST(SimPerson, takes_only_what_the_robots_hand_leaves_a_place_on) {
+  PersonModel person(taker());
+  PersonView view = offer({0.95, 0.05, 1.05});
+  const Vector3 p = view.T_world_object * view.object->com;
+  const std::vector<HandPart> covered{{p - Vector3(0, 0, 0.08), p + Vector3(0, 0, 0.08), 0.06}};
+  view.robot = &covered;
+  step_for(person, view, 4);
+  EXPECT_EQ(person.phase(), PersonPhase::watching) << "no place for a hand";
+  EXPECT_FALSE(person.hand_configuration());
+  const std::vector<HandPart> beside{{p - Vector3(0.15, 0, 0), p - Vector3(0.07, 0, 0), 0.02}};
+  view.robot = &beside;
+  bool opened = false;
+  for (int i = 0; i < 4000 && person.phase() != PersonPhase::pulling; ++i) {
+    person.step(0.001, view);
+    opened = opened ||
+             (person.hand_configuration() && person.hand_configuration()->closures == Closures{});
+  }
+  ASSERT_EQ(person.phase(), PersonPhase::pulling);
+  EXPECT_TRUE(opened) << "comes with an open hand";
+  ASSERT_TRUE(person.hand_configuration());
+  const HandShape shape = person.hand_shape(1);
+  const Pose T = make_pose(person.hand().T_world_body.translation(),
+                           person.hand_configuration()->R_world_hand);
+  for (const HandPart& part : shape.parts(person.hand_configuration()->closures)) {
+    Vector3 on_hand, on_robot;
+    const double axes = std::sqrt(
+        nearest_points(T * part.a, T * part.b, beside[0].a, beside[0].b, on_hand, on_robot));
+    EXPECT_GT(axes, part.radius + beside[0].radius);
+  }
 }
 
 TEST(SimPerson, no_joint_ever_jumps) {

@@ -1,0 +1,238 @@
+#include "sim/people/free_grasp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/geometry/segments.hpp"
+#include "common/model/object_surface.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+constexpr int kHandDirections = 40;              // directions about the object
+constexpr int kHandRolls = 8;                    // rotations of the hand about its palm's normal
+constexpr double kTilts[] = {0.0, -0.45, 0.45};  // of the hand about the axis across it [rad]
+constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fingers' direction [m]
+constexpr double kMinLength = 0.12;              // min extent held off the middle [m]
+constexpr double kOffMiddle = 0.32;              // such a place, divided by the extent
+constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
+constexpr int kClosureSteps = 20;                // closures tested of each digit
+constexpr int kApproachSteps = 4;                // poses tested before the grasp
+constexpr double kPalmOverlap = 0.003;           // flesh that gives way to the object [m]
+constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
+constexpr double kMinOpposition = 0.2;           // min cosine between thumb and opposed fingers
+constexpr double kDifference = 1e-4;             // step of the finite differences [m]
+constexpr int kSamples = 4;                      // points tested along a part
+constexpr int kMinDigits = 3;                    // min number of digits in contact
+
+HandPart placed(const Pose& T, const HandPart& part) {
+  return {T * part.a, T * part.b, part.radius};
+}
+
+/// Returns directions spread evenly over the sphere.
+std::vector<Vector3> directions() {
+  std::vector<Vector3> out;
+  for (int i = 0; i < kHandDirections; ++i) {
+    const double z = 1 - (2.0 * i + 1) / kHandDirections, r = std::sqrt(1 - z * z),
+                 turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    out.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+  }
+  return out;
+}
+
+/// Returns the points about which the hand is placed, world: the centre of mass and, of a long
+/// extent, a point on either side.
+std::vector<Vector3> anchors(const FreeGraspQuery& query) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& vertex : query.object->mesh.vertices) box.extend(vertex);
+  std::vector<Vector3> out{query.T_world_object * query.object->com};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = box.sizes()[axis];
+    if (length < kMinLength) continue;
+    for (const double side : {-1.0, 1.0}) {
+      Vector3 p = query.object->com;
+      p[axis] = box.center()[axis] + side * kOffMiddle * length;
+      out.push_back(query.T_world_object * p);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+FreeGraspSearch::FreeGraspSearch(const FreeGraspQuery& query, const HandShape& shape,
+                                 const FreeGraspSettings& settings)
+    : query_(query),
+      robot_(*query.robot),
+      shape_(shape),
+      settings_(settings),
+      T_object_world_(query.T_world_object.inverse()),
+      anchors_(anchors(query)),
+      directions_(directions()) {}
+
+bool FreeGraspSearch::advance() {
+  constexpr int kTests = 4;  // poses tested in a part
+  if (over_) return true;
+  if (!ordered_) {
+    add_about(anchors_[next_ / directions_.size()], directions_[next_ % directions_.size()]);
+    if (++next_ < anchors_.size() * directions_.size()) return false;
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+    ordered_ = true;
+    next_ = 0;
+    return false;
+  }
+  for (int i = 0; i < kTests && next_ < candidates_.size() && !found_; ++i)
+    found_ = test(candidates_[next_++]);
+  return over_ = found_ || next_ == candidates_.size();
+}
+
+double FreeGraspSearch::distance(const Vector3& p_world) const {
+  return surface_distance(*query_.object, T_object_world_ * p_world);
+}
+
+/// Returns the distance of a part from the object, negative: they overlap. `nearest`: on the axis.
+double FreeGraspSearch::distance(const HandPart& part, Vector3* nearest) const {
+  double min_distance = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kSamples; ++i) {
+    const Vector3 p = part.a + i * (part.b - part.a) / kSamples;
+    const double d = distance(p) - part.radius;
+    if (d >= min_distance) continue;
+    min_distance = d;
+    if (nearest != nullptr) *nearest = p;
+  }
+  return min_distance;
+}
+
+/// Returns the direction into the object near a point, unit.
+Vector3 FreeGraspSearch::inward(const Vector3& p_world) const {
+  Vector3 slope;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 step = kDifference * Vector3::Unit(i);
+    slope[i] = distance(p_world - step) - distance(p_world + step);
+  }
+  return slope.stableNormalized();
+}
+
+/// Returns whether a part keeps the clearance from every part of the robot.
+bool FreeGraspSearch::is_clear(const HandPart& part) const {
+  Vector3 on_part, on_robot;
+  return std::none_of(robot_.begin(), robot_.end(), [&](const HandPart& other) {
+    const double limit = part.radius + other.radius + settings_.clearance;
+    return nearest_points(part.a, part.b, other.a, other.b, on_part, on_robot) < limit * limit;
+  });
+}
+
+void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction) {
+  constexpr double kOutside = 0.3;  // distance of the hand before the motion to the object [m]
+  if (direction.dot(query_.preferred) < kMinTowardPreferred) return;
+  const Vector3 first = direction.unitOrthogonal(), second = direction.cross(first);
+  for (int k = 0; k < kHandRolls; ++k) {
+    const double roll = 2 * std::numbers::pi * k / kHandRolls;
+    const Vector3 fingers = std::cos(roll) * first + std::sin(roll) * second;
+    for (const double shift : kShifts) {
+      const Vector3 start = anchor + kOutside * direction - shift * fingers;
+      for (const double tilt : kTilts) add(start, direction, fingers, tilt);
+    }
+  }
+}
+
+/// Moves the hand from `start` against `direction` to the object and keeps the pose if the arm
+/// reaches the pose.
+void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const Vector3& fingers,
+                          double tilt) {
+  constexpr double kFar = 0.4;  // max length of the motion [m]
+  double moved = 0, beyond = distance(start) - settings_.palm;
+  for (int i = 0; i < 40 && moved < kFar && beyond > 5e-4; ++i) {
+    moved += beyond;
+    beyond = distance(start - moved * direction) - settings_.palm;
+  }
+  if (beyond > 5e-4) return;  // passes the object
+  Pose T = Pose::Identity();
+  T.linear() << -direction, fingers.cross(-direction), fingers;
+  T.linear() = T.linear() * Eigen::AngleAxisd(tilt, Vector3::UnitY()).toRotationMatrix();
+  T.translation() = start - moved * direction;
+  Pose T_wrist = T;
+  T_wrist.translation() -= query_.wrist * T.linear().col(2);
+  const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);
+  if (!posture || posture->strain > settings_.max_strain) return;
+  const double beside = (1 - direction.dot(query_.preferred)) / 2;
+  candidates_.push_back({T, posture->strain + settings_.near_preference * beside, posture->strain});
+}
+
+/// Returns the arm of the person who leans as far as the wrist's position needs.
+HumanArm FreeGraspSearch::leaning_to(const Vector3& p_wrist) const {
+  constexpr double kStretch = 0.94;
+  HumanArm arm = query_.arm;
+  const Vector3 to = p_wrist - arm.shoulder;
+  const double missing = to.norm() - kStretch * (arm.upper + arm.forearm);
+  if (missing > 0) arm.shoulder += std::min(missing, settings_.max_lean) * to.normalized();
+  return arm;
+}
+
+std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const {
+  const Pose& T = candidate.T_world_hand;
+  for (const HandPart& part : shape_.palm()) {
+    const HandPart there = placed(T, part);
+    if (distance(there, nullptr) < -kPalmOverlap || !is_clear(there)) return std::nullopt;
+  }
+  FreeGrasp grasp{T_object_world_ * T, {}, 0, candidate.strain};
+  Vector3 of_fingers = Vector3::Zero(), of_thumb = Vector3::Zero();
+  for (int d = 0; d < kDigits; ++d) {
+    const auto contact = close(T, d, grasp.closures[d]);
+    if (!contact) continue;
+    ++grasp.digits_in_contact;
+    (d == 0 ? of_thumb : of_fingers) += *contact;
+  }
+  const Vector3 palm = T.linear().col(0), fingers = of_fingers.stableNormalized();
+  const bool is_enclosed =
+      of_thumb.dot(fingers) < -kMinOpposition || fingers.dot(palm) < -kMinOpposition;
+  if (grasp.digits_in_contact < kMinDigits || !is_enclosed || !can_come(T)) return std::nullopt;
+  return grasp;
+}
+
+/// Closes a digit to the object; returns the direction of its contact into the object, nullopt: the
+/// digit does not touch the object, or the robot is in its path.
+std::optional<Vector3> FreeGraspSearch::close(const Pose& T_world_hand, int digit,
+                                              double& closure) const {
+  closure = 0;
+  for (int i = 0; i <= kClosureSteps; ++i) {
+    const double c = static_cast<double>(i) / kClosureSteps;
+    for (const HandPart& part : shape_.digit(digit, c)) {
+      const HandPart there = placed(T_world_hand, part);
+      Vector3 nearest;
+      const double d = distance(there, &nearest);
+      if (d < -kDigitOverlap || !is_clear(there)) return std::nullopt;
+      if (d > 0) continue;
+      closure = c;
+      return inward(nearest);
+    }
+    closure = c;
+  }
+  closure = 0;
+  return std::nullopt;
+}
+
+/// Returns whether the open hand comes straight to the pose without touching the robot.
+bool FreeGraspSearch::can_come(const Pose& T_world_hand) const {
+  for (int i = 0; i <= kApproachSteps; ++i) {
+    Pose before = T_world_hand;
+    before.translation() -= i * settings_.approach / kApproachSteps * T_world_hand.linear().col(0);
+    for (const HandPart& part : shape_.parts({})) {
+      if (!is_clear(placed(before, part))) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HandShape& shape,
+                                         const FreeGraspSettings& settings) {
+  FreeGraspSearch search(query, shape, settings);
+  while (!search.advance()) {
+  }
+  return search.found();
+}
+
+}  // namespace handsel::sim

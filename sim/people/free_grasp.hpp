@@ -1,0 +1,88 @@
+// Where a person can hold an object that a robot holds: palm and digits fit around the object and
+// leave the robot's hand free. Own method: hand poses about the object, ordered by the strain of
+// the person's arm, are tested with the digits closed to contact.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/model/human/human_wrist.hpp"
+#include "common/model/object_model.hpp"
+#include "sim/people/hand_shape.hpp"
+
+namespace handsel::sim {
+
+/// A place for a person's hand on an object.
+struct FreeGrasp {
+  Pose T_object_hand{Pose::Identity()};  ///< as in HandShape
+  Closures closures{};                   ///< of the digits in contact with the object
+  int digits_in_contact{};               ///< number of digits that touch the object
+  double strain{};                       ///< of the person's arm and wrist, as in WristPosture
+};
+
+struct FreeGraspSettings {
+  double palm{0.03};            ///< distance of the hand frame's origin from the object [m]
+  double clearance{0.003};      ///< min distance of hand and robot [m]
+  double approach{0.08};        ///< straight motion of the open hand before the grasp [m]
+  double max_strain{1.0};       ///< max strain of arm and wrist
+  double max_lean{0.15};        ///< max motion of the shoulder by leaning [m]
+  double near_preference{0.5};  ///< cost of a hand opposite the preferred direction
+};
+
+/// What is known when a person chooses a place.
+struct FreeGraspQuery {
+  const ObjectModel* object{};            ///< not null
+  Pose T_world_object{Pose::Identity()};  ///< pose of the object
+  HumanArm arm;                           ///< of the person
+  double wrist{};                         ///< distance from the wrist to the palm's middle [m]
+  Vector3 preferred{Vector3::UnitX()};    ///< preferred side of the object, world, unit
+  const std::vector<HandPart>* robot{};   ///< parts of the robot, world; not null
+};
+
+/// Searches the best place a part at a time, so that no step of the simulation takes long.
+class FreeGraspSearch {
+ public:
+  /// Copies what the query points to, except the object.
+  FreeGraspSearch(const FreeGraspQuery& query, const HandShape& shape,
+                  const FreeGraspSettings& settings = {});
+
+  /// Does the next part of the search, about 0.1 ms; returns whether the search is over.
+  bool advance();
+  bool over() const { return over_; }  ///< whether the search is over
+  /// Returns the place found; nullopt: the robot leaves none in reach, or the search is not over.
+  const std::optional<FreeGrasp>& found() const { return found_; }
+
+ private:
+  /// A pose of the hand with the cost by which poses are ordered.
+  struct Candidate {
+    Pose T_world_hand{Pose::Identity()};
+    double cost{}, strain{};
+  };
+  double distance(const Vector3& p_world) const;
+  double distance(const HandPart& part, Vector3* nearest) const;
+  Vector3 inward(const Vector3& p_world) const;
+  bool is_clear(const HandPart& part) const;
+  void add_about(const Vector3& anchor, const Vector3& direction);
+  void add(const Vector3& start, const Vector3& direction, const Vector3& fingers, double tilt);
+  HumanArm leaning_to(const Vector3& p_wrist) const;
+  std::optional<FreeGrasp> test(const Candidate& candidate) const;
+  std::optional<Vector3> close(const Pose& T_world_hand, int digit, double& closure) const;
+  bool can_come(const Pose& T_world_hand) const;
+
+  FreeGraspQuery query_;
+  std::vector<HandPart> robot_;
+  HandShape shape_;
+  FreeGraspSettings settings_;
+  Pose T_object_world_;
+  std::vector<Vector3> anchors_, directions_;
+  std::size_t next_{0};  // pair of anchor and direction, then candidate, that comes next
+  std::vector<Candidate> candidates_;
+  bool ordered_{false}, over_{false};
+  std::optional<FreeGrasp> found_;
+};
+
+/// Returns the best place, nullopt: the robot leaves none in reach.
+std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HandShape& shape,
+                                         const FreeGraspSettings& settings = {});
+
+}  // namespace handsel::sim

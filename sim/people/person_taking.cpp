@@ -1,0 +1,95 @@
+// How a person takes an object from a robot's hand: a place on the object, the configuration of the
+// hand.
+#include "sim/people/person.hpp"
+#include "sim/people/person_parts.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+// Weight of the side away from the robot's hand, relative to the side toward the shoulder.
+constexpr double kAwayWeight = 0.7;
+
+}  // namespace
+
+HandShape PersonModel::hand_shape(int side) const {
+  const double wrist = (template_[kHand[side]] - template_[kWrist[side]]).norm();
+  return {side == 0 ? Side::left : Side::right, settings_.stature, wrist};
+}
+
+/// Returns whether the person looks for a place that the robot leaves free. The hands of people
+/// from outside have no orientation, and what a fetcher takes no robot holds.
+bool PersonModel::chooses_place() const {
+  return (settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner) &&
+         !settings_.recording;
+}
+
+/// Returns the preferred side of an offered object: toward the person and away from the robot's
+/// hand, world, unit.
+Vector3 PersonModel::side_to_take(const PersonView& view) const {
+  const Vector3 centre = object_centre(view);
+  const Vector3 toward =
+      (shoulder(hand_index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
+  return (toward + (away.norm() > 1e-3 ? Vector3(kAwayWeight * away.normalized())
+                                       : Vector3(Vector3::Zero())))
+      .normalized();
+}
+
+void PersonModel::choose_place(const PersonView& view) {
+  const auto arm = human_arm(body_, side_);
+  if (!arm) return;
+  static const std::vector<HandPart> kNothing;
+  FreeGraspQuery query;
+  query.object = view.object;
+  query.T_world_object = view.T_world_object;
+  query.arm = *arm;
+  query.wrist = (template_[kHand[hand_index()]] - template_[kWrist[hand_index()]]).norm();
+  query.preferred = side_to_take(view);
+  query.robot = view.robot != nullptr ? view.robot : &kNothing;
+  taking_.choose(query, hand_shape(hand_index()));
+  if (!taking_.has_place()) return;
+  const Vector3 fingers =
+      (points_[kHand[hand_index()]] - points_[kWrist[hand_index()]]).stableNormalized();
+  const Vector3 inward = hand_index() == 0 ? Vector3(-left()) : left();
+  Eigen::Matrix3d R;
+  R.col(2) = fingers;
+  R.col(0) = (inward - inward.dot(fingers) * fingers).stableNormalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  R_world_rest_ = Eigen::Quaterniond(R);
+}
+
+/// Updates the configuration of the handover hand: a fist, except while the hand takes an object or
+/// moves back without one.
+void PersonModel::update_hand(const PersonView& view) {
+  switch (phase_) {
+    case PersonPhase::watching:
+      bend_ = 0;
+      return hand_configuration_.reset();
+    case PersonPhase::reaching:
+    case PersonPhase::closing:
+    case PersonPhase::pulling:
+    case PersonPhase::withdrawing: {
+      if (!taking_.has_place() || view.object == nullptr) return;
+      const bool reaches = phase_ == PersonPhase::reaching, closes = phase_ == PersonPhase::closing;
+      hand_configuration_ =
+          taking_.configuration(R_world_rest_, reaches ? TakingHand::turned(reach_fraction()) : 1,
+                                reaches  ? 0
+                                : closes ? std::min(1.0, phase_time() / kCloseTime)
+                                         : 1,
+                                view.T_world_object);
+      bend_ = phase_ == PersonPhase::withdrawing ? 1 - min_jerk(progress_) : 1;
+      return;
+    }
+    case PersonPhase::retracting:
+      if (hand_configuration_) hand_configuration_->closures = {};
+      bend_ = 1 - min_jerk(phase_time() / duration_);
+      return taking_.forget();
+    default:
+      bend_ = 0;
+      hand_configuration_.reset();
+      taking_.forget();
+  }
+}
+
+}  // namespace handsel::sim

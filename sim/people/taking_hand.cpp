@@ -1,0 +1,50 @@
+#include "sim/people/taking_hand.hpp"
+
+#include "sim/people/person_parts.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+// Distance of the curve's control point from the place, along the palm's normal: the last 8 cm,
+// which FreeGraspSettings::approach keeps free, are nearly straight [m].
+constexpr double kControlDistance = 0.25;
+constexpr double kTurnedAt = 0.75;  // fraction of a reach at which the hand has turned
+
+}  // namespace
+
+void TakingHand::choose(const FreeGraspQuery& query, const HandShape& shape) {
+  if (query.arm.side != side_) forget();
+  side_ = query.arm.side;
+  if (place_) return;
+  if (!search_) search_.emplace(query, shape);
+  if (!search_->advance()) return;
+  place_ = search_->found();
+  failures_ += !place_;
+  search_.reset();
+}
+
+void TakingHand::forget() {
+  search_.reset();
+  place_.reset();
+  failures_ = 0;
+}
+
+Vector3 TakingHand::position_at(const Vector3& from, double s, const Pose& T_world_object) const {
+  const Pose T = goal(T_world_object);
+  const Vector3 to = T.translation(), control = to - kControlDistance * T.linear().col(0);
+  return (1 - s) * (1 - s) * from + 2 * s * (1 - s) * control + s * s * to;
+}
+
+double TakingHand::turned(double s) { return min_jerk(s / kTurnedAt); }
+
+HandConfiguration TakingHand::configuration(const Eigen::Quaterniond& R_world_rest, double turned,
+                                            double closed, const Pose& T_world_object) const {
+  HandConfiguration out;
+  out.R_world_hand = R_world_rest.slerp(turned, Eigen::Quaterniond(goal(T_world_object).linear()));
+  for (std::size_t d = 0; d < out.closures.size(); ++d)
+    out.closures[d] = closed * place_->closures[d];
+  return out;
+}
+
+}  // namespace handsel::sim

@@ -1,0 +1,118 @@
+// Where a person can hold an object that a robot holds.
+#include <gtest/gtest.h>
+
+#include "common/geometry/segments.hpp"
+#include "common/model/human/human_body.hpp"
+#include "common/model/object_surface.hpp"
+#include "sim/people/free_grasp.hpp"
+
+namespace handsel::sim {
+namespace {
+
+constexpr double kStature = 1.75;
+
+double distance(const HandPart& a, const HandPart& b) {
+  Vector3 on_a, on_b;
+  return std::sqrt(nearest_points(a.a, a.b, b.a, b.b, on_a, on_b)) - a.radius - b.radius;
+}
+
+/// A person at the origin who faces +x, and an object before the right shoulder.
+class FreeGraspTest : public testing::Test {
+ protected:
+  FreeGraspTest() {
+    person_.joints = standing_body(Vector3::Zero(), 0, kStature);
+    query_.arm = human_arm(person_, Side::right).value();
+    query_.wrist = 0.09;
+    query_.T_world_object.translation() = Vector3(0.5, -0.15, 1.15);
+    query_.preferred = -Vector3::UnitX();
+    query_.robot = &robot_;
+  }
+
+  const ObjectModel& load(const std::string& name) {
+    object_ = ObjectModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/objects/" + name + "/" +
+                                name + ".txtpb");
+    query_.object = &object_;
+    return object_;
+  }
+
+  /// Returns the parts of the hand in the grasp, world.
+  std::vector<HandPart> hand(const FreeGrasp& grasp) const {
+    std::vector<HandPart> out;
+    const Pose T = query_.T_world_object * grasp.T_object_hand;
+    for (const HandPart& part : shape_.parts(grasp.closures))
+      out.push_back({T * part.a, T * part.b, part.radius});
+    return out;
+  }
+
+  Person person_;
+  ObjectModel object_;
+  std::vector<HandPart> robot_;
+  FreeGraspQuery query_;
+  HandShape shape_{Side::right, kStature, 0.09};
+};
+
+TEST_F(FreeGraspTest, every_object_of_the_library_can_be_held) {
+  for (const char* name : {"mug", "bottle", "can", "box", "torch", "tube", "ball", "tray"}) {
+    load(name);
+    const auto grasp = find_free_grasp(query_, shape_);
+    ASSERT_TRUE(grasp) << name;
+    EXPECT_GE(grasp->digits_in_contact, 3) << name;
+    EXPECT_LE(grasp->strain, 1.0) << name;
+    for (const HandPart& part : hand(*grasp)) {
+      const Pose T_object_world = query_.T_world_object.inverse();
+      EXPECT_GT(surface_distance(object_, T_object_world * part.b), part.radius - 0.006) << name;
+    }
+  }
+}
+
+TEST_F(FreeGraspTest, the_hand_keeps_off_the_robot) {
+  load("bottle");
+  const auto alone = find_free_grasp(query_, shape_);
+  ASSERT_TRUE(alone);
+  const Vector3 p = query_.T_world_object * alone->T_object_hand.translation();
+  robot_ = {{p, p + Vector3(0, 0, 0.01), 0.02}};  // where the hand would be
+  const auto beside = find_free_grasp(query_, shape_);
+  ASSERT_TRUE(beside);
+  for (const HandPart& part : hand(*beside)) EXPECT_GE(distance(part, robot_[0]), 0.0029);
+}
+
+TEST_F(FreeGraspTest, there_is_none_on_an_object_that_the_robot_covers) {
+  load("can");
+  const Vector3 p = query_.T_world_object * object_.com;
+  robot_ = {{p - Vector3(0, 0, 0.1), p + Vector3(0, 0, 0.1), 0.06}};
+  EXPECT_FALSE(find_free_grasp(query_, shape_));
+}
+
+TEST_F(FreeGraspTest, there_is_none_out_of_reach) {
+  load("mug");
+  query_.T_world_object.translation().x() = 1.4;
+  EXPECT_FALSE(find_free_grasp(query_, shape_));
+}
+
+TEST(HandShape, a_left_hand_mirrors_a_right_hand) {
+  const HandShape right(Side::right, kStature, 0.09), left(Side::left, kStature, 0.09);
+  const Closures half{0.5, 0.5, 0.5, 0.5, 0.5};
+  const auto a = right.parts(half), b = left.parts(half);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_NEAR((a[i].b.cwiseProduct(Vector3(1, -1, 1)) - b[i].b).norm(), 0, 1e-12);
+    EXPECT_EQ(a[i].radius, b[i].radius);
+  }
+}
+
+TEST(HandShape, a_closing_digit_is_continuous_and_keeps_its_length) {
+  const HandShape hand(Side::right, kStature, 0.09);
+  for (int d = 0; d < kDigits; ++d) {
+    auto before = hand.digit(d, 0);
+    for (double c = 0.01; c <= 1.0; c += 0.01) {
+      const auto now = hand.digit(d, c);
+      for (int s = 0; s < kDigitSegments; ++s) {
+        EXPECT_LT((now[s].b - before[s].b).norm(), 0.005) << d << " " << s << " at " << c;
+        EXPECT_NEAR((now[s].b - now[s].a).norm(), (before[s].b - before[s].a).norm(), 1e-12);
+      }
+      before = now;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace handsel::sim
