@@ -12,7 +12,7 @@ namespace handsel::sim {
 namespace {
 
 constexpr int kHandDirections = 40;              // directions about the object
-constexpr int kHandRolls = 8;                    // rotations of the hand about its palm's normal
+constexpr int kHandRolls = 16;                   // rotations of the hand about its palm's normal
 constexpr double kTilts[] = {0.0, -0.45, 0.45};  // of the hand about the axis across it [rad]
 constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fingers' direction [m]
 constexpr double kMinLength = 0.12;              // min extent held off the middle [m]
@@ -25,6 +25,7 @@ constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
 constexpr double kMinOpposition = 0.2;           // min cosine between thumb and opposed fingers
 constexpr double kDifference = 1e-4;             // step of the finite differences [m]
 constexpr int kSamples = 4;                      // points tested along a part
+constexpr int kLeanSteps = 8;                    // leans tested
 constexpr int kMinDigits = 3;                    // min number of digits in contact
 
 HandPart placed(const Pose& T, const HandPart& part) {
@@ -164,11 +165,14 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
 
 /// Returns the arm of the person who leans as far as the wrist's position needs.
 HumanArm FreeGraspSearch::leaning_to(const Vector3& p_wrist) const {
-  constexpr double kStretch = 0.94;
+  constexpr double kStretch = 0.92;  // of the arm's length
   HumanArm arm = query_.arm;
-  const Vector3 to = p_wrist - arm.shoulder;
-  const double missing = to.norm() - kStretch * (arm.upper + arm.forearm);
-  if (missing > 0) arm.shoulder += std::min(missing, settings_.max_lean) * to.normalized();
+  for (int i = 0; i <= kLeanSteps; ++i) {
+    const double lean = i * settings_.max_lean / kLeanSteps;
+    arm.shoulder = query_.arm.shoulder + query_.trunk * (std::sin(lean) * query_.forward +
+                                                         (std::cos(lean) - 1) * Vector3::UnitZ());
+    if ((p_wrist - arm.shoulder).norm() <= kStretch * (arm.upper + arm.forearm)) break;
+  }
   return arm;
 }
 

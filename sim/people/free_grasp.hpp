@@ -25,7 +25,7 @@ struct FreeGraspSettings {
   double clearance{0.003};      ///< min distance of hand and robot [m]
   double approach{0.08};        ///< straight motion of the open hand before the grasp [m]
   double max_strain{1.0};       ///< max strain of arm and wrist
-  double max_lean{0.15};        ///< max motion of the shoulder by leaning [m]
+  double max_lean{0.33};        ///< max lean of the trunk [rad]
   double near_preference{0.5};  ///< cost of a hand opposite the preferred direction
 };
 
@@ -33,7 +33,9 @@ struct FreeGraspSettings {
 struct FreeGraspQuery {
   const ObjectModel* object{};            ///< not null
   Pose T_world_object{Pose::Identity()};  ///< pose of the object
-  HumanArm arm;                           ///< of the person
+  HumanArm arm;                           ///< of the person, upright
+  Vector3 forward{Vector3::UnitX()};      ///< direction of a lean, level, unit
+  double trunk{};                         ///< height of the shoulder above the waist [m]
   double wrist{};                         ///< distance from the wrist to the palm's middle [m]
   Vector3 preferred{Vector3::UnitX()};    ///< preferred side of the object, world, unit
   const std::vector<HandPart>* robot{};   ///< parts of the robot, world; not null

@@ -250,7 +250,8 @@ void People::pull(Body& person, double dt) {
     btRigidBody& body = person.colliders[c] ? *person.colliders[c]
                                             : person.hands[hand_number(capsule.part)]->body();
     const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
-    const bool is_compliant = in_handover && of_hand(capsule.part, person.model.side());
+    const bool is_compliant = in_handover && of_hand(capsule.part, person.model.side()) &&
+                              !(is_hand(capsule.part) && person.model.hand_configuration());
     body.setCollisionFlags(is_compliant ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE
                                         : flags);
   }
@@ -289,6 +290,12 @@ bool People::complies(int code) const {
   const Body& person = people_[code / kMaxCapsules];
   return person.model.in_handover() &&
          of_hand(person.capsules[code % kMaxCapsules].part, person.model.side());
+}
+
+bool People::takes(int code) const {
+  const Body& person = people_[code / kMaxCapsules];
+  const BodyPart part = person.capsules[code % kMaxCapsules].part;
+  return is_hand(part) && of_hand(part, person.model.side()) && person.model.hand_configuration();
 }
 
 const std::string& People::id(int code) const { return people_[code / kMaxCapsules].model.id(); }

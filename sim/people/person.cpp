@@ -289,6 +289,14 @@ void PersonModel::choose_hand(const PersonView& view) {
   side_ = change == (preferred == Side::right) ? Side::left : Side::right;
 }
 
+/// Returns the lean with which the straight arm reaches a point [rad].
+double PersonModel::lean_to_reach(const Vector3& p_hand) const {
+  const double excess = (p_hand - shoulder(hand_index())).norm() - 0.95 * reach_;
+  return std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[hand_index()]].z() -
+                                                       template_[kWaist].z()),
+                    0.0, kMaxLean);
+}
+
 void PersonModel::watch(double dt, const PersonView& view) {
   cooldown_ = std::max(0.0, cooldown_ - dt);
   const bool takes = settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner ||
@@ -310,16 +318,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
   duration_ =
       std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
   lean_from_ = lean_;
-  const double palm = (points_[kHand[hand_index()]] - points_[kWrist[hand_index()]]).norm();
-  const double excess = taking_.has_place()
-                            ? (goal - palm * taking_.goal(view.T_world_object).linear().col(2) -
-                               shoulder(hand_index()))
-                                      .norm() -
-                                  0.95 * (reach_ - palm)
-                            : (goal - shoulder(hand_index())).norm() - 0.95 * reach_;
-  lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[hand_index()]].z() -
-                                                           template_[kWaist].z()),
-                        0.0, 0.35);
+  lean_to_ = taking_.has_place() ? lean_to_take(view) : lean_to_reach(goal);
   hand_target_ = from_;
   hand_active_ = !settings_.recording;
   raise_progress_ = 0;

@@ -210,6 +210,11 @@ class PersonModel {
   bool chooses_place() const;
   void choose_place(const PersonView&);
   Vector3 side_to_take(const PersonView&) const;
+  double lean_to_reach(const Vector3& p_hand) const;
+  double lean_to_take(const PersonView&) const;
+  double trunk() const;
+  Vector3 by_leaning(double lean) const;
+  Vector3 upright_shoulder() const;
   void update_hand(const PersonView&);
   void raise_hand_in_advance(double dt, const PersonView&);
   bool has_changed_hands() const;

@@ -74,6 +74,11 @@ void PersonHand::set_configuration(const std::optional<HandConfiguration>& confi
 void PersonHand::use(btCollisionShape* shape) {
   if (body_->getCollisionShape() == shape) return;
   body_->setCollisionShape(shape);
+  if (shape == open_.get())
+    body_->setContactStiffnessAndDamping(settings_.tissue_stiffness, settings_.tissue_damping);
+  else
+    body_->setCollisionFlags(body_->getCollisionFlags() &
+                             ~btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING);
   // Contacts of the other shape are not those of this one.
   world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
       body_->getBroadphaseHandle(), world_.getDispatcher());

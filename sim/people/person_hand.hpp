@@ -21,6 +21,8 @@ struct PersonHandSettings {
   double frequency{100.0};  ///< natural frequency of the hand on the spring [rad/s]
   double max_force{60.0};   ///< max force of the spring, hence of the arm [N]
   double max_torque{6.0};   ///< max torque of the spring [Nm]
+  /// Stiffness [N/m] and damping [N s/m] of the tissue of palm and digits, each contact.
+  double tissue_stiffness{3000.0}, tissue_damping{30.0};
 };
 
 class PersonHand {

@@ -11,6 +11,7 @@ namespace handsel::sim {
 /// Grip force beyond which the person releases the object [N].
 inline constexpr double kMaxToleratedForce = 30.0;
 inline constexpr double kWalkSpeed = 0.6;   ///< mean walking speed [m/s]
+inline constexpr double kMaxLean = 0.35;    ///< max lean of the trunk forward [rad]
 inline constexpr double kCloseTime = 0.25;  ///< duration of closing the hand [s]
 /// Fraction of a reach at which a person hesitates or withdraws.
 inline constexpr double kMidwayFraction = 0.55;

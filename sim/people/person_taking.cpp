@@ -9,6 +9,9 @@ namespace {
 
 // Weight of the side away from the robot's hand, relative to the side toward the shoulder.
 constexpr double kAwayWeight = 0.7;
+// Distance of the wrist from the shoulder for which people lean, divided by the arm's length.
+constexpr double kStretchedArm = 0.93;
+constexpr double kLeanStep = 0.01;  // step of the search for a lean [rad]
 
 }  // namespace
 
@@ -44,6 +47,9 @@ void PersonModel::choose_place(const PersonView& view) {
   query.object = view.object;
   query.T_world_object = view.T_world_object;
   query.arm = *arm;
+  query.arm.shoulder = upright_shoulder();
+  query.forward = forward();
+  query.trunk = trunk();
   query.wrist = (template_[kHand[hand_index()]] - template_[kWrist[hand_index()]]).norm();
   query.preferred = side_to_take(view);
   query.robot = view.robot != nullptr ? view.robot : &kNothing;
@@ -57,6 +63,35 @@ void PersonModel::choose_place(const PersonView& view) {
   R.col(0) = (inward - inward.dot(fingers) * fingers).stableNormalized();
   R.col(1) = R.col(2).cross(R.col(0));
   R_world_rest_ = Eigen::Quaterniond(R);
+}
+
+/// Returns the height of the shoulder above the waist [m].
+double PersonModel::trunk() const {
+  return template_[kShoulder[hand_index()]].z() - template_[kWaist].z();
+}
+
+/// Returns the displacement of the shoulder by a lean [m].
+Vector3 PersonModel::by_leaning(double lean) const {
+  return trunk() * (std::sin(lean) * forward() + (std::cos(lean) - 1) * Vector3::UnitZ());
+}
+
+Vector3 PersonModel::upright_shoulder() const { return shoulder(hand_index()) - by_leaning(lean_); }
+
+/// Returns the least lean with which the wrist reaches the chosen place, else the lean that comes
+/// nearest [rad].
+double PersonModel::lean_to_take(const PersonView& view) const {
+  const int s = hand_index();
+  const Pose T = taking_.goal(view.T_world_object);
+  const double palm = (template_[kHand[s]] - template_[kWrist[s]]).norm();
+  const Vector3 p_wrist = T.translation() - palm * T.linear().col(2);
+  const Vector3 upright = upright_shoulder();
+  double nearest = 0, min_distance = std::numeric_limits<double>::infinity();
+  for (double lean = 0; lean <= kMaxLean; lean += kLeanStep) {
+    const double distance = (p_wrist - upright - by_leaning(lean)).norm();
+    if (distance <= kStretchedArm * (reach_ - palm)) return lean;
+    if (distance < min_distance) min_distance = distance, nearest = lean;
+  }
+  return nearest;
 }
 
 /// Updates the configuration of the handover hand: a fist, except while the hand takes an object or

@@ -23,6 +23,7 @@ class FreeGraspTest : public testing::Test {
     person_.joints = standing_body(Vector3::Zero(), 0, kStature);
     query_.arm = human_arm(person_, Side::right).value();
     query_.wrist = 0.09;
+    query_.trunk = 0.45;
     query_.T_world_object.translation() = Vector3(0.5, -0.15, 1.15);
     query_.preferred = -Vector3::UnitX();
     query_.robot = &robot_;
