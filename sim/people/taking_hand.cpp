@@ -20,14 +20,12 @@ void TakingHand::choose(const FreeGraspQuery& query, const HandShape& shape) {
   if (!search_) search_.emplace(query, shape);
   if (!search_->advance()) return;
   place_ = search_->found();
-  failures_ += !place_;
   search_.reset();
 }
 
 void TakingHand::forget() {
   search_.reset();
   place_.reset();
-  failures_ = 0;
 }
 
 Vector3 TakingHand::position_at(const Vector3& from, double s, const Pose& T_world_object) const {

@@ -23,8 +23,6 @@ class TakingHand {
   void forget();
   /// Returns whether a place is chosen.
   bool has_place() const { return place_.has_value(); }
-  /// Returns the number of choices that ended without a place since forget().
-  int failures() const { return failures_; }
 
   /// Returns the pose of the hand in the chosen place, world; a place is chosen.
   Pose goal(const Pose& T_world_object) const { return T_world_object * place_->T_object_hand; }
@@ -42,7 +40,6 @@ class TakingHand {
   std::optional<FreeGraspSearch> search_;
   std::optional<FreeGrasp> place_;
   Side side_{Side::right};
-  int failures_{0};
 };
 
 }  // namespace handsel::sim
