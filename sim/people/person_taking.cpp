@@ -21,10 +21,10 @@ HandShape PersonModel::hand_shape(int side) const {
 }
 
 /// Returns whether the person looks for a place that the robot leaves free. The hands of people
-/// from outside have no orientation, and what a fetcher takes no robot holds.
+/// from outside have no orientation, and what a fetcher takes no robot holds. A partner, who gives
+/// the object back, holds the object in a fist.
 bool PersonModel::chooses_place() const {
-  return (settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner) &&
-         !settings_.recording;
+  return settings_.kind == PersonKind::taker && !settings_.recording;
 }
 
 /// Returns the preferred side of an offered object: toward the person and away from the robot's
