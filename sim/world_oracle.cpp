@@ -11,7 +11,6 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr double kMinCollisionForce = 0.5;  // min normal force of a collision [N]
 // Max overlap of a person's fist and a robot's hand before both hold the object [m].
 constexpr double kMaxHandOverlap = 0.002;
 constexpr double kMaxFloorHeight = 0.02;  // max height of the origin of an object on the floor [m]
@@ -26,10 +25,10 @@ void SimWorld::Impl::evaluate() {
     if (t.b == Owner::object && by_hand) continue;
     const bool complies = t.b == Owner::person && people->complies(t.index_b);
     const bool hands_meet =
-        complies && (people->takes(t.index_b) ? t.normal_force >= kMinCollisionForce
+        complies && (people->takes(t.index_b) ? t.normal_force >= settings.collision_force
                                               : t.distance < -kMaxHandOverlap);
     const bool hands_collide = hands_meet && by_hand && handover && !handover->shared();
-    if (!hands_collide && (complies || t.normal_force < kMinCollisionForce)) continue;
+    if (!hands_collide && (complies || t.normal_force < settings.collision_force)) continue;
     if (!collided) {
       last_collision = robot->name_of(t.index_a) + " hits " +
                        (t.b == Owner::fixed    ? setup.boxes[t.index_b].id

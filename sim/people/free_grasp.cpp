@@ -22,11 +22,9 @@ constexpr int kClosureSteps = 20;                // closures tested of each digi
 constexpr int kApproachSteps = 4;                // poses tested before the grasp
 constexpr double kPalmOverlap = 0.003;           // flesh that gives way to the object [m]
 constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
-constexpr double kMinOpposition = 0.2;           // min cosine between thumb and opposed fingers
 constexpr double kDifference = 1e-4;             // step of the finite differences [m]
 constexpr int kSamples = 4;                      // points tested along a part
 constexpr int kLeanSteps = 8;                    // leans tested
-constexpr int kMinDigits = 3;                    // min number of digits in contact
 
 HandPart placed(const Pose& T, const HandPart& part) {
   return {T * part.a, T * part.b, part.radius};
@@ -145,10 +143,10 @@ void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction)
 void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const Vector3& fingers,
                           double tilt) {
   constexpr double kFar = 0.4;  // max length of the motion [m]
-  double moved = 0, beyond = distance(start) - settings_.palm;
+  double moved = 0, beyond = distance(start) - kPalmDistance;
   for (int i = 0; i < 40 && moved < kFar && beyond > 5e-4; ++i) {
     moved += beyond;
-    beyond = distance(start - moved * direction) - settings_.palm;
+    beyond = distance(start - moved * direction) - kPalmDistance;
   }
   if (beyond > 5e-4) return;  // passes the object
   Pose T = Pose::Identity();
@@ -160,7 +158,7 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);
   if (!posture || posture->strain > settings_.max_strain) return;
   const double beside = (1 - direction.dot(query_.preferred)) / 2;
-  candidates_.push_back({T, posture->strain + settings_.near_preference * beside, posture->strain});
+  candidates_.push_back({T, posture->strain + settings_.side_preference * beside, posture->strain});
 }
 
 /// Returns the arm of the person who leans as far as the wrist's position needs.
@@ -191,9 +189,10 @@ std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const
     (d == 0 ? of_thumb : of_fingers) += *contact;
   }
   const Vector3 palm = T.linear().col(0), fingers = of_fingers.stableNormalized();
-  const bool is_enclosed =
-      of_thumb.dot(fingers) < -kMinOpposition || fingers.dot(palm) < -kMinOpposition;
-  if (grasp.digits_in_contact < kMinDigits || !is_enclosed || !can_come(T)) return std::nullopt;
+  const bool is_enclosed = of_thumb.dot(fingers) < -settings_.min_opposition ||
+                           fingers.dot(palm) < -settings_.min_opposition;
+  if (grasp.digits_in_contact < settings_.min_digits || !is_enclosed || !can_come(T))
+    return std::nullopt;
   return grasp;
 }
 

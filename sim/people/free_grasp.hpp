@@ -20,13 +20,16 @@ struct FreeGrasp {
   double strain{};                       ///< of the person's arm and wrist, as in WristPosture
 };
 
+/// Choice of a place; values and meanings as in common/config/schema/sim.proto.
 struct FreeGraspSettings {
-  double palm{0.03};            ///< distance of the hand frame's origin from the object [m]
   double clearance{0.003};      ///< min distance of hand and robot [m]
   double approach{0.08};        ///< straight motion of the open hand before the grasp [m]
   double max_strain{1.0};       ///< max strain of arm and wrist
   double max_lean{0.33};        ///< max lean of the trunk [rad]
-  double near_preference{0.5};  ///< cost of a hand opposite the preferred direction
+  int min_digits{3};            ///< min number of digits in contact
+  double min_opposition{0.2};   ///< min cosine between thumb or palm and opposed fingers
+  double side_preference{0.5};  ///< cost of a hand opposite the preferred direction
+  double away_weight{0.7};      ///< side away from the robot, relative to that toward the person
 };
 
 /// What is known when a person chooses a place.

@@ -16,9 +16,10 @@ struct HandPart {
   double radius{};                                 ///< [m]
 };
 
-inline constexpr int kDigits = 5;         ///< thumb, index, middle, ring and little finger
-inline constexpr int kDigitSegments = 3;  ///< segments of each digit
-inline constexpr int kPalmParts = 3;      ///< parts of the palm
+inline constexpr double kPalmDistance = 0.03;  ///< hand frame's origin to a held object [m]
+inline constexpr int kDigits = 5;              ///< thumb, index, middle, ring and little finger
+inline constexpr int kDigitSegments = 3;       ///< segments of each digit
+inline constexpr int kPalmParts = 3;           ///< parts of the palm
 inline constexpr int kHandParts = kPalmParts + kDigits * kDigitSegments;  ///< parts of a hand
 
 /// Closure of each digit, thumb first: 0 straight, 1 fully flexed.

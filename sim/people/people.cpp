@@ -26,13 +26,13 @@ bool of_hand(BodyPart part, Side side) {
 /// Returns the pose of a held object in the hand frame. `turn`: orientation of the object,
 /// whose nearest part is then at the palm.
 Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>& turn) {
-  constexpr double kPalmOffset = PersonModel::kPalm + 0.05;  // of an unturned object [m]
+  constexpr double kPalmOffset = kPalmDistance + 0.05;  // of an unturned object [m]
   constexpr double kMaxOffset = 0.4;     // first offset of a turned object's origin [m]
   constexpr double kOffsetStep = 0.002;  // decrement of the offset [m]
   if (!turn) return Pose(Eigen::Translation3d(kPalmOffset, 0, 0));
   double offset = kMaxOffset;
   const Vector3 palm_direction = turn->inverse() * Vector3::UnitX();
-  while (offset > 0 && surface_distance(model, -offset * palm_direction) > PersonModel::kPalm)
+  while (offset > 0 && surface_distance(model, -offset * palm_direction) > kPalmDistance)
     offset -= kOffsetStep;
   return make_pose(Vector3(offset, 0, 0), *turn);
 }
@@ -79,7 +79,9 @@ People::~People() {
 
 void People::build(const StartPerson& start, const SimSettings& settings, int number,
                    ShapeStore& shapes) {
-  Body person{PersonModel(start.settings),
+  PersonSettings person_settings = start.settings;
+  person_settings.taking = settings.taking;
+  Body person{PersonModel(person_settings),
               Grip(settings.person_grip),
               -1,
               object_index(objects_, start.fetches),
@@ -226,7 +228,7 @@ void People::hold_or_release(Body& person) {
   if (!person.model.wants_grip()) {
     person.grip.release();
   } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
-    if (hand_gap(person) < PersonModel::kPalm + 0.03) {
+    if (hand_gap(person) < kPalmDistance + 0.03) {
       person.grip.hold(person.hand().state().T_world_body.inverse() *
                        objects_[person.object].state().T_world_body);
     } else {
@@ -281,7 +283,7 @@ int People::touching_person(int object) const {
     if (p.grip.holding()) return true;
     const PersonPhase phase = p.model.phase();
     return (phase == PersonPhase::closing || phase == PersonPhase::reaching) &&
-           hand_gap(p) < PersonModel::kPalm + 0.012;
+           hand_gap(p) < kPalmDistance + 0.012;
   });
   return found != people_.end() ? static_cast<int>(found - people_.begin()) : -1;
 }

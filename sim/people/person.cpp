@@ -215,7 +215,7 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
       }
       break;
     case PersonPhase::closing:
-      if (view.object == nullptr || hand_to_surface(view) > kPalm + 0.03) {
+      if (view.object == nullptr || hand_to_surface(view) > kPalmDistance + 0.03) {
         give_up();
       } else if (phase_time() > kCloseTime) {
         wants_grip_ = true;
@@ -345,7 +345,7 @@ void PersonModel::reach_out(double dt, const PersonView& view) {
   if (s >= kMidwayFraction && settings_.behaviour.withdraws && !first_attempt_over_)
     return give_up();
   if (s < 1) return;
-  if (hand_to_surface(view) < kPalm + 0.012) {
+  if (hand_to_surface(view) < kPalmDistance + 0.012) {
     enter(PersonPhase::closing);
   } else if (phase_time() > reach_duration() + 1.0) {
     give_up();
@@ -372,7 +372,7 @@ void PersonModel::replay(double dt, const PersonView& view) {
   hand_active_ = s > 0;
   hand_target_ = recorded + s * warp_;
   if (playback_ >= recording.contact && view.object != nullptr &&
-      hand_to_surface(view) < kPalm + 0.012)
+      hand_to_surface(view) < kPalmDistance + 0.012)
     enter(PersonPhase::closing);
 }
 

@@ -73,6 +73,7 @@ struct PersonSettings {
   MovingOfferSettings moving;    ///< how a giver moves the offered object; duration 0: no motion
   BehaviourProfile behaviour{};  ///< individual behaviour
   std::vector<Furniture> furniture;  ///< held objects stay above these boxes
+  FreeGraspSettings taking;          ///< choice of a place on an object that the robot holds
 };
 
 /// What the person observes, by sight and by touch.
@@ -167,7 +168,6 @@ class PersonModel {
   HandShape hand_shape(int side) const;
   bool placed() const { return placed_; }  ///< the body was placed elsewhere without a motion
   double reach() const { return reach_; }  ///< shoulder to the centre of the hand [m]
-  static constexpr double kPalm = 0.03;    ///< centre of the hand to the held object [m]
 
  private:
   void place_body();

@@ -110,12 +110,12 @@ Vector3 PersonModel::nearest_grasp_point(const PersonView& view, const Vector3& 
   Vector3 p = from;
   for (int i = 0; i < 8; ++i) {
     const double d = distance(p), h = 1e-4;
-    if (std::abs(d - kPalm) < 5e-4) break;
+    if (std::abs(d - kPalmDistance) < 5e-4) break;
     const Vector3 slope((distance(p + h * Vector3::UnitX()) - d) / h,
                         (distance(p + h * Vector3::UnitY()) - d) / h,
                         (distance(p + h * Vector3::UnitZ()) - d) / h);
     if (slope.norm() < 1e-6) break;
-    p -= (d - kPalm) * slope.normalized();
+    p -= (d - kPalmDistance) * slope.normalized();
   }
   return p;
 }
@@ -129,7 +129,8 @@ Vector3 PersonModel::grasp_point(const PersonView& view) const {
   double t = 0.4;
   for (int i = 0; i < 40; ++i) {
     const double beyond =
-        surface_distance(*view.object, T_object_world * (centre + t * side_of_object_)) - kPalm;
+        surface_distance(*view.object, T_object_world * (centre + t * side_of_object_)) -
+        kPalmDistance;
     t -= beyond;
     if (std::abs(beyond) < 5e-4 || t < 0) break;
   }

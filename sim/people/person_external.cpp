@@ -47,7 +47,7 @@ void PersonModel::run_external_person(double dt, const PersonView& view) {
   const bool wanted = is_offered_to_hand(hand_index());
   const auto in_reach = [&](int side) {
     const Vector3& hand = points_[kHand[side]];
-    return (nearest_grasp_point(view, hand) - hand).norm() <= settings_.correction + kPalm;
+    return (nearest_grasp_point(view, hand) - hand).norm() <= settings_.correction + kPalmDistance;
   };
   cooldown_ = std::max(0.0, cooldown_ - dt);
   const auto p_reported = [&](int side) { return points_[kHand[side]]; };
@@ -63,7 +63,7 @@ void PersonModel::run_external_person(double dt, const PersonView& view) {
         return;
       }
       hand_target_ = p_reported(hand_index()) + hand_offset_;
-      const bool touches = wanted && hand_to_surface(view) < kPalm + kMaxTouchGap;
+      const bool touches = wanted && hand_to_surface(view) < kPalmDistance + kMaxTouchGap;
       if (touches != (phase_ == PersonPhase::closing))
         enter(touches ? PersonPhase::closing : PersonPhase::reaching);
       if (phase_ != PersonPhase::closing || phase_time() < kCloseTime) return;

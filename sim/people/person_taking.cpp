@@ -7,8 +7,6 @@ namespace handsel::sim {
 
 namespace {
 
-// Weight of the side away from the robot's hand, relative to the side toward the shoulder.
-constexpr double kAwayWeight = 0.7;
 // Distance of the wrist from the shoulder for which people lean, divided by the arm's length.
 constexpr double kStretchedArm = 0.93;
 constexpr double kLeanStep = 0.01;  // step of the search for a lean [rad]
@@ -34,7 +32,7 @@ Vector3 PersonModel::side_to_take(const PersonView& view) const {
   const Vector3 toward =
       (shoulder(hand_index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
-  return (toward + (away.norm() > 1e-3 ? Vector3(kAwayWeight * away.normalized())
+  return (toward + (away.norm() > 1e-3 ? Vector3(settings_.taking.away_weight * away.normalized())
                                        : Vector3(Vector3::Zero())))
       .normalized();
 }
@@ -53,7 +51,7 @@ void PersonModel::choose_place(const PersonView& view) {
   query.wrist = (template_[kHand[hand_index()]] - template_[kWrist[hand_index()]]).norm();
   query.preferred = side_to_take(view);
   query.robot = view.robot != nullptr ? view.robot : &kNothing;
-  taking_.choose(query, hand_shape(hand_index()));
+  taking_.choose(query, hand_shape(hand_index()), settings_.taking);
   if (!taking_.has_place()) return;
   const Vector3 fingers =
       (points_[kHand[hand_index()]] - points_[kWrist[hand_index()]]).stableNormalized();

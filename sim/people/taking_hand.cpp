@@ -13,11 +13,12 @@ constexpr double kTurnedAt = 0.75;  // fraction of a reach at which the hand has
 
 }  // namespace
 
-void TakingHand::choose(const FreeGraspQuery& query, const HandShape& shape) {
+void TakingHand::choose(const FreeGraspQuery& query, const HandShape& shape,
+                        const FreeGraspSettings& settings) {
   if (query.arm.side != side_) forget();
   side_ = query.arm.side;
   if (place_) return;
-  if (!search_) search_.emplace(query, shape);
+  if (!search_) search_.emplace(query, shape, settings);
   if (!search_->advance()) return;
   place_ = search_->found();
   search_.reset();

@@ -18,7 +18,8 @@ class TakingHand {
  public:
   /// Continues the choice of a place for the hand of `query.arm`; begins anew after a choice
   /// without a place, or for the other hand.
-  void choose(const FreeGraspQuery& query, const HandShape& shape);
+  void choose(const FreeGraspQuery& query, const HandShape& shape,
+              const FreeGraspSettings& settings);
   /// Ends the choice and forgets the place.
   void forget();
   /// Returns whether a place is chosen.

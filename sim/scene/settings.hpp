@@ -24,6 +24,8 @@ struct SimSettings {
   /// Grasp constraint of a robot's hand, grip of a person's hand.
   GripSettings robot_grip, person_grip;
   PersonHandSettings person_hand;     ///< free hand of a person on its spring
+  FreeGraspSettings taking;           ///< choice of a place on an object that the robot holds
+  double collision_force{0.5};        ///< min normal force of a collision of the robot [N]
   double touch_force{0.2};            ///< min normal force of a contact for force closure [N]
   double grasp_time{0.02};            ///< duration of force closure that begins a grasp [s]
   double lose_time{0.05};             ///< duration without force closure that ends a grasp [s]

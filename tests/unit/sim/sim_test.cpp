@@ -10,8 +10,9 @@ namespace {
 
 using namespace test;
 
-SimWorld make(const config::Scenario& scenario, std::uint64_t seed = 1) {
-  return {jido(), library(), scenario, SimSettings{}, seed};
+SimWorld make(const config::Scenario& scenario, std::uint64_t seed = 1,
+              const SimSettings& settings = {}) {
+  return {jido(), library(), scenario, settings, seed};
 }
 
 Vector start() { return opened(jido().rest_configuration()); }
@@ -324,20 +325,26 @@ TEST(SimWorldTest, a_darting_hand_touches_the_robot_and_the_touch_is_counted) {
   EXPECT_LT(ground_truth.contact_force, 5000.0);
 }
 
-TEST(SimWorldTest, hitting_a_table_is_a_collision_with_a_name) {
+TEST(SimWorldTest, hitting_a_table_with_force_is_a_collision_with_a_name) {
   config::Scenario scenario = from_open(mug_in_hand());
   scenario.mutable_boxes(0)->mutable_size()->set_x(0.6);
-  SimWorld world = make(scenario);
-  Driver driver(world, start());
   const Group& arm = jido().require_group("arm");
   Pose T = jido().link_pose(start(), arm.tip);
   T.translation().z() -= 0.15;
   const auto down = jido().inverse(arm, T, start());
   ASSERT_TRUE(down.has_value());
-  driver.move(RobotModel::with(start(), arm, *down), 1.0);
-  EXPECT_GT(truth_of(world).self_or_scene_collisions, 0u);
-  EXPECT_NE(world.last_collision().find("hits column"), std::string::npos)
-      << world.last_collision();
+  const auto push_down = [&](const SimSettings& settings) {
+    SimWorld world = make(scenario, 1, settings);
+    Driver driver(world, start());
+    driver.move(RobotModel::with(start(), arm, *down), 1.0);
+    return std::pair(truth_of(world).self_or_scene_collisions, world.last_collision());
+  };
+  const auto [collisions, name] = push_down({});
+  EXPECT_GT(collisions, 0u);
+  EXPECT_NE(name.find("hits column"), std::string::npos) << name;
+  SimSettings tolerant;
+  tolerant.collision_force = 1e6;
+  EXPECT_EQ(push_down(tolerant).first, 0u) << "the force is below the setting";
 }
 
 TEST(SimSensors, silence_ends_by_itself) {

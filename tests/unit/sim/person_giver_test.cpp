@@ -1,0 +1,239 @@
+#include <gtest/gtest.h>
+
+#include "tests/unit/sim/person_fixture.hpp"
+
+namespace handsel::sim {
+namespace {
+
+using namespace test;
+
+PersonSettings giver() {
+  PersonSettings settings;
+  settings.id = "anna";
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.kind = PersonKind::giver;
+  return settings;
+}
+
+/// What a giver sees while it holds the mug: it goes with the hand.
+PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool robot_holds_it) {
+  PersonView view = offer(person.hand().T_world_body * Vector3(0.08, 0, 0));
+  view.robot_hand = robot_hand;
+  view.held_by_robot = view.held_firmly = robot_holds_it;
+  return view;
+}
+
+void live(PersonModel& person, double seconds, const Vector3& robot_hand,
+          bool robot_holds_it = false) {
+  for (int i = 0; i < static_cast<int>(seconds * 1000); ++i)
+    person.step(0.001, holding(person, robot_hand, robot_holds_it));
+}
+
+TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_robot_has_it) {
+  PersonModel person(giver());
+  const Vector3 robot_hand(0.4, 0.3, 1.0);
+  const double before = (person.hand().T_world_body.translation() - robot_hand).norm();
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 3, robot_hand);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+  EXPECT_LT((person.hand().T_world_body.translation() - robot_hand).norm(), before - 0.15);
+  live(person, 0.4, robot_hand, true);
+  EXPECT_TRUE(person.wants_grip()) << "not at the first touch";
+  live(person, 0.3, robot_hand, true);
+  EXPECT_FALSE(person.wants_grip());
+  live(person, 2, robot_hand, true);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, who_gives_keeps_what_the_robot_only_touches) {
+  PersonModel person(giver());
+  const Vector3 robot_hand(0.4, 0.3, 1.0);
+  live(person, 3, robot_hand);
+  for (int i = 0; i < 3000; ++i) {
+    PersonView view = holding(person, robot_hand, true);
+    view.held_firmly = false;
+    person.step(0.001, view);
+  }
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 0.7, robot_hand, true);
+  EXPECT_FALSE(person.wants_grip());
+}
+
+TEST(SimPerson, giver_takes_back_what_the_robot_hands_back_and_offers_it_when_asked) {
+  PersonModel person(giver());
+  live(person, 3, {0.4, 0.3, 1.0});
+  live(person, 0.7, {0.4, 0.3, 1.0}, true);
+  ASSERT_FALSE(person.wants_grip());
+  const PersonView view = offer({0.95, 0.05, 1.05});
+  for (int i = 0; i < 5000; ++i) person.step(0.001, view);
+  ASSERT_EQ(person.phase(), PersonPhase::watching) << "the robot does not hand it back";
+  person.announce(Announcement::offers);
+  for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i) person.step(0.001, view);
+  ASSERT_EQ(person.phase(), PersonPhase::pulling);
+  person.announce(Announcement::asks);
+  live(person, 6, {0.4, 0.5, 1.0});
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+}
+
+TEST(SimPerson, giver_who_moves_and_is_ignored_then_holds_it_out_anew_upright) {
+  PersonSettings settings = giver();
+  settings.moving.duration = 3;
+  settings.moving.start_low = settings.moving.next_low = Vector3(0.86, -0.3, 0.9);
+  settings.moving.start_high = settings.moving.next_high = Vector3(1.06, 0.3, 1.1);
+  settings.moving.spread = 0.1;
+  settings.moving.min_speed = settings.moving.max_speed = 0.1;
+  settings.moving.min_turn_speed = settings.moving.max_turn_speed = 0.3;
+  settings.moving.max_turn = 0.9;
+  settings.moving.seed = 3;
+  PersonModel person(settings);
+  const Vector3 robot_hand(0.3, 0.3, 1.0);
+  const auto turn = [&] {
+    const Eigen::Quaterniond facing(Eigen::AngleAxisd(settings.yaw, Vector3::UnitZ()));
+    return facing.angularDistance(Eigen::Quaterniond(person.hand().T_world_body.linear()));
+  };
+  live(person, 8, robot_hand);
+  EXPECT_GT(turn(), 0.3);
+  const Vector3 stays = person.hand().T_world_body.translation();
+  live(person, 2, robot_hand);
+  EXPECT_LT((person.hand().T_world_body.translation() - stays).norm(), 0.01);
+  live(person, 12, robot_hand);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+  EXPECT_LT(turn(), 0.02);
+}
+
+TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
+  PersonSettings settings = giver();
+  settings.feet = Vector3(1.35, 0, 0);
+  settings.kind = PersonKind::partner;
+  PersonModel person(settings);
+  const Vector3 aside(0.4, 0.5, 1.0);
+  for (int round = 0; round < 3; ++round) {
+    const PersonView view = offer({0.95, 0.05, 1.05});
+    for (int i = 0; i < 3000; ++i) person.step(0.001, view);
+    ASSERT_EQ(person.phase(), PersonPhase::watching) << "the robot does not offer the mug";
+    person.announce(Announcement::offers);
+    for (int i = 0; i < 6000 && person.phase() != PersonPhase::pulling; ++i)
+      person.step(0.001, view);
+    ASSERT_EQ(person.phase(), PersonPhase::pulling) << round;
+    live(person, 4, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::keeping) << round;
+    live(person, 4, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::keeping) << "unasked";
+    const Vector3 kept = person.hand().T_world_body.translation();
+
+    person.announce(Announcement::asks);
+    live(person, 1.5 * settings.reaction, aside);
+    person.announce(Announcement::none);
+    live(person, 2, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::keeping) << "the robot no longer asks";
+    const Vector3 moved = person.hand().T_world_body.translation() - kept;
+    EXPECT_LT(moved.cwiseProduct(Vector3(0, 1, 1)).norm(), 1e-3);
+    EXPECT_LE(std::abs(moved.x()), 0.2) << "no more than the step forward again";
+
+    person.announce(Announcement::asks);
+    live(person, 4, aside);
+    EXPECT_EQ(person.phase(), PersonPhase::offering) << round;
+    EXPECT_GT((person.hand().T_world_body.translation() - kept).norm(), 0.15);
+    live(person, 0.8, aside, true);
+    person.announce(Announcement::none);
+    for (int i = 0; i < 4000; ++i) person.step(0.001, PersonView{});
+    EXPECT_EQ(person.phase(), PersonPhase::watching);
+    EXPECT_FALSE(person.wants_grip());
+    EXPECT_NEAR(person.body().joints[static_cast<std::size_t>(joint("torso"))].position.x(), 1.35,
+                0.1)
+        << "where it stood at first";
+  }
+}
+
+TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
+  PersonModel person(giver());
+  live(person, 3, {1.0, -0.2, 1.2});
+  EXPECT_GT((person.hand().T_world_body.translation() - Vector3(1.0, -0.2, 1.2)).norm(), 0.3);
+}
+
+TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
+  PersonSettings settings = giver();
+  settings.behaviour.seated = true;
+  PersonModel free(settings);
+  const Vector3 where = free.hand().T_world_body.translation();
+  EXPECT_LT(where.z(), 0.8);
+  const Furniture table{make_pose({where.x() - 0.2, where.y(), 0.36}), {0.5, 0.5, 0.72}},
+      far{make_pose({where.x() - 5, 0, 0.36}), {1, 1, 2}},
+      shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}};
+  settings.furniture = {far, shelf};
+  PersonModel same(settings);
+  EXPECT_EQ(same.hand().T_world_body.translation(), where);
+  settings.furniture.push_back(table);
+  PersonModel person(settings);
+  Vector3 before = person.hand().T_world_body.translation();
+  for (int i = 0; i < 20000; ++i) {
+    person.step(0.001, holding(person, {0.3, 0.4, 1.0}, false));
+    const Vector3 hand = person.hand().T_world_body.translation();
+    ASSERT_GT(hand.z(), 0.72 + 0.1) << i;
+    ASSERT_LT((hand - before).norm(), 0.004) << i;
+    before = hand;
+  }
+}
+
+TEST(SimPerson, who_is_ignored_comes_nearer_and_holds_it_out_anew_twice) {
+  PersonModel person(giver());
+  const double before = person.body().joints[joint("torso")].position.x();
+  live(person, 40, {0.3, 0, 1.0});
+  EXPECT_NEAR(before - person.body().joints[joint("torso")].position.x(), 0.24, 0.03);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+}
+
+TEST(SimPerson, who_is_ignored_steps_nearer_only_where_the_robots_hand_leaves_room) {
+  PersonModel person(giver());
+  const Vector3 robot_hand(0.66, -0.1, 1.05);
+  live(person, 8, robot_hand);
+  const auto extension = [&] {
+    return (person.hand().T_world_body.translation() -
+            person.body().joints[joint("r_shoulder")].position)
+        .head<2>()
+        .norm();
+  };
+  const double before = extension();
+  double nearest = 1;
+  for (int i = 0; i < 40000; ++i) {
+    person.step(0.001, holding(person, robot_hand, false));
+    nearest = std::min(nearest, (person.hand().T_world_body.translation() - robot_hand).norm());
+  }
+  EXPECT_GT(nearest, 0.43) << "the object is within the fingers' length of the palm";
+  EXPECT_GT(extension(), before - 0.03) << "the arm was bent for a step";
+}
+
+/// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most
+/// 10 m/s^2 (StopProofSettings::people).
+TEST(SimPerson, a_step_nearer_is_no_faster_than_people_step) {
+  PersonModel person(giver());
+  Vector3 before = Vector3::Zero();
+  double fastest = 0, most = 0;
+  for (int i = 0; i < 40000; ++i) {
+    person.step(0.001, holding(person, {0.3, 0, 1.0}, false));
+    const Vector3 velocity = person.body().joints[joint("torso")].velocity;
+    if (i > 1) most = std::max(most, (velocity - before).norm() / 0.001);
+    fastest = std::max(fastest, velocity.norm());
+    before = velocity;
+  }
+  EXPECT_LT(most, 4.5);
+  EXPECT_GT(fastest, 0.3) << "no step was made";
+}
+
+TEST(SimPerson, who_changes_their_mind_draws_it_back_once_and_offers_again) {
+  PersonSettings settings = giver();
+  settings.behaviour.withdraws = true;
+  PersonModel person(settings);
+  live(person, 4, {0.4, 0, 1.0});
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  const Vector3 near = person.hand().T_world_body.translation() + Vector3(-0.25, 0, 0);
+  live(person, 0.5, near);
+  EXPECT_EQ(person.phase(), PersonPhase::keeping);
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 6, near);
+  EXPECT_EQ(person.phase(), PersonPhase::offering) << "and now stays";
+}
+
+}  // namespace
+}  // namespace handsel::sim
