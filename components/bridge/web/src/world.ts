@@ -45,8 +45,10 @@ export class World {
     const context = canvas.getContext("webgl2", { antialias: !software, powerPreference: "low-power" });
     if (!context) throw new Error("no WebGL");
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
-    this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = software ? THREE.BasicShadowMap : THREE.PCFShadowMap;
+    // Without a GPU the pictures are drawn by the processor on which the robot's control may run: shadows, half of the work, are left out.
+    this.renderer.shadowMap.enabled = !software;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.floor.visible = !software;
     this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "The robot, the people around it and what it handles, in three dimensions");
