@@ -25,8 +25,8 @@ void SimWorld::Impl::evaluate() {
     if (t.b == Owner::object && by_hand) continue;
     const bool complies = t.b == Owner::person && people->complies(t.index_b);
     const bool hands_meet =
-        complies && (people->takes(t.index_b) ? t.normal_force >= settings.collision_force
-                                              : t.distance < -kMaxHandOverlap);
+        complies && (people->has_digits(t.index_b) ? t.normal_force >= settings.collision_force
+                                                   : t.distance < -kMaxHandOverlap);
     const bool hands_collide = hands_meet && by_hand && handover && !handover->shared();
     if (!hands_collide && (complies || t.normal_force < settings.collision_force)) continue;
     if (!collided) {

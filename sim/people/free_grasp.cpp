@@ -16,19 +16,14 @@ constexpr int kHandRolls = 16;                   // rotations of the hand about 
 constexpr double kTilts[] = {0.0, -0.45, 0.45};  // of the hand about the axis across it [rad]
 constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fingers' direction [m]
 constexpr double kMinLength = 0.12;              // min extent held off the middle [m]
+constexpr double kMinLengthToGive = 0.07;        // same, of a person who gives [m]
 constexpr double kOffMiddle = 0.32;              // such a place, divided by the extent
 constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
-constexpr int kClosureSteps = 20;                // closures tested of each digit
 constexpr int kApproachSteps = 4;                // poses tested before the grasp
 constexpr double kPalmOverlap = 0.003;           // flesh that gives way to the object [m]
 constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
 constexpr double kDifference = 1e-4;             // step of the finite differences [m]
-constexpr int kSamples = 4;                      // points tested along a part
 constexpr int kLeanSteps = 8;                    // leans tested
-
-HandPart placed(const Pose& T, const HandPart& part) {
-  return {T * part.a, T * part.b, part.radius};
-}
 
 /// Returns directions spread evenly over the sphere.
 std::vector<Vector3> directions() {
@@ -49,7 +44,7 @@ std::vector<Vector3> anchors(const FreeGraspQuery& query) {
   std::vector<Vector3> out{query.T_world_object * query.object->com};
   for (int axis = 0; axis < 3; ++axis) {
     const double length = box.sizes()[axis];
-    if (length < kMinLength) continue;
+    if (length < (query.p_left ? kMinLengthToGive : kMinLength)) continue;
     for (const double side : {-1.0, 1.0}) {
       Vector3 p = query.object->com;
       p[axis] = box.center()[axis] + side * kOffMiddle * length;
@@ -61,7 +56,7 @@ std::vector<Vector3> anchors(const FreeGraspQuery& query) {
 
 }  // namespace
 
-FreeGraspSearch::FreeGraspSearch(const FreeGraspQuery& query, const HandShape& shape,
+FreeGraspSearch::FreeGraspSearch(const FreeGraspQuery& query, const HumanHand& shape,
                                  const FreeGraspSettings& settings)
     : query_(query),
       robot_(*query.robot),
@@ -90,19 +85,6 @@ bool FreeGraspSearch::advance() {
 
 double FreeGraspSearch::distance(const Vector3& p_world) const {
   return surface_distance(*query_.object, T_object_world_ * p_world);
-}
-
-/// Returns the distance of a part from the object, negative: they overlap. `nearest`: on the axis.
-double FreeGraspSearch::distance(const HandPart& part, Vector3* nearest) const {
-  double min_distance = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kSamples; ++i) {
-    const Vector3 p = part.a + i * (part.b - part.a) / kSamples;
-    const double d = distance(p) - part.radius;
-    if (d >= min_distance) continue;
-    min_distance = d;
-    if (nearest != nullptr) *nearest = p;
-  }
-  return min_distance;
 }
 
 /// Returns the direction into the object near a point, unit.
@@ -142,7 +124,8 @@ void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction)
 /// reaches the pose.
 void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const Vector3& fingers,
                           double tilt) {
-  constexpr double kFar = 0.4;  // max length of the motion [m]
+  constexpr double kFar = 0.4;   // max length of the motion [m]
+  constexpr double kRoom = 0.2;  // distance from a point to leave free that costs nothing [m]
   double moved = 0, beyond = distance(start) - kPalmDistance;
   for (int i = 0; i < 40 && moved < kFar && beyond > 5e-4; ++i) {
     moved += beyond;
@@ -158,7 +141,11 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);
   if (!posture || posture->strain > settings_.max_strain) return;
   const double beside = (1 - direction.dot(query_.preferred)) / 2;
-  candidates_.push_back({T, posture->strain + settings_.side_preference * beside, posture->strain});
+  double cost = posture->strain + settings_.side_preference * beside;
+  if (query_.p_left)
+    cost += settings_.room_preference *
+            std::max(0.0, 1 - (T.translation() - *query_.p_left).norm() / kRoom);
+  candidates_.push_back({T, cost, posture->strain});
 }
 
 /// Returns the arm of the person who leans as far as the wrist's position needs.
@@ -177,16 +164,26 @@ HumanArm FreeGraspSearch::leaning_to(const Vector3& p_wrist) const {
 std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const {
   const Pose& T = candidate.T_world_hand;
   for (const HandPart& part : shape_.palm()) {
-    const HandPart there = placed(T, part);
-    if (distance(there, nullptr) < -kPalmOverlap || !is_clear(there)) return std::nullopt;
+    const HandPart there = transformed(T, part);
+    if (surface_distance(*query_.object, transformed(T_object_world_, there)) < -kPalmOverlap ||
+        !is_clear(there))
+      return std::nullopt;
   }
   FreeGrasp grasp{T_object_world_ * T, {}, 0, candidate.strain};
   Vector3 of_fingers = Vector3::Zero(), of_thumb = Vector3::Zero();
+  std::array<std::optional<double>, kDigits> contacts;
   for (int d = 0; d < kDigits; ++d) {
-    const auto contact = close(T, d, grasp.closures[d]);
-    if (!contact) continue;
+    const auto contact = first_contact(shape_, d, *query_.object, grasp.T_object_hand);
+    if (contact && contact->distance < -kDigitOverlap) return std::nullopt;
+    if (contact) contacts[d] = contact->closure;
+    if (!contact || !can_close(T, d, contact->closure)) continue;
+    grasp.closures[d] = contact->closure;
     ++grasp.digits_in_contact;
-    (d == 0 ? of_thumb : of_fingers) += *contact;
+    (d == 0 ? of_thumb : of_fingers) += inward(query_.T_world_object * contact->p_object);
+  }
+  for (int d = 0; d < kDigits; ++d) {
+    const double closure = contacts[d] ? 0 : free_closure(d, contacts);
+    if (closure > 0 && can_close(T, d, closure)) grasp.closures[d] = closure;
   }
   const Vector3 palm = T.linear().col(0), fingers = of_fingers.stableNormalized();
   const bool is_enclosed = of_thumb.dot(fingers) < -settings_.min_opposition ||
@@ -196,26 +193,16 @@ std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const
   return grasp;
 }
 
-/// Closes a digit to the object; returns the direction of its contact into the object, nullopt: the
-/// digit does not touch the object, or the robot is in its path.
-std::optional<Vector3> FreeGraspSearch::close(const Pose& T_world_hand, int digit,
-                                              double& closure) const {
-  closure = 0;
-  for (int i = 0; i <= kClosureSteps; ++i) {
-    const double c = static_cast<double>(i) / kClosureSteps;
+/// Returns whether a digit closes without touching the robot.
+bool FreeGraspSearch::can_close(const Pose& T_world_hand, int digit, double closure) const {
+  const int steps = static_cast<int>(std::ceil(closure * kClosureSteps));
+  for (int i = 0; i <= steps; ++i) {
+    const double c = std::min(closure, static_cast<double>(i) / kClosureSteps);
     for (const HandPart& part : shape_.digit(digit, c)) {
-      const HandPart there = placed(T_world_hand, part);
-      Vector3 nearest;
-      const double d = distance(there, &nearest);
-      if (d < -kDigitOverlap || !is_clear(there)) return std::nullopt;
-      if (d > 0) continue;
-      closure = c;
-      return inward(nearest);
+      if (!is_clear(transformed(T_world_hand, part))) return false;
     }
-    closure = c;
   }
-  closure = 0;
-  return std::nullopt;
+  return true;
 }
 
 /// Returns whether the open hand comes straight to the pose without touching the robot.
@@ -224,13 +211,13 @@ bool FreeGraspSearch::can_come(const Pose& T_world_hand) const {
     Pose before = T_world_hand;
     before.translation() -= i * settings_.approach / kApproachSteps * T_world_hand.linear().col(0);
     for (const HandPart& part : shape_.parts({})) {
-      if (!is_clear(placed(before, part))) return false;
+      if (!is_clear(transformed(before, part))) return false;
     }
   }
   return true;
 }
 
-std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HandShape& shape,
+std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HumanHand& shape,
                                          const FreeGraspSettings& settings) {
   FreeGraspSearch search(query, shape, settings);
   while (!search.advance()) {

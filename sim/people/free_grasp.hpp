@@ -6,15 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include "common/model/human/hand_closure.hpp"
 #include "common/model/human/human_wrist.hpp"
-#include "common/model/object_model.hpp"
-#include "sim/people/hand_shape.hpp"
 
 namespace handsel::sim {
 
 /// A place for a person's hand on an object.
 struct FreeGrasp {
-  Pose T_object_hand{Pose::Identity()};  ///< as in HandShape
+  Pose T_object_hand{Pose::Identity()};  ///< as in HumanHand
   Closures closures{};                   ///< of the digits in contact with the object
   int digits_in_contact{};               ///< number of digits that touch the object
   double strain{};                       ///< of the person's arm and wrist, as in WristPosture
@@ -29,6 +28,7 @@ struct FreeGraspSettings {
   int min_digits{3};            ///< min number of digits in contact
   double min_opposition{0.2};   ///< min cosine between thumb or palm and opposed fingers
   double side_preference{0.5};  ///< cost of a hand opposite the preferred direction
+  double room_preference{2.0};  ///< cost of a hand at the point that is left to a receiver
   double away_weight{0.7};      ///< side away from the robot, relative to that toward the person
 };
 
@@ -42,13 +42,15 @@ struct FreeGraspQuery {
   double wrist{};                         ///< distance from the wrist to the palm's middle [m]
   Vector3 preferred{Vector3::UnitX()};    ///< preferred side of the object, world, unit
   const std::vector<HandPart>* robot{};   ///< parts of the robot, world; not null
+  /// Point of the object that is left to a receiver, world [m]; nullopt: the person does not give.
+  std::optional<Vector3> p_left;
 };
 
 /// Searches the best place a part at a time, so that no step of the simulation takes long.
 class FreeGraspSearch {
  public:
   /// Copies what the query points to, except the object.
-  FreeGraspSearch(const FreeGraspQuery& query, const HandShape& shape,
+  FreeGraspSearch(const FreeGraspQuery& query, const HumanHand& shape,
                   const FreeGraspSettings& settings = {});
 
   /// Does the next part of the search, about 0.1 ms; returns whether the search is over.
@@ -64,19 +66,18 @@ class FreeGraspSearch {
     double cost{}, strain{};
   };
   double distance(const Vector3& p_world) const;
-  double distance(const HandPart& part, Vector3* nearest) const;
   Vector3 inward(const Vector3& p_world) const;
   bool is_clear(const HandPart& part) const;
   void add_about(const Vector3& anchor, const Vector3& direction);
   void add(const Vector3& start, const Vector3& direction, const Vector3& fingers, double tilt);
   HumanArm leaning_to(const Vector3& p_wrist) const;
   std::optional<FreeGrasp> test(const Candidate& candidate) const;
-  std::optional<Vector3> close(const Pose& T_world_hand, int digit, double& closure) const;
+  bool can_close(const Pose& T_world_hand, int digit, double closure) const;
   bool can_come(const Pose& T_world_hand) const;
 
   FreeGraspQuery query_;
   std::vector<HandPart> robot_;
-  HandShape shape_;
+  HumanHand shape_;
   FreeGraspSettings settings_;
   Pose T_object_world_;
   std::vector<Vector3> anchors_, directions_;
@@ -87,7 +88,7 @@ class FreeGraspSearch {
 };
 
 /// Returns the best place, nullopt: the robot leaves none in reach.
-std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HandShape& shape,
+std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HumanHand& shape,
                                          const FreeGraspSettings& settings = {});
 
 }  // namespace handsel::sim

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/model/object_surface.hpp"
+#include "sim/people/person_parts.hpp"
 #include "sim/physics/contacts.hpp"
 
 namespace handsel::sim {
@@ -26,10 +27,9 @@ bool of_hand(BodyPart part, Side side) {
 /// Returns the pose of a held object in the hand frame. `turn`: orientation of the object,
 /// whose nearest part is then at the palm.
 Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>& turn) {
-  constexpr double kPalmOffset = kPalmDistance + 0.05;  // of an unturned object [m]
   constexpr double kMaxOffset = 0.4;     // first offset of a turned object's origin [m]
   constexpr double kOffsetStep = 0.002;  // decrement of the offset [m]
-  if (!turn) return Pose(Eigen::Translation3d(kPalmOffset, 0, 0));
+  if (!turn) return Pose(Eigen::Translation3d(kObjectAhead, 0, 0));
   double offset = kMaxOffset;
   const Vector3 palm_direction = turn->inverse() * Vector3::UnitX();
   while (offset > 0 && surface_distance(model, -offset * palm_direction) > kPalmDistance)
@@ -117,7 +117,9 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
     person.object = object_index(objects_, start.holds);
     ObjectBody& object = objects_[person.object];
     const Pose hand = person.hand().state().T_world_body;
-    object.put(hand * held_pose(object.model(), start.hand_turn));
+    const Eigen::Quaterniond turn = start.hand_turn.value_or(Eigen::Quaterniond::Identity());
+    const auto T_hand_object = person.model.hold_from_beginning(object.model(), turn);
+    object.put(hand * T_hand_object.value_or(held_pose(object.model(), start.hand_turn)));
     person.grip.hold(hand.inverse() * object.state().T_world_body);
   }
   people_.push_back(std::move(person));
@@ -294,7 +296,7 @@ bool People::complies(int code) const {
          of_hand(person.capsules[code % kMaxCapsules].part, person.model.side());
 }
 
-bool People::takes(int code) const {
+bool People::has_digits(int code) const {
   const Body& person = people_[code / kMaxCapsules];
   const BodyPart part = person.capsules[code % kMaxCapsules].part;
   return is_hand(part) && of_hand(part, person.model.side()) && person.model.hand_configuration();

@@ -73,8 +73,8 @@ class People {
   /// Returns whether the touched part is the forearm or hand of a handover, which complies with
   /// contact; `code` as in the index of a touch.
   bool complies(int code) const;
-  /// Returns whether the touched part is a hand that takes an object, with palm and digits.
-  bool takes(int code) const;
+  /// Returns whether the touched part is a hand with palm and digits.
+  bool has_digits(int code) const;
   const std::string& id(int code) const;  ///< Returns the id of a touched person.
   /// Writes the volumes to which the separation is measured. Forearm and hand of a handover are
   /// exempt until every hand of the robot is 0.35 m from the object.

@@ -133,7 +133,7 @@ void PersonModel::step(double dt, const PersonView& view) {
       feet_ = home_ -
               distance_from_place(settings_.steps_in, settings_.approach_from, clock_) * forward();
     step_aside(dt);
-    update_hand(view);
+    update_hand(dt, view);
     if (!followed_) turn_gaze(gaze_target(view), dt);
   }
   placed_ = false;
@@ -425,6 +425,10 @@ void PersonModel::give_up() {
   lean_from_ = lean_;
   duration_ = 1.0;
   warp_.setConstant(playback_);
+  const Vector3 rest = rest_position();
+  retract_control_ = hand_configuration_
+                         ? TakingHand::behind(from_, hand_configuration_->R_world_hand)
+                         : Vector3((from_ + rest) / 2);
   enter(PersonPhase::retracting);
 }
 
@@ -432,9 +436,8 @@ void PersonModel::retract(double) {
   const double s = min_jerk(phase_time() / duration_);
   lean_ = (1 - s) * lean_from_;
   playback_ = settings_.recording ? (1 - s) * warp_.x() : 0;
-  const Vector3 rest =
-      feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[hand_index()]];
-  hand_target_ = from_ + s * (rest - from_);
+  hand_target_ =
+      (1 - s) * (1 - s) * from_ + 2 * s * (1 - s) * retract_control_ + s * s * rest_position();
   if (phase_time() < duration_) return;
   hand_active_ = false;
   playback_ = 0;

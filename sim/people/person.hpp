@@ -134,6 +134,11 @@ class PersonModel {
   void leave();
   /// Ends all reaching for objects and all offers.
   void refuse() { refusing_ = true; }
+  /// Chooses how the handover hand holds an object from the beginning, the object's end toward the
+  /// robot left free; returns the pose of the object in the frame of hand(), nullopt: the object
+  /// has no place for the hand. `turn`: orientation of the object in this frame.
+  std::optional<Pose> hold_from_beginning(const ObjectModel& object,
+                                          const Eigen::Quaterniond& turn);
   /// Takes an announcement of the robot: a partner takes an object only if the robot offers it, and
   /// offers an object if the robot asks for it.
   void announce(Announcement announcement);
@@ -165,7 +170,7 @@ class PersonModel {
   /// Returns the configuration of the handover hand; nullopt: a fist.
   const std::optional<HandConfiguration>& hand_configuration() const { return hand_configuration_; }
   /// Returns the shape of a hand; 0 left, 1 right.
-  HandShape hand_shape(int side) const;
+  HumanHand hand_shape(int side) const;
   bool placed() const { return placed_; }  ///< the body was placed elsewhere without a motion
   double reach() const { return reach_; }  ///< shoulder to the centre of the hand [m]
 
@@ -210,12 +215,14 @@ class PersonModel {
   bool chooses_place() const;
   void choose_place(const PersonView&);
   Vector3 side_to_take(const PersonView&) const;
+  FreeGraspQuery place_query(const ObjectModel&, const HumanArm&) const;
+  bool keeps_place() const;
   double lean_to_reach(const Vector3& p_hand) const;
   double lean_to_take(const PersonView&) const;
   double trunk() const;
   Vector3 by_leaning(double lean) const;
   Vector3 upright_shoulder() const;
-  void update_hand(const PersonView&);
+  void update_hand(double dt, const PersonView&);
   void raise_hand_in_advance(double dt, const PersonView&);
   bool has_changed_hands() const;
   Side preferred_side() const;
@@ -224,11 +231,15 @@ class PersonModel {
   Vector3 nearest_grasp_point(const PersonView&, const Vector3& from) const;
   Vector3 recorded_contact(const Vector3& feet) const;
   Vector3 shoulder(int side) const;
+  Eigen::Quaterniond facing() const {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
+  }
   Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
   Vector3 left() const { return {-std::sin(yaw_), std::cos(yaw_), 0}; }
   Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
   double hand_to_surface(const PersonView&) const;
   Vector3 carry_position() const;
+  Vector3 rest_position() const;
   double height_above_furniture(const Vector3& hand) const;
   void keep_above_furniture(const Vector3& robot_hand);
   double extent_below_hand(const PersonView&) const;
@@ -277,7 +288,8 @@ class PersonModel {
   std::optional<HandConfiguration> hand_configuration_;  // of the handover hand; nullopt: a fist
   // Orientation of the handover hand before a reach.
   Eigen::Quaterniond R_world_rest_{Eigen::Quaterniond::Identity()};
-  double bend_{0};  // how far the wrist bends as the hand needs, 0 to 1
+  double bend_{0};                            // how far the wrist bends as the hand needs, 0 to 1
+  Vector3 retract_control_{Vector3::Zero()};  // control point of a retracting hand's curve [m]
   // Rotation of the handover hand from the neutral wrist configuration.
   Eigen::Quaterniond hand_turn_{Eigen::Quaterniond::Identity()};
   // Offset of the hand from its reported position, world [m].

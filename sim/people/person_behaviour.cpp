@@ -104,6 +104,12 @@ Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& 
   arm = Eigen::AngleAxisd(std::clamp(turn, -kMaxOfferTurn, kMaxOfferTurn), Vector3::UnitZ()) * arm;
   const double shortfall = kMinHandDistance - (to_hand - arm).norm();
   if (shortfall > 0) arm.head<2>() *= std::max(0.0, 1 - shortfall / arm.head<2>().norm());
+  // An object at the side of the hand is held out as far as an object before the hand, and straight
+  // ahead.
+  const Vector3 held = facing() * view.p_hand_object;
+  if (taking_.has_place())
+    arm +=
+        std::max(0.0, kObjectAhead - held.dot(forward())) * forward() - held.dot(left()) * left();
   return arm;
 }
 
@@ -179,16 +185,15 @@ void PersonModel::turn_hand_back(double dt) {
 /// Moves the hand to the start of the moving offer, then along its curves. The object turns about
 /// its own origin, so the hand moves around the object.
 void PersonModel::offer_in_motion(double dt, const PersonView& view) {
-  const Eigen::Quaterniond facing(Eigen::AngleAxisd(yaw_, Vector3::UnitZ()));
   if (!moving_) {
     const ArmReach reach{shoulder(hand_index()), forward(),
                          kMinExtension * reach_, kMaxExtension * reach_,
-                         kMinBeforeShoulder,     view.robot_hand - facing * view.p_hand_object,
+                         kMinBeforeShoulder,     view.robot_hand - facing() * view.p_hand_object,
                          kMinPalmDistance};
     // The boxes bound the object, but the reach bounds the hand in the neutral wrist configuration.
     MovingOfferSettings of_hand = settings_.moving;
     p_hand_object_ = view.p_hand_object;
-    const Vector3 ahead = facing * p_hand_object_;
+    const Vector3 ahead = facing() * p_hand_object_;
     for (Vector3* corner :
          {&of_hand.start_low, &of_hand.start_high, &of_hand.next_low, &of_hand.next_high})
       *corner -= ahead;
@@ -199,7 +204,7 @@ void PersonModel::offer_in_motion(double dt, const PersonView& view) {
   const double s = min_jerk(phase_time() / kMoveTime);
   if (s >= 1) moving_->step(dt, waits);
   hand_turn_ = Eigen::Quaterniond::Identity().slerp(s, moving_->turn());
-  const Vector3 turned = facing * (p_hand_object_ - hand_turn_ * p_hand_object_);
+  const Vector3 turned = facing() * (p_hand_object_ - hand_turn_ * p_hand_object_);
   hand_target_ = from_ + s * (moving_->position() + turned - from_);
 }
 
@@ -230,8 +235,7 @@ void PersonModel::raise_hand_in_advance(double dt, const PersonView& view) {
   raise_progress_ = std::clamp(raise_progress_ + (is_raised ? dt : -dt) / kRaiseTime, 0.0, 1.0);
   hand_active_ = raise_progress_ > 0;
   if (!hand_active_) side_ = wanted;
-  const Vector3 rest =
-      feet_ + aside_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[hand_index()]];
+  const Vector3 rest = rest_position();
   const Vector3 raised = shoulder(hand_index()) + settings_.stature * (kRaisedAhead * forward() -
                                                                        Vector3(0, 0, kRaisedBelow));
   hand_target_ = rest + min_jerk(raise_progress_) * (raised - rest);

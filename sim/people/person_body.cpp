@@ -87,6 +87,12 @@ Vector3 PersonModel::carry_position() const {
          Vector3(0, 0, 0.05);
 }
 
+/// Returns the position of the handover hand at rest, world [m].
+Vector3 PersonModel::rest_position() const {
+  return feet_ + aside_ +
+         Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[hand_index()]];
+}
+
 Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }
 
 double PersonModel::hand_to_surface(const PersonView& view) const {

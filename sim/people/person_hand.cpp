@@ -17,7 +17,7 @@ GripSettings spring_of(const PersonHandSettings& s) {
 }  // namespace
 
 PersonHand::PersonHand(const PersonHandSettings& settings, const BodyState& start,
-                       const HandShape& shape, btDynamicsWorld& world, int group, int mask)
+                       const HumanHand& shape, btDynamicsWorld& world, int group, int mask)
     : settings_(settings),
       world_(world),
       spring_(spring_of(settings)),

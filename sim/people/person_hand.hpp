@@ -27,7 +27,7 @@ struct PersonHandSettings {
 
 class PersonHand {
  public:
-  PersonHand(const PersonHandSettings&, const BodyState& start, const HandShape&, btDynamicsWorld&,
+  PersonHand(const PersonHandSettings&, const BodyState& start, const HumanHand&, btDynamicsWorld&,
              int group, int mask);
   ~PersonHand();
   PersonHand(const PersonHand&) = delete;
@@ -50,9 +50,9 @@ class PersonHand {
   PersonHandSettings settings_;
   btDynamicsWorld& world_;
   Grip spring_;
-  HandShape shape_;
+  HumanHand shape_;
   std::unique_ptr<btSphereShape> fist_;
-  std::vector<std::unique_ptr<btCapsuleShapeZ>> capsules_;  // in the order of HandShape::parts()
+  std::vector<std::unique_ptr<btCapsuleShapeZ>> capsules_;  // in the order of HumanHand::parts()
   std::unique_ptr<btCompoundShape> open_;                   // of the capsules
   std::unique_ptr<btRigidBody> body_;
 };

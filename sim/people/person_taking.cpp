@@ -1,5 +1,7 @@
 // How a person takes an object from a robot's hand: a place on the object, the configuration of the
 // hand.
+#include <limits>
+
 #include "sim/people/person.hpp"
 #include "sim/people/person_parts.hpp"
 
@@ -13,16 +15,22 @@ constexpr double kLeanStep = 0.01;  // step of the search for a lean [rad]
 
 }  // namespace
 
-HandShape PersonModel::hand_shape(int side) const {
+HumanHand PersonModel::hand_shape(int side) const {
   const double wrist = (template_[kHand[side]] - template_[kWrist[side]]).norm();
   return {side == 0 ? Side::left : Side::right, settings_.stature, wrist};
 }
 
 /// Returns whether the person looks for a place that the robot leaves free. The hands of people
-/// from outside have no orientation, and what a fetcher takes no robot holds. A partner, who gives
-/// the object back, holds the object in a fist.
+/// from outside have no orientation, and what a fetcher takes no robot holds.
 bool PersonModel::chooses_place() const {
-  return settings_.kind == PersonKind::taker && !settings_.recording;
+  return (settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner) &&
+         !settings_.recording;
+}
+
+/// Returns whether the hand stays in its place on the object after the withdrawal: the person gives
+/// the object.
+bool PersonModel::keeps_place() const {
+  return settings_.kind == PersonKind::giver || settings_.kind == PersonKind::partner;
 }
 
 /// Returns the preferred side of an offered object: toward the person and away from the robot's
@@ -37,20 +45,47 @@ Vector3 PersonModel::side_to_take(const PersonView& view) const {
       .normalized();
 }
 
-void PersonModel::choose_place(const PersonView& view) {
-  const auto arm = human_arm(body_, side_);
-  if (!arm) return;
+FreeGraspQuery PersonModel::place_query(const ObjectModel& object, const HumanArm& arm) const {
   static const std::vector<HandPart> kNothing;
   FreeGraspQuery query;
-  query.object = view.object;
-  query.T_world_object = view.T_world_object;
-  query.arm = *arm;
+  query.object = &object;
+  query.arm = arm;
   query.arm.shoulder = upright_shoulder();
   query.forward = forward();
   query.trunk = trunk();
   query.wrist = (template_[kHand[hand_index()]] - template_[kWrist[hand_index()]]).norm();
+  query.robot = &kNothing;
+  return query;
+}
+
+std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
+                                                     const Eigen::Quaterniond& turn) {
+  constexpr double kOutwardWeight = 0.8, kBackWeight = 0.6;  // of the hand's side of the object
+  const auto arm = human_arm(body_, side_);
+  if (!arm) return std::nullopt;
+  FreeGraspQuery query = place_query(object, *arm);
+  query.T_world_object = make_pose(comfortable_reach(body_, side_), facing() * turn);
+  const Vector3 outward = side_ == Side::left ? left() : Vector3(-left());
+  query.preferred = (kOutwardWeight * outward - kBackWeight * forward()).normalized();
+  // The end toward the robot, of an upright object the upper end.
+  const Vector3 away = forward() + Vector3::UnitZ();
+  double max_away = -std::numeric_limits<double>::infinity();
+  for (const Vector3& vertex : object.mesh.vertices) {
+    const Vector3 p = query.T_world_object * vertex;
+    if (p.dot(away) > max_away) max_away = p.dot(away), query.p_left = p;
+  }
+  if (!taking_.hold(query, hand_shape(hand_index()), settings_.taking)) return std::nullopt;
+  const Vector3 p_hand = taking_.goal(query.T_world_object).translation();
+  return make_pose(facing().inverse() * (query.T_world_object.translation() - p_hand), turn);
+}
+
+void PersonModel::choose_place(const PersonView& view) {
+  const auto arm = human_arm(body_, side_);
+  if (!arm) return;
+  FreeGraspQuery query = place_query(*view.object, *arm);
+  query.T_world_object = view.T_world_object;
   query.preferred = side_to_take(view);
-  query.robot = view.robot != nullptr ? view.robot : &kNothing;
+  if (view.robot != nullptr) query.robot = view.robot;
   taking_.choose(query, hand_shape(hand_index()), settings_.taking);
   if (!taking_.has_place()) return;
   const Vector3 fingers =
@@ -92,9 +127,9 @@ double PersonModel::lean_to_take(const PersonView& view) const {
   return nearest;
 }
 
-/// Updates the configuration of the handover hand: a fist, except while the hand takes an object or
-/// moves back without one.
-void PersonModel::update_hand(const PersonView& view) {
+/// Updates the configuration of the handover hand: a fist, except while the hand takes, holds in a
+/// chosen place, or moves back without an object.
+void PersonModel::update_hand(double dt, const PersonView& view) {
   switch (phase_) {
     case PersonPhase::watching:
       bend_ = 0;
@@ -111,14 +146,22 @@ void PersonModel::update_hand(const PersonView& view) {
                                 : closes ? std::min(1.0, phase_time() / kCloseTime)
                                          : 1,
                                 view.T_world_object);
-      bend_ = phase_ == PersonPhase::withdrawing ? 1 - min_jerk(progress_) : 1;
+      bend_ = phase_ == PersonPhase::withdrawing && !keeps_place() ? 1 - min_jerk(progress_) : 1;
       return;
     }
     case PersonPhase::retracting:
-      if (hand_configuration_) hand_configuration_->closures = {};
+      if (hand_configuration_) {
+        for (double& closure : hand_configuration_->closures)
+          closure = std::max(0.0, closure - dt / kCloseTime);
+      }
       bend_ = 1 - min_jerk(phase_time() / duration_);
       return taking_.forget();
     default:
+      if (keeps_place() && taking_.has_place() && wants_grip_ && view.object != nullptr) {
+        hand_configuration_ = taking_.configuration(R_world_rest_, 1, 1, view.T_world_object);
+        bend_ = 1;
+        return;
+      }
       bend_ = 0;
       hand_configuration_.reset();
       taking_.forget();

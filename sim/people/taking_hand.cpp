@@ -13,7 +13,7 @@ constexpr double kTurnedAt = 0.75;  // fraction of a reach at which the hand has
 
 }  // namespace
 
-void TakingHand::choose(const FreeGraspQuery& query, const HandShape& shape,
+void TakingHand::choose(const FreeGraspQuery& query, const HumanHand& shape,
                         const FreeGraspSettings& settings) {
   if (query.arm.side != side_) forget();
   side_ = query.arm.side;
@@ -24,6 +24,14 @@ void TakingHand::choose(const FreeGraspQuery& query, const HandShape& shape,
   search_.reset();
 }
 
+bool TakingHand::hold(const FreeGraspQuery& query, const HumanHand& shape,
+                      const FreeGraspSettings& settings) {
+  side_ = query.arm.side;
+  search_.reset();
+  place_ = find_free_grasp(query, shape, settings);
+  return place_.has_value();
+}
+
 void TakingHand::forget() {
   search_.reset();
   place_.reset();
@@ -31,8 +39,12 @@ void TakingHand::forget() {
 
 Vector3 TakingHand::position_at(const Vector3& from, double s, const Pose& T_world_object) const {
   const Pose T = goal(T_world_object);
-  const Vector3 to = T.translation(), control = to - kControlDistance * T.linear().col(0);
+  const Vector3 to = T.translation(), control = behind(to, Eigen::Quaterniond(T.linear()));
   return (1 - s) * (1 - s) * from + 2 * s * (1 - s) * control + s * s * to;
+}
+
+Vector3 TakingHand::behind(const Vector3& from, const Eigen::Quaterniond& R_world_hand) {
+  return from - kControlDistance * (R_world_hand * Vector3::UnitX());
 }
 
 double TakingHand::turned(double s) { return min_jerk(s / kTurnedAt); }

@@ -1,5 +1,5 @@
-// The hand of a person who takes an object from a robot: the choice of a place on the object, the
-// approach with an open hand, the digits that close. Own method.
+// The hand of a person on an object: the choice of a place, the approach with an open hand, the
+// digits that close. Own method.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace handsel::sim {
 
 /// Orientation and digits of a hand.
 struct HandConfiguration {
-  Eigen::Quaterniond R_world_hand{Eigen::Quaterniond::Identity()};  ///< as in HandShape
+  Eigen::Quaterniond R_world_hand{Eigen::Quaterniond::Identity()};  ///< as in HumanHand
   Closures closures{};                                              ///< of the digits
 };
 
@@ -18,8 +18,11 @@ class TakingHand {
  public:
   /// Continues the choice of a place for the hand of `query.arm`; begins anew after a choice
   /// without a place, or for the other hand.
-  void choose(const FreeGraspQuery& query, const HandShape& shape,
+  void choose(const FreeGraspQuery& query, const HumanHand& shape,
               const FreeGraspSettings& settings);
+  /// Chooses a place at once, for a person who holds the object already; returns whether one
+  /// exists.
+  bool hold(const FreeGraspQuery& query, const HumanHand& shape, const FreeGraspSettings& settings);
   /// Ends the choice and forgets the place.
   void forget();
   /// Returns whether a place is chosen.
@@ -30,6 +33,8 @@ class TakingHand {
   /// Returns the position at the fraction s of a reach from `from` [m], on a curve that ends along
   /// the palm's normal; a place is chosen.
   Vector3 position_at(const Vector3& from, double s, const Pose& T_world_object) const;
+  /// Returns the control point of a curve that leaves `from` [m] against the palm's normal.
+  static Vector3 behind(const Vector3& from, const Eigen::Quaterniond& R_world_hand);
   /// Returns how far the hand has turned toward the orientation in the place, at the fraction s of
   /// a reach, [0, 1].
   static double turned(double s);

@@ -2,16 +2,42 @@
 
 #include <algorithm>
 
+#include "common/model/human/hand_closure.hpp"
 #include "common/model/human/human_body.hpp"
+#include "common/model/object_surface.hpp"
 
 namespace handsel {
 
 namespace {
 
-BodyJoint* joint(Person& person, const char* name) {
+template <typename P>
+auto* joint(P& person, const char* name) {
   const auto it = std::find_if(person.joints.begin(), person.joints.end(),
                                [&](const BodyJoint& j) { return j.name == name; });
   return it == person.joints.end() ? nullptr : &*it;
+}
+
+/// Returns the frame of a hand, as in HumanHand, with the palm toward the object; nullopt: the
+/// fingers point at the object.
+std::optional<Pose> hand_frame(const Vector3& p_wrist, const Vector3& p_hand,
+                               const ObjectModel& object) {
+  constexpr double kStep = 1e-4;      // of the finite differences [m]
+  constexpr double kMinAcross = 0.3;  // min sine of the angle between fingers and surface normal
+  const Vector3 fingers = (p_hand - p_wrist).stableNormalized();
+  Vector3 toward;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 step = kStep * Vector3::Unit(i);
+    toward[i] = surface_distance(object, p_hand - step) - surface_distance(object, p_hand + step);
+  }
+  toward = toward.stableNormalized();
+  const Vector3 palm = toward - toward.dot(fingers) * fingers;
+  if (palm.norm() < kMinAcross) return std::nullopt;
+  Pose T = Pose::Identity();
+  T.linear().col(0) = palm.normalized();
+  T.linear().col(2) = fingers;
+  T.linear().col(1) = fingers.cross(palm.normalized());
+  T.translation() = p_hand;
+  return T;
 }
 
 }  // namespace
@@ -32,6 +58,36 @@ Person with_fingers_bent(const Person& person, const Vector3& p_world_object) {
       fingers = (part.b - hand.position).norm();
   hand.position -= std::min(fingers, 0.5 * palm.norm()) * palm.stableNormalized();
   return bent;
+}
+
+std::vector<HandPart> assumed_digits(const Person& person, const ObjectModel& object,
+                                     const Pose& T_world_object) {
+  const Pose T_object_world = T_world_object.inverse();
+  const auto* left = joint(person, "l_hand");
+  const auto* right = joint(person, "r_hand");
+  if (left == nullptr || right == nullptr) return {};
+  const double left_distance = surface_distance(object, T_object_world * left->position),
+               right_distance = surface_distance(object, T_object_world * right->position);
+  const bool is_left = left_distance < right_distance;
+  const auto* wrist = joint(person, is_left ? "l_wrist" : "r_wrist");
+  if (wrist == nullptr) return {};
+  const Vector3 p_hand = T_object_world * (is_left ? left : right)->position,
+                p_wrist = T_object_world * wrist->position;
+  const auto T_object_hand = hand_frame(p_wrist, p_hand, object);
+  if (!T_object_hand) return {};
+  const HumanHand hand(is_left ? Side::left : Side::right, person.stature,
+                       (p_hand - p_wrist).norm());
+  std::array<std::optional<double>, kDigits> contacts;
+  for (int d = 0; d < kDigits; ++d) {
+    if (const auto contact = first_contact(hand, d, object, *T_object_hand))
+      contacts[d] = contact->closure;
+  }
+  std::vector<HandPart> digits;
+  for (int d = 0; d < kDigits; ++d) {
+    for (const HandPart& part : hand.digit(d, contacts[d].value_or(free_closure(d, contacts))))
+      digits.push_back(transformed(*T_object_hand, part));
+  }
+  return digits;
 }
 
 }  // namespace handsel

@@ -1,7 +1,11 @@
 // The hand of a person that holds something.
 #pragma once
 
+#include <vector>
+
 #include "common/messages/world.hpp"
+#include "common/model/human/human_hand.hpp"
+#include "common/model/object_model.hpp"
 
 namespace handsel {
 
@@ -10,5 +14,11 @@ namespace handsel {
 /// the hand and covers the half of the object that faces the palm. A person without a wrist or a
 /// hand joint is returned unchanged. Own method: stretched fingers would reach through the object.
 Person with_fingers_bent(const Person&, const Vector3& p_world_object);
+
+/// Returns the digits of the nearer hand of a person who holds an object, object frame. Fingers are
+/// not observed: they are assumed along the hand, the palm toward the nearest surface, the digits
+/// closed on the object. Empty: wrist or hand are unknown, or the fingers point at the object.
+/// Own method.
+std::vector<HandPart> assumed_digits(const Person&, const ObjectModel&, const Pose& T_world_object);
 
 }  // namespace handsel

@@ -64,10 +64,12 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
       hand(*chooser.hand_geometry_, given.object, chooser.settings_.support_gap),
       scene(given.scene),
       start{Pose::Identity(), CollisionWorld(*chooser.robot_, chooser.library_)} {
+  const ObjectModel* held_object = nullptr;
   for (const SceneObject& o : scene.objects) {
     if (o.id != inputs.request.object) continue;
     start.T_world_object = o.T_world_object;
     if (o.holder == Holder::human) holder = o.holder_id;
+    if (chooser.library_ && !o.model.empty()) held_object = chooser.library_(o.model);
   }
   const auto prepare = [&](CollisionWorld& world, const Scene& with) {
     world.set_scene(with);
@@ -79,9 +81,12 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
     HumanState around = inputs.people;
     for (Person& p : around.people) {
       if (p.id != holder) continue;
+      const std::vector<HandPart> digits =
+          held_object == nullptr ? std::vector<HandPart>()
+                                 : assumed_digits(p, *held_object, start.T_world_object);
       p = with_fingers_bent(p, start.T_world_object.translation());
       p.inflation += settings().off_fingers;
-      holder_body = body_at_object(p, start.T_world_object);
+      holder_body = body_at_object(p, start.T_world_object, digits);
     }
     start.world.set_people(around);
     for (Person& p : around.people) {

@@ -8,27 +8,37 @@
 
 namespace handsel::grasp_planner {
 
-HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object) {
+namespace {
+
+void add_capsule(HandShape::PlacedHand& body, const HandPart& part) {
+  HandShape::Placed p;
+  p.capsule = true;
+  p.a = part.a;
+  p.b = part.b;
+  p.radius = part.radius;
+  const Vector3 along = p.b - p.a;
+  p.middle = 0.5 * (p.a + p.b);
+  p.bound = 0.5 * along.norm() + p.radius;
+  p.T_frame_shape.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along).toRotationMatrix();
+  p.T_frame_shape.translation() = p.middle;
+  p.shape = CollisionShape::make(Capsule{p.radius, along.norm()});
+  p.core = convex_core(p.shape->shape(), p.T_frame_shape);
+  body.box.extend(Vector3(p.middle.array() - p.bound));
+  body.box.extend(Vector3(p.middle.array() + p.bound));
+  body.solids.push_back(std::move(p));
+}
+
+}  // namespace
+
+HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object,
+                                     const std::vector<HandPart>& digits) {
   HandShape::PlacedHand out;
   const Pose T_object_world = T_world_object.inverse();
-  for (const BodyCapsule& part : body_capsules(person)) {
-    HandShape::Placed p;
-    p.capsule = true;
-    p.a = T_object_world * part.a;
-    p.b = T_object_world * part.b;
-    p.radius = part.radius;
-    const Vector3 along = p.b - p.a;
-    p.middle = 0.5 * (p.a + p.b);
-    p.bound = 0.5 * along.norm() + p.radius;
-    p.T_frame_shape.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along).toRotationMatrix();
-    p.T_frame_shape.translation() = p.middle;
-    p.shape = CollisionShape::make(Capsule{p.radius, along.norm()});
-    p.core = convex_core(p.shape->shape(), p.T_frame_shape);
-    out.box.extend(Vector3(p.middle.array() - p.bound));
-    out.box.extend(Vector3(p.middle.array() + p.bound));
-    out.solids.push_back(std::move(p));
-  }
+  for (const BodyCapsule& part : body_capsules(person))
+    add_capsule(out, {T_object_world * part.a, T_object_world * part.b, part.radius});
+  for (const HandPart& part : digits)
+    add_capsule(out, {part.a, part.b, part.radius + person.inflation});
   return out;
 }
 

@@ -3,14 +3,18 @@
 
 #include <vector>
 
+#include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/human/human_hand.hpp"
 #include "components/grasp_planner/hand/hand_geometry.hpp"
 #include "components/grasp_planner/object/graspable.hpp"
 
 namespace handsel::grasp_planner {
 
-/// Returns the body of a person in the frame of an object at `T_world_object`.
-HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object);
+/// Returns the body of a person in the frame of an object at `T_world_object`. `digits`: of the
+/// hand that holds the object, object frame.
+HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object,
+                                     const std::vector<HandPart>& digits = {});
 
 class HandAtObject {
  public:

@@ -347,6 +347,44 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
   EXPECT_GT(count(none, ChoiceReason::near_giver), 0U);
 }
 
+TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
+  HumanState people;
+  Scene scene = held_out(people);
+  // The palm is beside the lower half of the mug, the fingers lie along its far side.
+  Person& who = people.people.front();
+  const Pose& T_world_object = scene.objects[0].T_world_object;
+  const auto at = [&](const char* joint) -> Vector3& {
+    return who.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
+  };
+  at("r_hand") = T_world_object * Vector3(0.04, 0.07, -0.03);
+  at("r_wrist") = at("r_hand") + Vector3(0.09, 0.0, 0.0);
+  const std::vector<HandPart> digits = assumed_digits(who, *object_model("mug"), T_world_object);
+  ASSERT_EQ(digits.size(), static_cast<std::size_t>(kDigits * kDigitSegments));
+  const Choice c = choose(request(), scene, people);
+  ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
+  // An independent check: balls along the digits are objects of the scene.
+  Scene with_digits = scene;
+  for (const HandPart& part : digits) {
+    for (const Vector3& p : {part.a, part.b}) {
+      SceneObject ball;
+      ball.id = "ball" + std::to_string(with_digits.objects.size());
+      ball.T_world_object = T_world_object * Eigen::Translation3d(p);
+      const double radius = part.radius + ChoiceSettings{}.off_fingers - 0.001;
+      ball.primitive = {PrimitiveKind::sphere, Vector3::Constant(2 * radius)};
+      with_digits.objects.push_back(ball);
+    }
+  }
+  CollisionWorld world(*robot().model, [](const std::string& name) {
+    return name.empty() ? nullptr : object_model(name);
+  });
+  world.set_scene(with_digits);
+  world.set_attachment({}, {scene.objects[0].id});
+  for (const Grasp& g : c.grasps) {
+    for (const Vector* fingers : {&g.hand_joints, &g.pregrasp_joints})
+      EXPECT_TRUE(world.check_scene(posture(g.arm_joints, *fingers)).free) << g.id;
+  }
+}
+
 TEST(HeldOut, grasps_that_touch_who_holds_it_cost_no_inverse_kinematics) {
   HumanState people;
   const Scene scene = held_out(people);

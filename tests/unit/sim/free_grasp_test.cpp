@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/geometry/segments.hpp"
+#include "common/model/human/holding_hand.hpp"
 #include "common/model/human/human_body.hpp"
 #include "common/model/object_surface.hpp"
 #include "sim/people/free_grasp.hpp"
@@ -49,7 +50,7 @@ class FreeGraspTest : public testing::Test {
   ObjectModel object_;
   std::vector<HandPart> robot_;
   FreeGraspQuery query_;
-  HandShape shape_{Side::right, kStature, 0.09};
+  HumanHand shape_{Side::right, kStature, 0.09};
 };
 
 TEST_F(FreeGraspTest, every_object_of_the_library_can_be_held) {
@@ -84,14 +85,66 @@ TEST_F(FreeGraspTest, there_is_none_on_an_object_that_the_robot_covers) {
   EXPECT_FALSE(find_free_grasp(query_, shape_));
 }
 
+TEST_F(FreeGraspTest, a_hand_that_gives_leaves_the_upper_end_free) {
+  query_.preferred = Vector3(-0.6, -0.8, 0);
+  for (const char* name : {"mug", "bottle", "can", "box", "torch", "tube"}) {
+    load(name);
+    double top = -1, bottom = 1;
+    for (const Vector3& vertex : object_.mesh.vertices) {
+      top = std::max(top, vertex.z());
+      bottom = std::min(bottom, vertex.z());
+    }
+    query_.p_left = query_.T_world_object * Vector3(0, 0, top);
+    const auto grasp = find_free_grasp(query_, shape_);
+    ASSERT_TRUE(grasp) << name;
+    EXPECT_LT(grasp->T_object_hand.translation().z(), (top + bottom) / 2 - 0.02) << name;
+    EXPECT_LT(grasp->strain, kComfortableStrain) << name;
+  }
+}
+
+/// What a planner assumes of the digits of a giver, of whom it sees wrist and hand only.
+TEST_F(FreeGraspTest, assumed_digits_are_near_those_of_a_hand_that_gives) {
+  query_.preferred = Vector3(-0.6, -0.8, 0);
+  for (const char* name : {"mug", "bottle", "can", "box", "torch", "tube"}) {
+    load(name);
+    query_.p_left = query_.T_world_object * Vector3(0, 0, 0.1);
+    const auto grasp = find_free_grasp(query_, shape_);
+    ASSERT_TRUE(grasp) << name;
+    const Pose T = query_.T_world_object * grasp->T_object_hand;
+    Person seen = person_;
+    seen.stature = kStature;
+    const auto at = [&](const char* joint) -> Vector3& {
+      return seen.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
+    };
+    at("r_hand") = T.translation();
+    at("r_wrist") = T * Vector3(0, 0, -query_.wrist);
+    const std::vector<HandPart> digits = assumed_digits(seen, object_, query_.T_world_object);
+    ASSERT_EQ(digits.size(), static_cast<std::size_t>(kDigits * kDigitSegments)) << name;
+    // The palm's tilt is not observed: a digit is up to 5 cm from where it is assumed.
+    double max_distance = 0;
+    for (int d = 0; d < kDigits; ++d) {
+      for (const HandPart& part : shape_.digit(d, grasp->closures[d])) {
+        const Vector3 p = grasp->T_object_hand * part.b;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const HandPart& assumed : digits)
+          nearest = std::min(nearest, distance({p, p, part.radius}, assumed) + part.radius * 2);
+        max_distance = std::max(max_distance, nearest);
+      }
+    }
+    std::printf("%s: a digit is %.1f mm from the assumed digits at most\n", name,
+                1e3 * max_distance);
+    EXPECT_LT(max_distance, 0.05) << name;
+  }
+}
+
 TEST_F(FreeGraspTest, there_is_none_out_of_reach) {
   load("mug");
   query_.T_world_object.translation().x() = 1.4;
   EXPECT_FALSE(find_free_grasp(query_, shape_));
 }
 
-TEST(HandShape, a_left_hand_mirrors_a_right_hand) {
-  const HandShape right(Side::right, kStature, 0.09), left(Side::left, kStature, 0.09);
+TEST(HumanHand, a_left_hand_mirrors_a_right_hand) {
+  const HumanHand right(Side::right, kStature, 0.09), left(Side::left, kStature, 0.09);
   const Closures half{0.5, 0.5, 0.5, 0.5, 0.5};
   const auto a = right.parts(half), b = left.parts(half);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -100,8 +153,8 @@ TEST(HandShape, a_left_hand_mirrors_a_right_hand) {
   }
 }
 
-TEST(HandShape, a_closing_digit_is_continuous_and_keeps_its_length) {
-  const HandShape hand(Side::right, kStature, 0.09);
+TEST(HumanHand, a_closing_digit_is_continuous_and_keeps_its_length) {
+  const HumanHand hand(Side::right, kStature, 0.09);
   for (int d = 0; d < kDigits; ++d) {
     auto before = hand.digit(d, 0);
     for (double c = 0.01; c <= 1.0; c += 0.01) {

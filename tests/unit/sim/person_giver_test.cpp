@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "common/model/object_surface.hpp"
 #include "tests/unit/sim/person_fixture.hpp"
 
 namespace handsel::sim {
@@ -44,6 +45,60 @@ TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_rob
   EXPECT_FALSE(person.wants_grip());
   live(person, 2, robot_hand, true);
   EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, who_gives_holds_with_the_digits_opens_them_and_leaves_behind_the_palm) {
+  PersonModel person(giver());
+  const ObjectModel& mug = *library()("mug");
+  const auto T_hand_object = person.hold_from_beginning(mug, Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(T_hand_object);
+  const auto held = [&](bool robot_holds_it) {
+    PersonView view = offer({0.4, 0.3, 1.0});
+    view.robot_hand = {0.4, 0.3, 1.0};
+    view.T_world_object = person.hand().T_world_body * *T_hand_object;
+    view.held_by_robot = view.held_firmly = robot_holds_it;
+    return view;
+  };
+  for (int i = 0; i < 3000; ++i) person.step(0.001, held(false));
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  ASSERT_TRUE(person.hand_configuration());
+  const HandConfiguration holding_hand = *person.hand_configuration();
+  int digits_in_contact = 0;
+  const Pose T_object_world = held(false).T_world_object.inverse();
+  const Pose T_hand =
+      make_pose(person.hand().T_world_body.translation(), holding_hand.R_world_hand);
+  for (int d = 0; d < kDigits; ++d) {
+    double gap = 1;
+    for (const HandPart& part : person.hand_shape(1).digit(d, holding_hand.closures[d]))
+      gap = std::min(gap, surface_distance(mug, transformed(T_object_world * T_hand, part)));
+    EXPECT_GT(gap, -0.006) << d;
+    digits_in_contact += gap < 0.001 ? 1 : 0;
+  }
+  EXPECT_GE(digits_in_contact, 3);
+  const Vector3 wrist = person.body().joints[joint("r_wrist")].position;
+  EXPECT_LT(((T_hand.translation() - wrist).normalized() - T_hand.linear().col(2)).norm(), 0.05)
+      << "the wrist is where the fingers' direction says";
+  // The robot has the mug, the person lets go and leaves.
+  const PersonView taken = held(true);
+  while (person.phase() == PersonPhase::offering) person.step(0.001, taken);
+  ASSERT_EQ(person.phase(), PersonPhase::retracting);
+  auto before = person.hand_configuration()->closures;
+  double before_gap = -1;
+  for (int i = 0; i < 400; ++i) {
+    person.step(0.001, taken);
+    ASSERT_TRUE(person.hand_configuration());
+    const auto& now = person.hand_configuration()->closures;
+    for (int d = 0; d < kDigits; ++d) {
+      ASSERT_LE(now[d], before[d]);
+      ASSERT_LT(before[d] - now[d], 0.01) << "a digit opens in no time";
+    }
+    before = now;
+    const double gap = surface_distance(
+        mug, taken.T_world_object.inverse() * person.hand().T_world_body.translation());
+    ASSERT_GT(gap, before_gap - 1e-4) << "the palm comes back after " << i << " ms";
+    before_gap = gap;
+  }
+  EXPECT_EQ(before, Closures{});
 }
 
 TEST(SimPerson, who_gives_keeps_what_the_robot_only_touches) {

@@ -62,7 +62,7 @@ TEST(SimPerson, takes_only_what_the_robots_hand_leaves_a_place_on) {
   ASSERT_EQ(person.phase(), PersonPhase::pulling);
   EXPECT_TRUE(opened) << "comes with an open hand";
   ASSERT_TRUE(person.hand_configuration());
-  const HandShape shape = person.hand_shape(1);
+  const HumanHand shape = person.hand_shape(1);
   const Pose T = make_pose(person.hand().T_world_body.translation(),
                            person.hand_configuration()->R_world_hand);
   for (const HandPart& part : shape.parts(person.hand_configuration()->closures)) {

@@ -1,9 +1,9 @@
-#include "sim/people/hand_shape.hpp"
+#include "common/model/human/human_hand.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace handsel::sim {
+namespace handsel {
 
 namespace {
 
@@ -34,7 +34,7 @@ const Vector3 kThumbClosed[kDigitSegments] = {Vector3(0.62, 0.20, 0.76), Vector3
 
 }  // namespace
 
-HandShape::HandShape(Side side, double stature, double wrist)
+HumanHand::HumanHand(Side side, double stature, double wrist)
     : scale_(stature / kReferenceStature), mirror_(side == Side::right ? 1.0 : -1.0) {
   const double knuckles = scale_ * kPalmLength - wrist;
   for (int d = 0; d < kDigits; ++d)
@@ -47,7 +47,7 @@ HandShape::HandShape(Side side, double stature, double wrist)
   }
 }
 
-std::array<HandPart, kDigitSegments> HandShape::digit(int digit, double closure) const {
+std::array<HandPart, kDigitSegments> HumanHand::digit(int digit, double closure) const {
   const DigitSize& size = kSizes[digit];
   const double c = std::clamp(closure, 0.0, 1.0);
   std::array<HandPart, kDigitSegments> out;
@@ -69,7 +69,7 @@ std::array<HandPart, kDigitSegments> HandShape::digit(int digit, double closure)
   return out;
 }
 
-std::array<HandPart, kHandParts> HandShape::parts(const Closures& closures) const {
+std::array<HandPart, kHandParts> HumanHand::parts(const Closures& closures) const {
   std::array<HandPart, kHandParts> out;
   auto next = std::copy(palm_.begin(), palm_.end(), out.begin());
   for (int d = 0; d < kDigits; ++d) {
@@ -79,4 +79,4 @@ std::array<HandPart, kHandParts> HandShape::parts(const Closures& closures) cons
   return out;
 }
 
-}  // namespace handsel::sim
+}  // namespace handsel

@@ -8,13 +8,18 @@
 #include "common/geometry/pose.hpp"
 #include "common/messages/side.hpp"
 
-namespace handsel::sim {
+namespace handsel {
 
 /// A capsule.
 struct HandPart {
   Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis [m]
   double radius{};                                 ///< [m]
 };
+
+/// Returns a part in another frame.
+inline HandPart transformed(const Pose& T, const HandPart& part) {
+  return {T * part.a, T * part.b, part.radius};
+}
 
 inline constexpr double kPalmDistance = 0.03;  ///< hand frame's origin to a held object [m]
 inline constexpr int kDigits = 5;              ///< thumb, index, middle, ring and little finger
@@ -27,10 +32,10 @@ using Closures = std::array<double, kDigits>;
 
 /// Parts in the hand frame: origin in the middle of the palm, x out of the palm, z along the
 /// straight fingers; the thumb of a right hand is at +y.
-class HandShape {
+class HumanHand {
  public:
   /// `stature`: of the person [m], > 0. `wrist`: distance from the wrist to the origin [m].
-  HandShape(Side side, double stature, double wrist);
+  HumanHand(Side side, double stature, double wrist);
 
   /// Returns the parts of the palm.
   const std::array<HandPart, kPalmParts>& palm() const { return palm_; }
@@ -46,4 +51,4 @@ class HandShape {
   std::array<HandPart, kPalmParts> palm_;
 };
 
-}  // namespace handsel::sim
+}  // namespace handsel
