@@ -130,6 +130,7 @@ ChoiceSettings choice_settings(const settings::GraspPlannerSettings& t) {
   s.rank_away = t.rank_away;
   s.rank_stands = t.rank_stands;
   s.off_fingers = t.off_fingers;
+  s.off_digits = t.off_digits;
   s.off_giver = t.off_giver;
   s.rank_drive = t.rank_drive;
   s.platform_room = t.platform_room;

@@ -18,7 +18,10 @@ constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fing
 constexpr double kMinLength = 0.12;              // min extent held off the middle [m]
 constexpr double kMinLengthToGive = 0.07;        // same, of a person who gives [m]
 constexpr double kOffMiddle = 0.32;              // such a place, divided by the extent
+constexpr double kOffMiddleToGive = 0.45;        // same, of a person who gives
+constexpr double kMaxOffMiddle = 0.10;           // max distance of such a place from the middle [m]
 constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
+constexpr int kGivingChoices = 200;              // usable places from which a giver chooses
 constexpr int kApproachSteps = 4;                // poses tested before the grasp
 constexpr double kPalmOverlap = 0.003;           // flesh that gives way to the object [m]
 constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
@@ -42,12 +45,14 @@ std::vector<Vector3> anchors(const FreeGraspQuery& query) {
   Eigen::AlignedBox3d box;
   for (const Vector3& vertex : query.object->mesh.vertices) box.extend(vertex);
   std::vector<Vector3> out{query.T_world_object * query.object->com};
+  const double off_middle = query.p_left ? kOffMiddleToGive : kOffMiddle;
+  const double min_length = query.p_left ? kMinLengthToGive : kMinLength;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = box.sizes()[axis];
-    if (length < (query.p_left ? kMinLengthToGive : kMinLength)) continue;
+    if (length < min_length) continue;
     for (const double side : {-1.0, 1.0}) {
       Vector3 p = query.object->com;
-      p[axis] = box.center()[axis] + side * kOffMiddle * length;
+      p[axis] = box.center()[axis] + side * std::min(off_middle * length, kMaxOffMiddle);
       out.push_back(query.T_world_object * p);
     }
   }
@@ -78,9 +83,38 @@ bool FreeGraspSearch::advance() {
     next_ = 0;
     return false;
   }
-  for (int i = 0; i < kTests && next_ < candidates_.size() && !found_; ++i)
-    found_ = test(candidates_[next_++]);
-  return over_ = found_ || next_ == candidates_.size();
+  for (int i = 0; i < kTests && !over_; ++i) {
+    if (next_ < candidates_.size()) consider(candidates_[next_++]);
+    over_ = next_ == candidates_.size() || usable_ == (query_.p_left ? kGivingChoices : 1);
+  }
+  return over_;
+}
+
+/// Keeps a candidate that is usable and better than those before.
+void FreeGraspSearch::consider(const Candidate& candidate) {
+  const auto grasp = test(candidate);
+  if (!grasp) return;
+  ++usable_;
+  const double cost = candidate.cost + settings_.room_preference * covered(*grasp);
+  if (found_ && cost >= min_cost_) return;
+  found_ = grasp;
+  min_cost_ = cost;
+}
+
+/// Returns up to where the hand covers the object, from the end that is held, 0, to the point that
+/// is left to a receiver, 1; 0 without such a point.
+double FreeGraspSearch::covered(const FreeGrasp& grasp) const {
+  if (!query_.p_left) return 0;
+  const Vector3 left = T_object_world_ * *query_.p_left;
+  const Vector3 axis = (left - query_.object->com).stableNormalized();
+  double held = 0, hand = -std::numeric_limits<double>::infinity();
+  for (const Vector3& vertex : query_.object->mesh.vertices)
+    held = std::min(held, (vertex - left).dot(axis));
+  for (const HandPart& part : shape_.parts(grasp.closures)) {
+    for (const Vector3& end : {part.a, part.b})
+      hand = std::max(hand, (grasp.T_object_hand * end - left).dot(axis) + part.radius);
+  }
+  return held < 0 ? std::clamp(1 - hand / held, 0.0, 1.0) : 0;
 }
 
 double FreeGraspSearch::distance(const Vector3& p_world) const {

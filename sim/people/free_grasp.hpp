@@ -1,6 +1,6 @@
-// Where a person can hold an object that a robot holds: palm and digits fit around the object and
-// leave the robot's hand free. Own method: hand poses about the object, ordered by the strain of
-// the person's arm, are tested with the digits closed to contact.
+// Where a person can hold an object: palm and digits fit around the object and keep off a robot that
+// holds the object, or leave room to a robot that takes the object. Own method: hand poses about the
+// object, ordered by the strain of the person's arm, are tested with the digits closed to contact.
 #pragma once
 
 #include <optional>
@@ -71,7 +71,9 @@ class FreeGraspSearch {
   void add_about(const Vector3& anchor, const Vector3& direction);
   void add(const Vector3& start, const Vector3& direction, const Vector3& fingers, double tilt);
   HumanArm leaning_to(const Vector3& p_wrist) const;
+  void consider(const Candidate& candidate);
   std::optional<FreeGrasp> test(const Candidate& candidate) const;
+  double covered(const FreeGrasp& grasp) const;
   bool can_close(const Pose& T_world_hand, int digit, double closure) const;
   bool can_come(const Pose& T_world_hand) const;
 
@@ -84,6 +86,8 @@ class FreeGraspSearch {
   std::size_t next_{0};  // pair of anchor and direction, then candidate, that comes next
   std::vector<Candidate> candidates_;
   bool ordered_{false}, over_{false};
+  int usable_{0};       // number of usable candidates so far
+  double min_cost_{0};  // of found_
   std::optional<FreeGrasp> found_;
 };
 

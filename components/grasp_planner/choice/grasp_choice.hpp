@@ -35,6 +35,7 @@ struct ChoiceSettings {
   double rank_away{0.6};      ///< the hand stays on the robot's side of what a person holds
   double rank_stands{1.0};    ///< from a person's hand: it can be put down in this grasp
   double off_fingers{0.01};   ///< kept between the robot and the hands of the giver [m]
+  double off_digits{0.02};    ///< same, the digits assumed around the object [m]
   /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
   /// it only creep [m].
   double off_giver{0.12};

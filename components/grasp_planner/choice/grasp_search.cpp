@@ -81,9 +81,9 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
     HumanState around = inputs.people;
     for (Person& p : around.people) {
       if (p.id != holder) continue;
-      const std::vector<HandPart> digits =
-          held_object == nullptr ? std::vector<HandPart>()
-                                 : assumed_digits(p, *held_object, start.T_world_object);
+      std::vector<HandPart> digits;
+      if (held_object != nullptr) digits = assumed_digits(p, *held_object, start.T_world_object);
+      for (HandPart& part : digits) part.radius += p.inflation + settings().off_digits;
       p = with_fingers_bent(p, start.T_world_object.translation());
       p.inflation += settings().off_fingers;
       holder_body = body_at_object(p, start.T_world_object, digits);

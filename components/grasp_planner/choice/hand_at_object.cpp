@@ -37,8 +37,7 @@ HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_o
   const Pose T_object_world = T_world_object.inverse();
   for (const BodyCapsule& part : body_capsules(person))
     add_capsule(out, {T_object_world * part.a, T_object_world * part.b, part.radius});
-  for (const HandPart& part : digits)
-    add_capsule(out, {part.a, part.b, part.radius + person.inflation});
+  for (const HandPart& part : digits) add_capsule(out, part);
   return out;
 }
 
