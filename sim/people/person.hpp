@@ -216,7 +216,7 @@ class PersonModel {
   void choose_place(const PersonView&);
   Vector3 side_to_take(const PersonView&) const;
   FreeGraspQuery place_query(const ObjectModel&, const HumanArm&) const;
-  bool keeps_place() const;
+  bool gives_from_place() const;
   double lean_to_reach(const Vector3& p_hand) const;
   double lean_to_take(const PersonView&) const;
   double trunk() const;

@@ -21,16 +21,10 @@ HumanHand PersonModel::hand_shape(int side) const {
 }
 
 /// Returns whether the person looks for a place that the robot leaves free. The hands of people
-/// from outside have no orientation, and what a fetcher takes no robot holds.
+/// from outside have no orientation, and what a fetcher takes no robot holds. A partner, who gives
+/// the object back, holds the object in a fist.
 bool PersonModel::chooses_place() const {
-  return (settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner) &&
-         !settings_.recording;
-}
-
-/// Returns whether the hand stays in its place on the object after the withdrawal: the person gives
-/// the object.
-bool PersonModel::keeps_place() const {
-  return settings_.kind == PersonKind::giver || settings_.kind == PersonKind::partner;
+  return settings_.kind == PersonKind::taker && !settings_.recording;
 }
 
 /// Returns the preferred side of an offered object: toward the person and away from the robot's
@@ -58,11 +52,16 @@ FreeGraspQuery PersonModel::place_query(const ObjectModel& object, const HumanAr
   return query;
 }
 
+/// Returns whether the hand holds an object that the person gives in a chosen place.
+bool PersonModel::gives_from_place() const {
+  return settings_.kind == PersonKind::giver && wants_grip_ && taking_.has_place();
+}
+
 std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
                                                      const Eigen::Quaterniond& turn) {
   constexpr double kOutwardWeight = 0.8, kBackWeight = 0.6;  // of the hand's side of the object
   const auto arm = human_arm(body_, side_);
-  if (!arm) return std::nullopt;
+  if (!arm || settings_.kind != PersonKind::giver) return std::nullopt;
   FreeGraspQuery query = place_query(object, *arm);
   query.T_world_object = make_pose(comfortable_reach(body_, side_), facing() * turn);
   const Vector3 outward = side_ == Side::left ? left() : Vector3(-left());
@@ -146,7 +145,7 @@ void PersonModel::update_hand(double dt, const PersonView& view) {
                                 : closes ? std::min(1.0, phase_time() / kCloseTime)
                                          : 1,
                                 view.T_world_object);
-      bend_ = phase_ == PersonPhase::withdrawing && !keeps_place() ? 1 - min_jerk(progress_) : 1;
+      bend_ = phase_ == PersonPhase::withdrawing ? 1 - min_jerk(progress_) : 1;
       return;
     }
     case PersonPhase::retracting:
@@ -157,7 +156,7 @@ void PersonModel::update_hand(double dt, const PersonView& view) {
       bend_ = 1 - min_jerk(phase_time() / duration_);
       return taking_.forget();
     default:
-      if (keeps_place() && taking_.has_place() && wants_grip_ && view.object != nullptr) {
+      if (gives_from_place() && view.object != nullptr) {
         hand_configuration_ = taking_.configuration(R_world_rest_, 1, 1, view.T_world_object);
         bend_ = 1;
         return;
