@@ -19,7 +19,7 @@ constexpr double kMinLength = 0.12;              // min extent held off the midd
 constexpr double kMinLengthToGive = 0.07;        // same, of a person who gives [m]
 constexpr double kOffMiddle = 0.32;              // such a place, divided by the extent
 constexpr double kOffMiddleToGive = 0.45;        // same, of a person who gives
-constexpr double kMaxOffMiddle = 0.10;           // max distance of such a place from the middle [m]
+constexpr double kMaxOffMiddleToGive = 0.10;     // max distance of such a place [m]
 constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
 constexpr int kGivingChoices = 200;              // usable places from which a giver chooses
 constexpr int kApproachSteps = 4;                // poses tested before the grasp
@@ -45,14 +45,17 @@ std::vector<Vector3> anchors(const FreeGraspQuery& query) {
   Eigen::AlignedBox3d box;
   for (const Vector3& vertex : query.object->mesh.vertices) box.extend(vertex);
   std::vector<Vector3> out{query.T_world_object * query.object->com};
-  const double off_middle = query.p_left ? kOffMiddleToGive : kOffMiddle;
   const double min_length = query.p_left ? kMinLengthToGive : kMinLength;
+  const auto off_middle = [&](double length) {
+    return query.p_left ? std::min(kOffMiddleToGive * length, kMaxOffMiddleToGive)
+                        : kOffMiddle * length;
+  };
   for (int axis = 0; axis < 3; ++axis) {
     const double length = box.sizes()[axis];
     if (length < min_length) continue;
     for (const double side : {-1.0, 1.0}) {
       Vector3 p = query.object->com;
-      p[axis] = box.center()[axis] + side * std::min(off_middle * length, kMaxOffMiddle);
+      p[axis] = box.center()[axis] + side * off_middle(length);
       out.push_back(query.T_world_object * p);
     }
   }

@@ -104,8 +104,8 @@ Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& 
   arm = Eigen::AngleAxisd(std::clamp(turn, -kMaxOfferTurn, kMaxOfferTurn), Vector3::UnitZ()) * arm;
   const double shortfall = kMinHandDistance - (to_hand - arm).norm();
   if (shortfall > 0) arm.head<2>() *= std::max(0.0, 1 - shortfall / arm.head<2>().norm());
-  // An object at the side of the hand is held out as far as an object before the hand, and straight
-  // ahead.
+  // An object beside the hand is offered as far from the body as an object in front of the hand,
+  // and straight ahead.
   const Vector3 held = facing() * view.p_hand_object;
   if (taking_.has_place())
     arm +=

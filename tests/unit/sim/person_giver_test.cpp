@@ -17,7 +17,7 @@ PersonSettings giver() {
   return settings;
 }
 
-/// What a giver sees while it holds the mug: it goes with the hand.
+/// What a giver sees while the mug moves with the hand.
 PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool robot_holds_it) {
   PersonView view = offer(person.hand().T_world_body * Vector3(0.08, 0, 0));
   view.robot_hand = robot_hand;
