@@ -167,11 +167,21 @@ void HolderAssignment::assign(ObjectTrack& track) const {
     return;
   }
   if (is_in_closed_hand(track)) return;
+  const ObjectModel* model = in_.library ? in_.library(object.model) : nullptr;
+  const Eigen::AlignedBox3d box = object_extent(model, object.primitive);
+  // A hand at the end of a long object is far from the origin, but near to the box.
+  const auto distance_of = [&](const Vector3& p_hand) {
+    const double from_origin = (p_hand - p_world).norm();
+    if (box.isEmpty()) return from_origin;
+    const double from_box = box.exteriorDistance(object.T_world_object.inverse() * p_hand);
+    return std::min(from_origin,
+                    from_box + in_.settings.near_distance - in_.settings.holding_distance);
+  };
   double min_distance = in_.settings.near_distance;
   for (const auto& person : in_.people.people) {
     if (!object.grips.empty()) break;  // nobody grips it
     for (const char* hand : {"l_hand", "r_hand"}) {
-      const double distance = (joint_of(person, hand).position - p_world).norm();
+      const double distance = distance_of(joint_of(person, hand).position);
       if (distance > min_distance) continue;
       min_distance = distance;
       object.holder = Holder::human;

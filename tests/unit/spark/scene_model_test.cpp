@@ -215,6 +215,21 @@ TEST_F(SceneObjects, in_a_hand_that_holds_it_on_a_table_it_is_held_until_the_han
   EXPECT_EQ(holder(0.3, 0.74), Holder::surface);
 }
 
+TEST_F(SceneObjects, a_hand_at_the_end_of_a_long_object_holds_the_object) {
+  people_.people = {person_at({1.6, 0, 0})};
+  const Vector3 p_object(0.7, 0, 1.2);
+  const auto holder = [&](double t, const Vector3& from_object) {
+    for (BodyJoint& joint : people_.people[0].joints)
+      if (joint.name == "r_hand") joint.position = p_object + from_object;
+    see(t, {unknown("pole", p_object, PrimitiveKind::box, {0.05, 0.05, 0.5})});
+    return find(wait(t, t), "pole")->holder;
+  };
+  EXPECT_EQ(holder(0.0, {0.05, 0, -0.24}), Holder::human);
+  EXPECT_EQ(holder(0.1, {0.20, 0, -0.24}), Holder::nobody) << "the hand has left";
+  EXPECT_EQ(holder(0.2, {0.20, 0, 0.00}), Holder::nobody) << "beside the middle";
+  EXPECT_EQ(holder(0.3, {0.10, 0, 0.00}), Holder::human);
+}
+
 TEST_F(SceneObjects, in_a_hand_it_is_where_it_was_seen_and_on_a_table_the_average_counts) {
   people_.people = {person_at({1.5, 0, 0})};
   Vector3 p_hand;
