@@ -254,14 +254,16 @@ void PersonModel::step_aside(double dt) {
   aside_ = home_aside_ + min_jerk(sidestep_time_ / duration) * settings_.behaviour.sidestep;
 }
 
-/// Returns the min height of a holding hand at this position, world [m].
+/// Returns the min height of a holding hand at this position, world [m]. A hand is lifted over
+/// furniture lower than the shoulder only: a tall shelf is passed at its side.
 double PersonModel::height_above_furniture(const Vector3& hand) const {
   double min_height = -std::numeric_limits<double>::infinity();
+  const double shoulder_height = shoulder(hand_index()).z();
   for (const Furniture& box : settings_.furniture) {
     const Vector3 p = box.T_world_box.inverse() * hand, half = box.size / 2;
     const double up = (box.T_world_box.linear().row(2).transpose().cwiseAbs()).dot(half),
                  z = box.T_world_box.translation().z();
-    if (hand.z() < z - up) continue;  // the box is above the hand
+    if (hand.z() < z - up || z + up > shoulder_height) continue;
     const double beside = (p.cwiseAbs() - half).cwiseMax(0).head<2>().norm();
     const double above = std::max(kAboveFurniture, held_below_ + kObjectAboveFurniture);
     min_height = std::max(min_height, z + up + above - std::max(0.0, beside - kBesideFurniture));

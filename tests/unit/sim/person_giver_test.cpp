@@ -215,8 +215,9 @@ TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
   EXPECT_LT(where.z(), 0.8);
   const Furniture table{make_pose({where.x() - 0.2, where.y(), 0.36}), {0.5, 0.5, 0.72}},
       far{make_pose({where.x() - 5, 0, 0.36}), {1, 1, 2}},
-      shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}};
-  settings.furniture = {far, shelf};
+      shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}},
+      beside{make_pose({where.x(), where.y() + 0.6, 0.8}), {0.8, 0.3, 1.6}};
+  settings.furniture = {far, shelf, beside};
   PersonModel same(settings);
   EXPECT_EQ(same.hand().T_world_body.translation(), where);
   settings.furniture.push_back(table);
