@@ -19,6 +19,8 @@ namespace handsel::sim {
 
 class Node {
  public:
+  /// Starts the world of the scenario; `bus` must outlive this. Throws ConfigError, also without a
+  /// scenario.
   Node(Bus& bus, const NodeContext& context);
 
  private:

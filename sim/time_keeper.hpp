@@ -23,14 +23,15 @@ class TimeKeeper {
   explicit TimeKeeper(const SimSettings& settings);
 
   /// Records a component's answer to a grant. From the first answer on the steps wait for the
-  /// component.
+  /// component. `process`: incarnation of its process.
   void answered(const std::string& component, std::uint64_t process, std::uint64_t grant);
   /// Once a step has been delayed by 50 ms, calls `runs` for each component's process, and no
   /// longer waits for processes that do not run.
   void leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs);
   /// Sets the wall time before the steps of one tick; the first call starts the time of the system.
   void turn(TimePoint wall);
-  /// Returns whether the next step may be made. `has_setpoint`: its set-point has arrived.
+  /// Returns whether the next step may be made; makes the next grant when a clock period has ended.
+  /// `has_setpoint`: its set-point has arrived; used only where takes_setpoint().
   bool may_step(bool has_setpoint);
   /// Returns whether the next step takes a set-point: the controller sends one every few steps.
   bool takes_setpoint() const { return steps_ % per_setpoint_ == 0; }
@@ -38,7 +39,7 @@ class TimeKeeper {
   /// Returns the number of the newest grant, from 1.
   std::uint64_t grant_number() const { return grant_; }
   /// Returns the newest grant: components may advance their time to the end of the clock period
-  /// after the present one.
+  /// after the present one. The caller fills in `incarnation`.
   TimeGrant grant() const;
   /// Returns the time of the next step.
   TimePoint time() const { return start_ + period_ * static_cast<std::int64_t>(steps_); }

@@ -1,5 +1,5 @@
 // Requests of several clients and the answers to them: a repeated request is harmless, a client may
-// cancel, and both lists are bounded. No I/O, no clock.
+// cancel, and all lists are bounded. No I/O, no clock, no locks.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,15 @@ namespace handsel {
 struct RequestLimits {
   std::size_t open{64};        ///< requests that are admitted and not answered
   std::size_t remembered{64};  ///< answers kept for a client that asks again
-  /// Clients whose numbers are remembered; the least recent one is forgotten.
+  /// Clients whose newest and cancelled numbers are remembered. A superseded or cancelled request
+  /// of a forgotten client counts as fresh.
   std::size_t clients{64};
 };
 
 /// What a newer request of a client means for its older ones.
 enum class OlderRequests {
   keep,       ///< each is answered
-  supersede,  ///< a newer one replaces them
+  supersede,  ///< void, see superseded(); those that are open stay so until close()
 };
 
 /// Open requests and kept replies. `Reply::id` has the fields `client` and `number`; the numbers of
@@ -43,7 +44,7 @@ class RequestQueue {
     full,        ///< the limit of open requests is reached: to be refused
   };
   /// Registers a request and returns what to do with it; only `fresh` opens it. May forget the
-  /// client that asked least recently.
+  /// client whose last request or cancellation is oldest; `answered` and `under_way` do not count.
   Admission admit(const Id& id) {
     if (answer(id) != nullptr) return Admission::answered;
     if (std::find(open_.begin(), open_.end(), id) != open_.end()) return Admission::under_way;
@@ -63,7 +64,8 @@ class RequestQueue {
     return older_ == OlderRequests::supersede && client != clients_.end() &&
            client->newest > id.number;
   }
-  /// Marks this request and all older ones of the client as cancelled. Returns those that are open.
+  /// Marks this request and all older ones of the client as cancelled. Returns those that are open;
+  /// they stay open until close(). May forget another client, as admit().
   std::vector<Id> cancel(const Id& id) {
     Client& client = client_of(id);
     client.cancelled = std::max(client.cancelled, id.number);

@@ -12,8 +12,8 @@ namespace handsel {
 
 class Intake;
 
-/// Counts by name. Names beyond the bound of ComponentHealth.left_out are counted together as
-/// "other".
+/// Counts by cause since construction. 23 causes have counts of their own, later ones are counted
+/// together as "other".
 class LeftOutCounts {
  public:
   /// Adds to the count of this cause; nothing for 0.
@@ -25,7 +25,8 @@ class LeftOutCounts {
   std::map<std::string, std::uint64_t> counts_;
 };
 
-/// Appends what a subscription has left out of its samples, if anything and if there is room.
+/// Appends the number of malformed list elements removed from the valid samples of a subscription;
+/// nothing for 0 or when `counts` already has the 32 entries of ComponentHealth.left_out.
 void add_left_out(const Intake& intake, std::vector<NamedCount>& counts);
 
 }  // namespace handsel

@@ -10,8 +10,8 @@ namespace handsel {
 
 /// How far components may let their time advance.
 struct TimeGrant {
-  std::uint64_t incarnation{};  ///< of the simulator
-  TimePoint until{};            ///< no component's time passes this instant
+  std::uint64_t incarnation{};  ///< random number of the simulator, new at each of its starts
+  TimePoint until{};            ///< instant of simulated time that no component's time passes
   Duration waited{};            ///< total time the clock was halted since the simulator started
 };
 
@@ -27,9 +27,11 @@ class PacedClock {
   bool grant(const TimeGrant& grant, TimePoint wall);
   /// Returns the time at `wall`; results never decrease after the first grant.
   TimePoint at(TimePoint wall);
-  /// Returns the time at a `wall` since the grant before the last one, at most the last at().
+  /// Converts an earlier `wall`, e.g. an arrival, to this clock's time, at most the last at().
+  /// Exact back to the arrival of the grant before the newest.
   TimePoint past(TimePoint wall) const;
-  /// Returns whether the newest grant is so old that how far time has advanced is not known.
+  /// Returns whether the newest grant ended more than 50 ms before `wall`: at() has stopped, and
+  /// how far time has advanced is not known.
   bool stale(TimePoint wall) const;
   /// Returns the wall time at which to check for `instant` again: when it is reached, or 20 ms
   /// after `wall` while it is not granted.

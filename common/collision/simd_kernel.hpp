@@ -1,6 +1,7 @@
 // Sixteen states of a robot side by side: forward kinematics, then the spheres around its links
-// against solids and against each other. Plain data in the frame of the robot's root, single
-// precision; the rounding must be added to the radii. Written once for any register width,
+// against solids and against each other. Plain data, lengths in metres: spheres in the frame of
+// their body, solids in that of the root. Single precision: the caller adds its rounding to the
+// radii, as BatchWorld does. Written once for any register width,
 // chosen when the program runs; free of Eigen, whose alignment depends on the width. Nothing here
 // allocates, locks or throws.
 #pragma once
@@ -15,20 +16,20 @@ constexpr int kBatchStates = 16;
 /// rows; z is the axis.
 struct SimdJoint {
   float T[12];
-  std::int32_t parent;  // body
-  std::int32_t row;     // of the positions
-  float factor, offset;
-  std::int32_t slides;
+  std::int32_t parent;   // body
+  std::int32_t row;      // of the positions, >= 0: fixed joints are none
+  float factor, offset;  // joint value = factor * position + offset [rad] or [m]
+  std::int32_t slides;   // 1: along z; 0: turns about z
 };
 
-/// A sphere that moves with a body; everything its children cover is inside.
+/// A sphere in the frame of the body it moves with [m]; everything its children cover is inside.
 struct SimdNode {
   float x, y, z, radius;
   std::int32_t first_child, children, body, reserved;
 };
 
-/// A box (or segment, or point) with rounded edges, or a cylinder when `cylinder` > 0: axes of the
-/// shape by rows, then their products with its centre.
+/// A rounded box, segment or point, or for `cylinder` > 0 a cylinder of this radius about its third
+/// axis, half[2] its half length [m]. Root frame: axes by rows, `at`: products with the centre.
 struct SimdSolid {
   float axes[9], at[3], half[3], radius, cylinder;
 };
@@ -40,14 +41,15 @@ struct SimdSolids {
       radius[kBatchStates];
 };
 
-/// Spheres that must stay clear of solids: below `root`, in the trees of `nodes` (all when there
-/// are none). `first_row`: the same solids in rows of sixteen; -1: not there.
+/// Spheres that must stay clear of solids: the tree under node `root`; for `nodes` > 0 only the
+/// subtrees under node_list[first_node] and on, against the solids that the sphere of `root` meets.
+/// `first_row`: first of solid_rows with the same solids; -1: none.
 struct SimdSearch {
   std::int32_t root, first_node, nodes, first_solid, solids, first_row;
 };
 
-/// Trees that must stay clear of each other: below the roots a and b, the pairs of nodes. `reach`:
-/// row of pair_reach.
+/// Trees that must stay clear of each other: below the roots a and b, the pairs of nodes from
+/// node_pairs[first] on. The row of a pair in pair_reach is its index in `pairs`.
 struct SimdPair {
   std::int32_t a, b, first, pairs;
 };
@@ -72,7 +74,9 @@ struct SimdTables {
 };
 
 /// Memory for one check at a time; on 64 bytes. Sizes in floats: pose 12 x bodies x kBatchStates,
-/// margin bodies x kBatchStates, position 3 x nodes x kBatchStates. stamp: one a node.
+/// margin bodies x kBatchStates (how far `half` moves a body [m]), position 3 x nodes x
+/// kBatchStates (centres, root frame [m]). stamp: one a node, the `now` at which its
+/// position was computed. The kernels count `now` up; the owner clears stamps before it overflows.
 struct SimdMemory {
   float *pose, *margin, *position;
   std::uint32_t* stamp;
@@ -80,10 +84,11 @@ struct SimdMemory {
   std::int32_t* lists;  // room for solid lists: kMaxTreeDepth x the longest list
   std::int32_t max_list_size;
 };
-constexpr int kMaxTreeDepth = 12;
+constexpr int kMaxTreeDepth = 12;  ///< depth at which `check` takes the nodes of a tree as leaves
 
-/// Capsules of one body of bones: 16 side by side; those that are not there are a thousand
-/// kilometres away.
+/// Sixteen capsules of people side by side, in any frame shared with the robot's [m]: axis a to
+/// a + d, middle m; dd = d.d, over_dd = 1 / dd (0 for a ball), `reach`: radius of the ball about m
+/// around the capsule. Those that are not there are a thousand kilometres away.
 struct SimdCapsules {
   alignas(64) float ax[16], ay[16], az[16], dx[16], dy[16], dz[16], dd[16], over_dd[16], radius[16],
       reach[16], mx[16], my[16], mz[16];

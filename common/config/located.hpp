@@ -38,10 +38,11 @@ class TextPlace {
   std::string path_;                                ///< of this message: "behaviours[2]"
 };
 
-/// Reads a text as load_text_proto() does, without default values and overlays.
+/// Reads a text as load_text_proto() does, without default values and overlays. Throws ConfigError.
 void parse_strict(const std::string& text, const std::string& name, google::protobuf::Message& out,
                   google::protobuf::TextFormat::ParseInfoTree& places);
-/// Strict, as load_text_proto(), without overlays; `name` stands for the file in errors.
+/// Reads a text as load_text_proto() does, with default values, without overlays; `name` stands for
+/// the file in errors. Throws ConfigError.
 void parse_text_proto(const std::string& text, const std::string& name,
                       google::protobuf::Message& out,
                       google::protobuf::TextFormat::ParseInfoTree& places);

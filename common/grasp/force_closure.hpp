@@ -15,7 +15,7 @@ using WrenchMatrix = Eigen::MatrixXd;
 /// A contact: where, and the unit normal pointing into the object. A patch also resists turning
 /// about the normal.
 struct PointContact {
-  Vector3 position{Vector3::Zero()};        ///< [m]
+  Vector3 position{Vector3::Zero()};        ///< [m], in a frame that all contacts share
   Vector3 inward_normal{Vector3::UnitZ()};  ///< unit vector into the object
   double friction{0.5};                     ///< Coulomb coefficient
   /// Torque about the normal per normal force [m]; 0: a point (hard finger).
@@ -23,7 +23,8 @@ struct PointContact {
 };
 
 /// The edges of the linearised friction cones: n + mu (cos a t1 + sin a t2), t1 = n x ex (n x ey
-/// when |n.x| >= 0.9), normalised, t2 = n x t1; the torque is about `centre` times `torque_scale`.
+/// when |n.x| >= 0.9), normalised, t2 = n x t1, a = 2 pi k / edges; the torque is about `centre`
+/// [m] times `torque_scale` [1/m].
 /// A patch adds two: n with the torque +-torsion n.
 WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges,
                               const Vector3& centre, double torque_scale);

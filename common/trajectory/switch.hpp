@@ -23,8 +23,8 @@ enum class SwitchOutcome {
   start_beyond_limits,  ///< the present state cannot be left inside the limits
   /// Nowhere in the window can the new trajectory be joined inside the limits.
   nowhere,
-  too_long,  ///< more segments than there is room for
-  not_now,   ///< the speed factor is changing too fast for it; a later step may do
+  too_long,  ///< more segments than a TimeScaling has room for; never of plan()
+  not_now,   ///< of TimeScaling only: its speed factor changes too fast; a later cycle may do
 };
 /// Returns the cause of a failure as a sentence without full stop, "" for ok.
 const char* reason(SwitchOutcome) noexcept;
@@ -36,13 +36,14 @@ struct SwitchSettings {
   /// The new trajectory runs already, its time is 0 now: it is met where it then is, as early as
   /// possible. After its end it is at rest there. `last` is not used.
   bool on_clock{};
-  /// The connecting motion keeps the limits / reserve; up to the limits where the start needs it.
+  /// The connecting motion keeps limits / reserve, >= 1; where that fails, limits / sqrt(reserve),
+  /// then the limits.
   double reserve{1.1};
   int tries{24};  ///< places tried before the best is refined
 };
 
-/// But for rounding: nothing need lead from one to the other. (The fastest motion between states in
-/// motion that differ by a little is as likely as not a loop of a second.)
+/// Returns whether the states differ by rounding only, at most 1e-11 in each value: no connecting
+/// motion is needed. (Between states that differ by a little it may be a loop of a second.)
 bool same_motion(const MotionState3&, const MotionState3&) noexcept;
 
 /// For a cycle: allocates at construction only.
@@ -92,8 +93,8 @@ class TrajectorySwitch {
 AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits,
                         AxisProfile& out) noexcept;
 
-/// The rows of `from` in [begin, its end], or up to `end`, added to `out`. No allocation within the
-/// room of `out`.
+/// Adds the part of `from` from `begin` to `end` [s] to `out`; a row that is cut starts with the
+/// state there. `state`: scratch memory for all axes. No allocation within the room of `out`.
 void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out,
               MotionState3& state) noexcept;
 

@@ -42,12 +42,12 @@ struct WorkSettings {
 };
 
 struct AttentionSettings {
-  bool off{};              ///< no behaviour observes or acts
+  bool off{};              ///< no behaviour observes or acts; the advice is neutral (factor 1)
   double tick{0.01};       ///< period of step(), to which clocks are rounded [s]
   double gaze_dwell{0.5};  ///< min duration of a gaze target [s]
   /// Max ratio of periods at which another behaviour takes over the gaze.
   double gaze_advantage{0.8};
-  /// Gain of the human-aware costs at max urgency of AVOID, >= 1.
+  /// Factor on the planner's human-aware costs (cost_gain) at the shortest period of AVOID, >= 1.
   double near_cost_gain{2.0};
   ZoneSettings zones;                         ///< zones of TRACK and AVOID
   MotorSettings motor;                        ///< motor parts of all behaviours

@@ -26,7 +26,8 @@ class RobotOutput {
   void on(const Scene& scene) { scene_ = scene; }
   /// Returns the joints; nullopt while no state is known.
   std::optional<ros2::JointState> joints() const;
-  /// Returns the transforms of links and objects that are known.
+  /// Returns the transforms that are known: root link and objects in the world frame of the
+  /// settings, other links in their parent's.
   ros2::Transforms frames() const;
   /// Returns the parent of each of the robot's links below the root, by link.
   std::map<std::string, std::string> link_parents() const;

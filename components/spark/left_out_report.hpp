@@ -14,7 +14,7 @@ namespace handsel::spark {
 /// Counts, by cause, the elements left out of observations and messages.
 class LeftOutReport {
  public:
-  /// Receives the kind and the number of elements left out.
+  /// Receives the kind and the number to add to its count.
   using Count = std::function<void(const std::string& what, std::uint64_t count)>;
   LeftOutReport(Count count, const Quotas& quotas) : count_(std::move(count)), quotas_(quotas) {}
 
@@ -22,9 +22,11 @@ class LeftOutReport {
   void add_bodies(std::uint32_t count, TimePoint arrival);
   /// Counts the deleted tracks, and the observations of sources beyond the quota.
   void add_tracks(const LeftOut& tracks, const PeopleTracker& tracker);
-  /// Adds the bodies left out recently to the state and counts. `people`: left out of the state.
+  /// Adds the bodies left out within the last second to state.left_out and counts the sum.
+  /// `people`: left out of the state; kept for people_in_reach().
   void add_people(const LeftOut& people, TimePoint now, HumanState& state);
-  /// Counts the elements left out of the last scene.
+  /// Counts the objects and boxes left out of the newest scene, in full at each call, and the
+  /// objects forgotten since the last call.
   void add_scene(const SceneModel& scene);
   /// Counts the facts left out of the last message.
   void add_facts(const Facts& facts);

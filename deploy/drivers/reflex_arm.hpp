@@ -16,17 +16,17 @@ struct ReflexState {
   ArmMode mode{ArmMode::idle};            ///< of the arm's controller
   bool powered{true}, brakes_open{true};  ///< motion needs both
   Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm, Nm]
-  Wrench wrist_wrench;                                 ///< on the hand with its load, tool frame
-  double gripper_width{};                              ///< between the fingers [m]
-  double gripper_force{};                              ///< with which they press [N]
-  std::string error;                                   ///< why the reflex
+  Wrench wrist_wrench;     ///< of the world on hand and load, no gravity of the hand; tool frame
+  double gripper_width{};  ///< between the fingers [m]
+  double gripper_force{};  ///< with which they press [N]
+  std::string error;       ///< why the reflex
 };
 
 /// The maker's side. To be filled in for a real arm.
 class ReflexLink {
  public:
   virtual ~ReflexLink() = default;
-  /// The newest state; false when this cycle's did not come.
+  /// Writes the newest state; false when this cycle's did not come: `out` is not used then.
   virtual bool read(ReflexState& out) = 0;
   virtual void move_to(const Vector& position) = 0;           ///< for this cycle
   virtual void recover() = 0;                                 ///< from a reflex
@@ -38,7 +38,7 @@ class ReflexLink {
 /// Parallel gripper on one axis of the robot description.
 struct GripperSettings {
   int axis{-1};                                ///< robot axis; -1: none
-  double open{}, closed{};                     ///< axis positions of the widths below
+  double open{}, closed{};                     ///< axis positions of the widths below [rad] or [m]
   double open_width{0.08}, closed_width{0.0};  ///< [m]
   double speed{0.1};                           ///< [m/s]
   double stiffness{400.0};  ///< force for a set-point beyond the measured position [N/m of width]
@@ -54,19 +54,21 @@ struct ReflexSettings {
   int lost_cycles{20};       ///< so many without a state: the arm's controller is silent
 };
 
-/// Returns the largest speed allowed at `position` toward `end`: the smaller of `max_velocity` and
-/// the speed from which `deceleration` stops at `end` [rad/s]; 0 at `end` and beyond.
+/// Returns the largest speed allowed at `position` toward an upper `end` [rad]: the smaller of
+/// `max_velocity` and the speed from which `deceleration` stops at `end` [rad/s]; 0 from `end` on.
+/// For a lower end both positions are negated.
 double velocity_toward_end(double position, double end, double max_velocity, double deceleration);
 
 class ReflexArm : public Driver {
  public:
   static constexpr double kCycle = 0.001;  ///< of the arm's controller [s]
 
+  /// `model` and `link` must outlive this. `arm_axes`: robot axes in the order of ReflexState.
   ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link,
             const ReflexSettings& settings);
 
   void cycle(double now) override;
-  /// Recovers from a reflex too: never by itself.
+  /// Records a person's acknowledgement; in a reflex it first asks the controller to recover.
   void acknowledge() override;
   RobotState state() const override { return core_.state(commanding_); }
   std::string trouble() const override {

@@ -19,8 +19,9 @@ class HandShape {
   /// the surface (capsules only).
   bool palm_touches(const Graspable& object, const Pose& T_object_hand,
                     double clearance = 0.0) const;
-  /// Returns whether a link of a finger touches the object, its solids grown by `clearance` [m];
-  /// negative shrinks: a fingertip in contact must not count as a collision.
+  /// Returns whether a link of a finger touches the object. `clearance` > 0 grows its capsules [m];
+  /// < 0 shrinks them, and boxes and meshes by 1 mm: a fingertip in contact must not count.
+  /// `T_hand_step`, here and below: poses as of FingerChain::forward().
   bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object,
                       const Pose& T_object_hand, double clearance) const;
   /// Returns whether a finger touches links that no finger moves; pairs the model disables do not
@@ -29,7 +30,8 @@ class HandShape {
   /// Returns whether finger `a` touches finger `b`; pairs the model disables do not count.
   bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b,
                      const std::vector<Pose>& T_hand_step_b) const;
-  /// Returns whether the hand, palm or fingers, touches the object.
+  /// Returns whether the hand, palm or fingers, touches the object; `T_hand_step` by finger,
+  /// `clearance` [m] as of palm_touches() and finger_touches().
   bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
                const Pose& T_object_hand, double clearance) const;
   /// Each solid's middle and lowest height in the world.
@@ -40,18 +42,19 @@ class HandShape {
   /// Returns middle and lowest height of every solid, for the hand at a pose in the world.
   std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step,
                         const Pose& T_world_hand) const;
-  /// The whole hand placed in some frame, for tests of hands against each other.
+  /// A solid of a hand placed in some frame, for tests of hands against each other.
   struct Placed {
     /// Whether the solid has a closed form as a capsule; whether it is part of the palm.
     bool capsule{}, palm{};
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis of a capsule [m]
     double radius{};                                 ///< of a capsule [m]
-    CollisionShapePtr shape;                         ///< of solids that are no capsules
+    CollisionShapePtr shape;                         ///< of every solid, capsules too
     Pose T_frame_shape{Pose::Identity()};            ///< pose of `shape` in the frame
     ConvexCore core;                                 ///< of `shape` in the frame; unused for meshes
     Vector3 middle{Vector3::Zero()};                 ///< centre of the ball around the solid [m]
     double bound{};                                  ///< radius of the ball around the solid [m]
   };
+  /// The whole hand placed in some frame.
   struct PlacedHand {
     std::vector<Placed> solids;  ///< palm first, then finger by finger
     Eigen::AlignedBox3d box;     ///< around the balls of all solids [m]

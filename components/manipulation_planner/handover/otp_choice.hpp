@@ -14,9 +14,11 @@ struct Parts;
 
 /// Result of a choice.
 struct OtpChoice {
-  Outcome outcome;                     ///< whether the search ended
-  OtpSearch search;                    ///< poses, best first
-  std::optional<double> present_cost;  ///< of the pose that was asked about; nullopt: it is none
+  /// Failure: the person is out of sight or the search took too long; good also without poses.
+  Outcome outcome;
+  OtpSearch search;  ///< poses, best first
+  /// Cost of the pose asked about; nullopt: none was, or it is no object transfer point.
+  std::optional<double> present_cost;
 };
 
 /// A handover that is shifted in place of a search.
@@ -27,13 +29,13 @@ struct OtpShift {
 
 // References must outlive the routines.
 /// Searches object transfer points with a person for what is held. `T_world_object`: a pose whose
-/// cost is asked, null: none. `shift`: of that pose, in place of a search.
+/// cost is asked, null: none. `shift`: shifts `T_world_object` in place of a search.
 Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const Pose* T_world_object,
                               std::optional<OtpShift> shift = std::nullopt);
 /// Reports the pose that a handover is planned for, and the grasp of the person there.
 void show(const OtpPose& pose, ActionStatus& action);
-/// Reports where the object is offered now, and the easiest grasp of the receiver there: of
-/// several poses found, the arm goes to the one that it reaches first.
+/// Reports where the object is now and the easiest grasp of the receiver there: the arm may have
+/// reached another pose than was reported. Where none fits, one who has taken hold keeps theirs.
 void show_offered(Parts& parts, const std::string& receiver);
 /// Sets the goals of a motion to what was found for the receiver as they are now. `hands`: of the
 /// receiver, as they were for the search.

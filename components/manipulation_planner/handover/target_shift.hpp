@@ -27,11 +27,12 @@ class TargetShift {
     p_shifted_ = p_shifted;
     changed_at_ = now;
   }
-  /// Notes that a shifted point, world [m], is refused: it is not asked for again until the next
-  /// choice.
+  /// Notes that a shifted point, world [m], is refused: points within min_shift of it are not
+  /// wanted until the next refusal or choice.
   void note_refusal(const Vector3& p_refused) { p_refused_ = p_refused; }
 
-  /// Returns whether a point, world [m], was passed to note_change() since the choice.
+  /// Returns whether a point, world [m], is within 3 cm of the one last passed to note_change()
+  /// since the choice.
   bool has_led_to(const Vector3& p) const;
   /// Returns whether a point, world [m], is too far from the chosen one for a shift of it.
   bool is_another_choice(const Vector3& p) const {

@@ -8,7 +8,7 @@ namespace handsel::trajectory_controller {
 template <class T>
 struct Sample {
   T value{};        ///< newest
-  SampleTime time;  ///< when it was taken
+  SampleTime time;  ///< when it was taken; time.received() is false before the first set()
 
   /// Replaces the sample.
   void set(const T& sample, TimePoint at) {

@@ -19,7 +19,8 @@ struct SpeedSettings {
 };
 
 /// Returns the speed factor for the human-aware cost ahead on the trajectory that runs (chapter
-/// section 2), smoothly lower from cost_from on; 1 in a handover, where it is meant to be high.
+/// section 2), smoothly lower from cost_from on; 1 in a handover, where the cost is meant to be
+/// high, and without a forecast of `trajectory` (id).
 double cost_factor(const SpeedSettings& settings, const Inputs& inputs,
                    std::uint64_t trajectory) noexcept;
 
@@ -27,8 +28,8 @@ double cost_factor(const SpeedSettings& settings, const Inputs& inputs,
 double wanted_factor(const SpeedSettings& settings, const Inputs& inputs, std::uint64_t trajectory,
                      const GuardVerdict& guard, TimePoint now) noexcept;
 
-/// Returns whether attention asks for a motion away from a person, who is not the partner of a
-/// handover. `attention_timeout`: silence from which on the advice does not count.
+/// Returns whether attention asks for a motion away from a person, back along or beside the path;
+/// false while a handover has a partner. `attention_timeout`: older advice does not count [s].
 bool asks_for_recoil(const Inputs& inputs, double attention_timeout, TimePoint now) noexcept;
 
 }  // namespace handsel::trajectory_controller
