@@ -131,6 +131,8 @@ ChoiceSettings choice_settings(const settings::GraspPlannerSettings& t) {
   s.rank_stands = t.rank_stands;
   s.off_fingers = t.off_fingers;
   s.off_digits = t.off_digits;
+  s.min_margin_held = t.min_margin_held;
+  s.min_grasps_held = t.min_grasps_held;
   s.off_giver = t.off_giver;
   s.rank_drive = t.rank_drive;
   s.platform_room = t.platform_room;

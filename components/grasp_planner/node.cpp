@@ -20,6 +20,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       reply_out_(bus.advertise<GraspReply>()),
       regrasp_out_(bus.advertise<RegraspReply>()),
       candidates_out_(bus.advertise<GraspCandidates>()),
+      holding_(context.objects, static_cast<int>(settings_.holding_samples)),
       candidates_(settings_.candidates_time) {
   const auto platform = mobile(*robot_, context.description);
   for (const ArmGrasps& arm : arms_)
@@ -29,7 +30,7 @@ Node::Node(Bus& bus, const NodeContext& context)
     scene_ = scene;
     lists_.prepare(scene);
   });
-  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { on(people); });
   bus.subscribe<GraspRequest>(
       [this](const GraspRequest& request, const Receipt&) { answer(request); });
   bus.subscribe<RegraspRequest>(
@@ -67,7 +68,7 @@ void Node::choose(const GraspRequest& request, bool reply) {
   bus_.run_job(
       [cache = arms_[arm].cache, transfers = arms_[arm].transfers,
        left_transfers = arms_[arm].left_transfers, chooser = choosers_[arm], request,
-       scene = scene_, people = people_, model, result, work](const CancelToken& token) {
+       scene = scene_, people = people(), model, result, work](const CancelToken& token) {
         if (!work) return Duration{};
         const auto cancelled = [&token] { return token.cancelled(); };
         try {

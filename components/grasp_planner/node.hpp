@@ -7,6 +7,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/config/settings/grasp_planner.hpp"
+#include "common/model/human/holding_hand_average.hpp"
 #include "components/grasp_planner/choice/candidates.hpp"
 #include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "components/grasp_planner/list_preparation.hpp"
@@ -22,6 +23,11 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
+  void on(const HumanState& people) {
+    people_ = people;
+    holding_.add(scene_, people);
+  }
+  HumanState people() const { return holding_.averaged(scene_, people_); }
   void answer(const GraspRequest& request);
   void choose(const GraspRequest& request, bool reply);
   void propose(TimePoint now);
@@ -40,6 +46,7 @@ class Node {
   std::unique_ptr<Publisher<GraspCandidates>> candidates_out_;
   Scene scene_;
   HumanState people_;
+  HoldingHandAverage holding_;
   // one request is worked on for up to some seconds; the latest replies are remembered
   RequestQueue<GraspReply> requests_{16, 8};
   RegraspQueue regrasps_{16};

@@ -7,7 +7,7 @@ Parts::Parts(const settings::ManipulationPlannerSettings& s,
              const CostSettings& cost_settings)
     : settings(s),
       cost(cost_settings),
-      now(std::move(objects), robot),
+      now(std::move(objects), robot, static_cast<int>(settings.holding_samples)),
       clients(client, outbox, waiting, settings),
       worker(outbox, waiting, settings.request_timeout),
       arm(std::move(robot), now),

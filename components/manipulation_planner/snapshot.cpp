@@ -42,8 +42,8 @@ const Person* Snapshot::person(const std::string& id) const {
   return best;
 }
 
-bool Snapshot::is_lost(const std::string& id) const {
-  const auto& all = people_.people;
+bool is_lost(const Snapshot& now, const std::string& id) {
+  const auto& all = now.people().people;
   return std::any_of(all.begin(), all.end(),
                      [&](const Person& p) { return p.id == id && p.inflation > 0; });
 }

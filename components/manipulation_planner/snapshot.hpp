@@ -10,6 +10,7 @@
 #include "common/cost/cost_layers.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/human/holding_hand_average.hpp"
 #include "common/model/object_model.hpp"
 #include "common/model/platform.hpp"
 
@@ -19,9 +20,12 @@ namespace handsel::manipulation_planner {
 class Snapshot {
  public:
   /// `objects`: the models of the objects that scenes name. `robot`: nullptr: it stands at its
-  /// root.
-  explicit Snapshot(ObjectLibrary objects, std::shared_ptr<const RobotModel> robot = nullptr)
-      : robot_(std::move(robot)), objects_(std::move(objects)) {}
+  /// root. `holding_samples`: over which hands are averaged on the objects in them.
+  explicit Snapshot(ObjectLibrary objects, std::shared_ptr<const RobotModel> robot = nullptr,
+                    int holding_samples = 1)
+      : robot_(std::move(robot)),
+        objects_(std::move(objects)),
+        holding_(objects_, holding_samples) {}
 
   /// Takes the newest scene; objects, boxes and base of the robot in the world frame.
   void on(const Scene& scene) {
@@ -29,7 +33,10 @@ class Snapshot {
     ++scene_count_;
   }
   /// Takes the newest people, joints in the world frame.
-  void on(const HumanState& people) { people_ = people; }
+  void on(const HumanState& people) {
+    people_ = people;
+    holding_.add(scene_, people);
+  }
   /// Takes the facts that hold now; they replace all before.
   void on(const Facts& facts) { facts_ = facts; }
   /// Takes a cost layer; `sent`: when its writer sent the layer.
@@ -55,6 +62,8 @@ class Snapshot {
   }
   /// Returns the newest people.
   const HumanState& people() const { return people_; }
+  /// Returns the newest people, hands averaged on the objects in them.
+  HumanState people_averaged() const { return holding_.averaged(scene_, people_); }
   /// Returns the facts that hold.
   const Facts& facts() const { return facts_; }
   /// Returns the newest report of the controller; nullopt: none has come.
@@ -78,8 +87,6 @@ class Snapshot {
   const ObjectLibrary& objects() const { return objects_; }
   /// Returns the person of that id, for an empty id the one nearest to the base; null: none.
   const Person* person(const std::string& id) const;
-  /// Returns whether this person is out of sight and may be near their last place.
-  bool is_lost(const std::string& id) const;
 
  private:
   TimePoint time_{};
@@ -88,10 +95,14 @@ class Snapshot {
   Scene scene_;
   std::uint64_t scene_count_{};
   HumanState people_;
+  HoldingHandAverage holding_;
   Facts facts_;
   CostLayers layers_;
   std::optional<ExecutionStatus> execution_;
   ActiveTrajectory active_;
 };
+
+/// Returns whether this person is out of sight and may be near their last place.
+bool is_lost(const Snapshot& now, const std::string& id);
 
 }  // namespace handsel::manipulation_planner

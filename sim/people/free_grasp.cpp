@@ -62,6 +62,27 @@ std::vector<Vector3> anchors(const FreeGraspQuery& query) {
   return out;
 }
 
+/// Returns points of the surface, object frame, weighted by their area and by how near the points
+/// are to the point `left` of a receiver, against the opposite end.
+std::vector<std::pair<Vector3, double>> surface_left(const ObjectModel& object,
+                                                     const Vector3& left) {
+  constexpr std::size_t kSamples = 300;
+  const TriangleMesh& mesh = object.mesh;
+  const Vector3 axis = (left - object.com).stableNormalized();
+  double length = 0;
+  for (const Vector3& vertex : mesh.vertices) length = std::max(length, (left - vertex).dot(axis));
+  const std::size_t step = 1 + mesh.triangles.size() / kSamples;
+  std::vector<std::pair<Vector3, double>> out;
+  for (std::size_t i = 0; length > 0 && i < mesh.triangles.size(); i += step) {
+    const auto& t = mesh.triangles[i];
+    const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Vector3 middle = (a + b + c) / 3;
+    const double nearness = std::clamp(1 - (left - middle).dot(axis) / length, 0.0, 1.0);
+    out.emplace_back(middle, nearness * (b - a).cross(c - a).norm());
+  }
+  return out;
+}
+
 }  // namespace
 
 FreeGraspSearch::FreeGraspSearch(const FreeGraspQuery& query, const HumanHand& shape,
@@ -72,7 +93,9 @@ FreeGraspSearch::FreeGraspSearch(const FreeGraspQuery& query, const HumanHand& s
       settings_(settings),
       T_object_world_(query.T_world_object.inverse()),
       anchors_(anchors(query)),
-      directions_(directions()) {}
+      directions_(directions()) {
+  if (query.p_left) surface_ = surface_left(*query.object, T_object_world_ * *query.p_left);
+}
 
 bool FreeGraspSearch::advance() {
   constexpr int kTests = 4;  // poses tested in a part
@@ -104,20 +127,23 @@ void FreeGraspSearch::consider(const Candidate& candidate) {
   min_cost_ = cost;
 }
 
-/// Returns up to where the hand covers the object, from the end that is held, 0, to the point that
-/// is left to a receiver, 1; 0 without such a point.
+/// Returns the fraction of the surface near the hand, where a receiver has no room; the surface
+/// counts the more, the nearer to the point that is left to the receiver. 0 without such a point.
 double FreeGraspSearch::covered(const FreeGrasp& grasp) const {
-  if (!query_.p_left) return 0;
-  const Vector3 left = T_object_world_ * *query_.p_left;
-  const Vector3 axis = (left - query_.object->com).stableNormalized();
-  double held = 0, hand = -std::numeric_limits<double>::infinity();
-  for (const Vector3& vertex : query_.object->mesh.vertices)
-    held = std::min(held, (vertex - left).dot(axis));
-  for (const HandPart& part : shape_.parts(grasp.closures)) {
-    for (const Vector3& end : {part.a, part.b})
-      hand = std::max(hand, (grasp.T_object_hand * end - left).dot(axis) + part.radius);
+  constexpr double kNear = 0.03;  // room for the receiver's fingers [m]
+  std::array<HandPart, kHandParts> hand = shape_.parts(grasp.closures);
+  for (HandPart& part : hand) part = transformed(grasp.T_object_hand, part);
+  double all = 0, near = 0;
+  Vector3 on_part, on_sample;
+  for (const auto& [p, weight] : surface_) {
+    all += weight;
+    const bool is_near = std::any_of(hand.begin(), hand.end(), [&, &at = p](const HandPart& part) {
+      const double limit = part.radius + kNear;
+      return nearest_points(part.a, part.b, at, at, on_part, on_sample) < limit * limit;
+    });
+    if (is_near) near += weight;
   }
-  return held < 0 ? std::clamp(1 - hand / held, 0.0, 1.0) : 0;
+  return all > 0 ? near / all : 0;
 }
 
 double FreeGraspSearch::distance(const Vector3& p_world) const {

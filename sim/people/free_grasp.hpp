@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/model/human/hand_closure.hpp"
@@ -84,6 +85,7 @@ class FreeGraspSearch {
   FreeGraspSettings settings_;
   Pose T_object_world_;
   std::vector<Vector3> anchors_, directions_;
+  std::vector<std::pair<Vector3, double>> surface_;  // points to leave free, object; weights
   std::size_t next_{0};  // pair of anchor and direction, then candidate, that comes next
   std::vector<Candidate> candidates_;
   bool ordered_{false}, over_{false};

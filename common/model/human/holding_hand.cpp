@@ -60,23 +60,37 @@ Person with_fingers_bent(const Person& person, const Vector3& p_world_object) {
   return bent;
 }
 
-std::vector<HandPart> assumed_digits(const Person& person, const ObjectModel& object,
-                                     const Pose& T_world_object) {
+std::optional<HoldingHand> holding_hand(const Person& person, const ObjectModel& object,
+                                        const Pose& T_world_object) {
   const Pose T_object_world = T_world_object.inverse();
   const auto* left = joint(person, "l_hand");
   const auto* right = joint(person, "r_hand");
-  if (left == nullptr || right == nullptr) return {};
-  const double left_distance = surface_distance(object, T_object_world * left->position),
-               right_distance = surface_distance(object, T_object_world * right->position);
-  const bool is_left = left_distance < right_distance;
+  if (left == nullptr || right == nullptr) return std::nullopt;
+  const Vector3 p_left = T_object_world * left->position,
+                p_right = T_object_world * right->position;
+  const bool is_left = surface_distance(object, p_left) < surface_distance(object, p_right);
   const auto* wrist = joint(person, is_left ? "l_wrist" : "r_wrist");
-  if (wrist == nullptr) return {};
-  const Vector3 p_hand = T_object_world * (is_left ? left : right)->position,
-                p_wrist = T_object_world * wrist->position;
-  const auto T_object_hand = hand_frame(p_wrist, p_hand, object);
+  if (wrist == nullptr) return std::nullopt;
+  return HoldingHand{is_left ? Side::left : Side::right, T_object_world * wrist->position,
+                     is_left ? p_left : p_right};
+}
+
+void move_hand(Person& person, const HoldingHand& to, const Pose& T_world_object) {
+  const bool is_left = to.side == Side::left;
+  if (BodyJoint* wrist = joint(person, is_left ? "l_wrist" : "r_wrist"))
+    wrist->position = T_world_object * to.p_wrist;
+  if (BodyJoint* hand = joint(person, is_left ? "l_hand" : "r_hand"))
+    hand->position = T_world_object * to.p_hand;
+}
+
+std::vector<HandPart> assumed_digits(const Person& person, const ObjectModel& object,
+                                     const Pose& T_world_object, double turn) {
+  const auto holding = holding_hand(person, object, T_world_object);
+  if (!holding) return {};
+  auto T_object_hand = hand_frame(holding->p_wrist, holding->p_hand, object);
   if (!T_object_hand) return {};
-  const HumanHand hand(is_left ? Side::left : Side::right, person.stature,
-                       (p_hand - p_wrist).norm());
+  T_object_hand->rotate(Eigen::AngleAxisd(turn, Vector3::UnitZ()));
+  const HumanHand hand(holding->side, person.stature, (holding->p_hand - holding->p_wrist).norm());
   std::array<std::optional<double>, kDigits> contacts;
   for (int d = 0; d < kDigits; ++d) {
     if (const auto contact = first_contact(hand, d, object, *T_object_hand))

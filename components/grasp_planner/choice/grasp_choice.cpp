@@ -84,6 +84,18 @@ const char* reason_text(ChoiceReason reason) {
   return "unknown";
 }
 
+namespace {
+
+/// Returns the most frequent contact, in brackets.
+std::string most_frequent(const std::map<std::string, int>& contacts) {
+  const auto most =
+      std::max_element(contacts.begin(), contacts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == contacts.end() ? "" : " (most often " + most->first + ")";
+}
+
+}  // namespace
+
 Refusals Choice::refusals() const {
   Refusals out;
   for (std::size_t r = 1; r < reasons.size(); ++r) {
@@ -125,7 +137,8 @@ std::string Choice::why_none(const GraspList& list) const {
   std::string why = "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here";
   for (std::size_t i = 0; i < std::min(often.size(), kReasonsGiven); ++i)
     why += (i == 0 ? ": for " : ", for ") + std::to_string(often[i].first) + " " +
-           reason_text(often[i].second);
+           reason_text(often[i].second) +
+           (often[i].second == ChoiceReason::collision ? most_frequent(contacts) : "");
   if (often.size() > kReasonsGiven) why += ", ...";
   if (const auto untried = reasons[static_cast<std::size_t>(ChoiceReason::not_considered)])
     why += "; " + std::to_string(untried) + " were not tried, the budget was used up";
@@ -165,15 +178,7 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   const GraspList& list = inputs.list;
   const TransferTable* pairs = inputs.pairs;
   Search search(*this, inputs);
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < list.grasps.size(); ++i) {
-    if (list.bears(list.grasps[i].grasp))
-      order.emplace_back(search.rank(list.grasps[i], i), i);
-    else
-      ++search.out.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)];
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  const auto [order, weak] = search.ranked();
   std::vector<Found> found;
   // Twice as many as asked for, so that the arm's posture has a say.
   const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
@@ -214,6 +219,13 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
     others = std::move(left);
   }
   for (const auto& [rank, index] : others) consider(rank, index, {});
+  // A giver leaves little room: a weaker grasp is better than none.
+  for (const auto& [rank, index] : weak) {
+    if (found.size() < settings_.min_grasps_held)
+      consider(rank, index, {});
+    else
+      ++search.out.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)];
+  }
   if (found.empty() && request.move_platform) search_places(search, order, found);
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.rank > b.rank; });

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "common/collision/collision_world.hpp"
 #include "common/model/manipulator.hpp"
@@ -31,11 +33,13 @@ struct ChoiceSettings {
   double rank_tilt{1.0};      ///< taken off for each radian the object must be tilted there
   /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last.
   double rank_sturdy{1.0};
-  double sturdy_margin{2.0};  ///< [N]
-  double rank_away{0.6};      ///< the hand stays on the robot's side of what a person holds
-  double rank_stands{1.0};    ///< from a person's hand: it can be put down in this grasp
-  double off_fingers{0.01};   ///< kept between the robot and the hands of the giver [m]
-  double off_digits{0.02};    ///< same, the digits assumed around the object [m]
+  double sturdy_margin{2.0};       ///< [N]
+  double rank_away{0.6};           ///< the hand stays on the robot's side of what a person holds
+  double rank_stands{1.0};         ///< from a person's hand: it can be put down in this grasp
+  double off_fingers{0.01};        ///< kept between the robot and the hands of the giver [m]
+  double min_margin_held{-3.0};    ///< min margin of weaker grasps from a person's hand [N]
+  std::size_t min_grasps_held{8};  ///< number of grasps below which weaker ones are added
+  double off_digits{0.02};         ///< same, the digits assumed around the object [m]
   /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
   /// it only creep [m].
   double off_giver{0.12};
@@ -83,6 +87,8 @@ struct PlatformSearch {
   std::uint64_t places{}, blocked{}, near_person{}, useless{};
 };
 
+inline constexpr int kNamedContacts = 100;  ///< grasps of which a contact is named
+
 struct Choice {
   std::vector<Grasp> grasps;       ///< with arm_joints and approach_joints, best first
   std::vector<PuttingDown> goals;  ///< of each grasp, when there is a goal
@@ -91,6 +97,9 @@ struct Choice {
   std::vector<std::optional<TransferPose>> transfers;
   /// Listed grasps by ChoiceReason, for where the robot stands.
   std::array<std::uint64_t, static_cast<std::size_t>(ChoiceReason::count)> reasons{};
+  /// What arm or hand would touch at a grasp, "link forearm and box table", with the number of the
+  /// grasps; of the first kNamedContacts grasps.
+  std::map<std::string, int> contacts;
   std::uint64_t reaches{};           ///< inverse kinematics solved or tried
   std::uint64_t transfer_reaches{};  ///< those for places to hand over
   std::uint64_t states{};            ///< robot states checked for collision

@@ -248,8 +248,8 @@ bool GraspChooser::Search::free(CollisionWorld& world, const Vector& arm_q, cons
   return world.is_free(whole(arm_q, hand_q));
 }
 
-// The straight way from approach_q to grasp_q with the hand opened: nothing touched, the object
-// neither.
+// Whether the open hand touches neither the object, nor the hand that holds the object, nor
+// anything else on the straight motion from approach_q to grasp_q.
 bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
                                          const Vector& grasp_q, const Grasp& g) {
   const Vector from = whole(approach_q, g.pregrasp_joints), to = whole(grasp_q, g.pregrasp_joints);
@@ -263,6 +263,10 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
     const double clearance =
         i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
     if (self.hand_geometry_->shape.touches(T_open, inputs.object, T_object_hand, clearance))
+      return false;
+    const bool from_hand = holder_body.has_value() && &site == &start;
+    if (from_hand && HandShape::hands_touch(
+                         self.hand_geometry_->shape.placed(T_open, T_object_hand), *holder_body, 0))
       return false;
   }
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));
@@ -324,14 +328,42 @@ bool GraspChooser::Search::off_giver(const Vector& arm_q, const Grasp& g) {
   return giver->check_people(whole(arm_q, g.pregrasp_joints)).free;
 }
 
+GraspChooser::Search::Ranked GraspChooser::Search::ranked() {
+  Ranked all;
+  for (std::size_t i = 0; i < inputs.list.grasps.size(); ++i) {
+    const Grasp& g = inputs.list.grasps[i].grasp;
+    const bool can_hold = inputs.list.bears(g);
+    if (can_hold || (!holder.empty() && g.margin >= settings().min_margin_held))
+      (can_hold ? all.strong : all.weak).emplace_back(rank(inputs.list.grasps[i], i), i);
+    else
+      ++out.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)];
+  }
+  for (Ranking* ranking : {&all.strong, &all.weak})
+    std::stable_sort(ranking->begin(), ranking->end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+  return all;
+}
+
+void GraspChooser::Search::note_contact(const std::string& which) {
+  if (named_contacts++ < kNamedContacts) ++out.contacts[which];
+}
+
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
-  if (touches_holder(g)) return ChoiceReason::collision;
+  if (touches_holder(g)) {
+    note_contact("the hand and that of " + holder);
+    return ChoiceReason::collision;
+  }
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;
   const auto grasp_q = reach(T_world_hand, inputs.request.start, 2);
   if (!grasp_q) return ChoiceReason::out_of_reach;
-  if (!free(start.world, *grasp_q, g.hand_joints) ||
-      !free(start.world, *grasp_q, g.pregrasp_joints))
+  for (const Vector* fingers : {&g.hand_joints, &g.pregrasp_joints}) {
+    if (free(start.world, *grasp_q, *fingers)) continue;
+    if (named_contacts < kNamedContacts) {
+      const CollisionVerdict verdict = start.world.check(whole(*grasp_q, *fingers));
+      note_contact(verdict.first + " and " + verdict.second);
+    }
     return ChoiceReason::collision;
+  }
   if (holder.empty() && !can_lift(T_world_hand, *grasp_q, g)) return ChoiceReason::cannot_lift;
   const auto approach_q = approach(start, *grasp_q, g);
   if (!approach_q) return ChoiceReason::no_approach;

@@ -25,6 +25,14 @@ struct GraspChooser::Search {
 
   /// Where the robot stands.
   Vector3 p_world_robot() const;
+  /// Ranks of grasps and their places in the list, best first.
+  using Ranking = std::vector<std::pair<double, std::size_t>>;
+  /// Grasps by which one hand holds the object, and weaker ones that serve in need.
+  struct Ranked {
+    Ranking strong, weak;
+  };
+  /// Returns the grasps of the list in the order in which they are considered; counts the others.
+  Ranked ranked();
   /// What can be said of a grasp before the arm is checked.
   double rank(const ListedGrasp& listed, std::size_t index) const;
   bool below_support(const Grasp& g);
@@ -65,6 +73,8 @@ struct GraspChooser::Search {
   double stand_off() const;  ///< before the object, where the straight approach begins [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   ChoiceReason pick_up(Grasp& g);
+  /// Counts what a grasp would touch.
+  void note_contact(const std::string& which);
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
   /// How far on the robot's side of the object the hand is, [0, 1]: the person with the object in
   /// the hand is on the other.
@@ -89,6 +99,7 @@ struct GraspChooser::Search {
   // with the object in the hand, at the handover: the person's arms are no obstacle
   std::optional<CollisionWorld> held;
   bool goal_is_taken{};
+  int named_contacts{};
   Pose T_root_world{Pose::Identity()};
   std::optional<Vector3> eye;                   // world: of the person, else of the robot
   std::optional<HandoverPoint> handover_point;  // of the person; empty: not known

@@ -28,8 +28,8 @@ class HandAtObject {
   /// Returns whether the object can be stood on a surface in this grasp: the open hand is nowhere
   /// below its foot.
   bool stands_in(const Grasp& g) const;
-  /// Returns whether the hand, opened or closed, touches a body as of body_at_object(): by whatever
-  /// configuration the arm gets there.
+  /// Returns whether the hand, opened, closed or while it closes, touches a body as of
+  /// body_at_object(): by whatever configuration the arm gets there.
   bool touches(const HandShape::PlacedHand& body, const Grasp& g);
   /// Returns the fraction of the object that is seen past the closed hand from an eye, frame of the
   /// object.

@@ -75,13 +75,4 @@ std::vector<std::string> arms_for(const Parts& parts, const Vector3& p_world,
   return out;
 }
 
-bool another_arm_reaches(const Parts& parts, const SceneBox& surface) {
-  const std::vector<Candidate> all = stretches(parts, [&](const Vector3& p_shoulder) {
-    return (nearest_on_top(surface, p_shoulder) - p_shoulder).norm();
-  });
-  return std::any_of(all.begin(), all.end(), [&](const Candidate& one) {
-    return one.arm != parts.arm.group().name && one.stretch < 1;
-  });
-}
-
 }  // namespace handsel::manipulation_planner

@@ -27,7 +27,5 @@ Vector3 nearest_on_top(const SceneBox& box, const Vector3& p_world);
 /// the reason of a failure is then that of the nearest. Own method.
 std::vector<std::string> arms_for(const Parts& parts, const Vector3& p_world,
                                   const SceneBox* surface);
-/// Returns whether an arm other than the one in use reaches the top of a surface.
-bool another_arm_reaches(const Parts& parts, const SceneBox& surface);
 
 }  // namespace handsel::manipulation_planner

@@ -7,6 +7,7 @@
 #include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"
 #include "components/manipulation_planner/actions/arm_choice.hpp"
+#include "components/manipulation_planner/actions/giver_hand.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/actions/rest.hpp"
 #include "components/manipulation_planner/actions/take.hpp"
@@ -80,8 +81,9 @@ double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& gr
 }
 
 /// Sorts grasps: the arm's shortest motion first, since a giver does not wait long, unless the
-/// grasp is weak, the arm would come near to the giver's body, or the object cannot be put down by
-/// that grasp. Leaves the best. Returns false where the object can be put down by none.
+/// grasp is weak, the hand may touch the giver's digits, the arm would come near to the giver's
+/// body, or the object cannot be put down by that grasp. Leaves the best. Returns false where the
+/// object can be put down by none.
 Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
                           std::vector<Grasp>& grasps) {
   const DestinationLimits limits{grasps.size(), parts.settings.receive_places};
@@ -90,10 +92,12 @@ Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& o
   if (later.at.empty() && !later.objections.empty())
     parts.refuse("place", "no grasp of " + offer.object +
                               " as it is held serves for putting it down: " + later.objections);
+  const std::set<std::uint64_t> clear = co_await clear_of_turned_hand(parts, offer, grasps);
   std::vector<std::pair<double, Grasp>> ranked;
   for (Grasp& g : grasps) {
     const double penalty = parts.settings.weak_grip_detour * std::max(0.0, -g.margin) +
                            parts.settings.giver_detour * lacking_clearance(parts, offer, g) +
+                           (clear.count(g.id) > 0 ? 0.0 : parts.settings.digits_detour) +
                            (parts.destinations.has(g.id) ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
     ranked.emplace_back(std::floor((distance + penalty) / kSameDistance), std::move(g));
@@ -133,6 +137,21 @@ Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first,
   co_return last;
 }
 
+/// Returns whether an arm other than the one in use reaches a free place for an object on a
+/// surface.
+Routine<bool> another_arm_places(Parts& parts, const std::string& object, const SceneBox& surface) {
+  const SceneObject* thing = parts.now.object(object);
+  if (thing == nullptr) co_return false;
+  const Pose T_world_object = thing->T_world_object;
+  for (const Manipulator& other : parts.arm.manipulators()) {
+    if (other.arm == nullptr || other.name == parts.arm.group().name) continue;
+    const std::vector<Pose> places =
+        co_await find_standing_places(parts, surface, other.name, object, T_world_object);
+    if (!places.empty()) co_return true;
+  }
+  co_return false;
+}
+
 /// Grasps of what is offered, by one arm.
 struct OfferGrasps {
   GraspList list;
@@ -168,7 +187,7 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
     }
   }
   if (first_arm != arms.back()) co_await use_arm(parts, first_arm);
-  first.serves = surface != nullptr && another_arm_reaches(parts, *surface);
+  if (surface != nullptr) first.serves = co_await another_arm_places(parts, offer.object, *surface);
   co_return first;
 }
 

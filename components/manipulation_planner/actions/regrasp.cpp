@@ -278,15 +278,21 @@ Routine<StepResult> execute_step(Parts& parts, const std::string& object, const 
   co_return result;
 }
 
-/// Returns places on a surface that the arm which is not in use reaches well; empty: none.
-Routine<std::vector<Pose>> places_for_other_arm(Parts& parts, const std::string& onto) {
+/// Returns places on a surface that an arm which is not in use reaches well, else places that the
+/// arm in use reaches, with another grasp than the present one; empty: none.
+Routine<std::vector<Pose>> places_for_held(Parts& parts, const std::string& onto) {
   const SceneBox* surface = parts.now.surface(onto);
   std::vector<Pose> places;
   if (surface == nullptr) co_return places;
-  for (const Manipulator& other : parts.arm.manipulators()) {
-    if (other.arm == nullptr || other.name == parts.arm.group().name) continue;
-    places = co_await find_standing_places(parts, *surface, other.name);
-    break;
+  const std::string in_use = parts.arm.group().name, object = parts.held.id();
+  std::vector<std::string> arms;
+  for (const Manipulator& other : parts.arm.manipulators())
+    if (other.arm != nullptr && other.name != in_use) arms.push_back(other.name);
+  arms.push_back(in_use);
+  for (const std::string& arm : arms) {
+    places =
+        co_await find_standing_places(parts, *surface, arm, object, parts.held.T_world_object());
+    if (!places.empty()) break;
   }
   co_return places;
 }
@@ -295,7 +301,7 @@ Routine<std::vector<Pose>> places_for_other_arm(Parts& parts, const std::string&
 Routine<std::vector<Pose>> places_of(Parts& parts, const ActionGoal& goal, bool is_held) {
   std::vector<Pose> places;
   if (is_held && !goal.has_goal) {
-    places = co_await places_for_other_arm(parts, goal.surface);
+    places = co_await places_for_held(parts, goal.surface);
     co_return places;
   }
   const SceneObject* seen = parts.now.object(goal.object);

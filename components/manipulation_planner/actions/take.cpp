@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "common/model/human/holding_hand.hpp"
+#include "components/manipulation_planner/actions/giver_hand.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
 
@@ -16,7 +17,6 @@ constexpr double kNear = 0.5;       // to giver or object: the arm retreats stra
 constexpr double kMaxDetour = 1.3;  // length of a path over that of the straight one
 constexpr double kDetourPerAttempt = 1.0;  // length that each attempt adds [rad, sum of max norms]
 constexpr std::uint32_t kMaxDirectAttempts = 2;  // after which a path may have any length
-constexpr int kClearanceSteps = 6;  // checks of the straight motion in, and of the closing
 
 /// How far an attempt has come.
 enum class Progress : std::uint8_t {
@@ -359,51 +359,6 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   parts.offers.set_hand_at_offer(false);
   if (!moved.good) parts.refuse("retreat", moved.reason);
   co_return Outcome{};
-}
-
-Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
-                                      std::vector<Grasp>& grasps) {
-  auto clear = std::make_shared<std::vector<Grasp>>();
-  HumanState around = parts.now.people();
-  for (Person& person : around.people) {
-    if (person.id != offer.giver) continue;
-    if (const SceneObject* held = parts.now.object(offer.object))
-      person = with_fingers_bent(person, held->T_world_object.translation());
-    person.inflation += parts.settings.giver_hand_clearance;
-  }
-  const std::function<void()> job = [clear, around, grasps, object = offer.object,
-                                     world =
-                                         parts.worker.world(parts.arm.robot(), parts.now.objects()),
-                                     scene = parts.now.scene(), q = parts.arm.configuration(),
-                                     arm = parts.arm.group(), fingers = parts.arm.fingers()] {
-    world->set_scene(scene);
-    world->set_people(around);
-    world->set_attachment({}, {object});
-    world->set_moving_axes(arm.axes);
-    const auto is_free = [&](const Vector& arm_joints, const Vector& hand_joints) {
-      return world
-          ->check_people(
-              RobotModel::with(RobotModel::with(q, arm, arm_joints), fingers, hand_joints))
-          .free;
-    };
-    for (const Grasp& g : grasps) {
-      bool is_clear = true;
-      for (int k = kClearanceSteps; k >= 0 && is_clear; --k) {
-        const double s = static_cast<double>(k) / kClearanceSteps;
-        is_clear =
-            is_free(g.approach_joints + s * (g.arm_joints - g.approach_joints),
-                    g.pregrasp_joints) &&
-            is_free(g.arm_joints, g.pregrasp_joints + s * (g.hand_joints - g.pregrasp_joints));
-      }
-      if (is_clear) clear->push_back(g);
-    }
-  };
-  Outcome worked = co_await parts.worker.run(job);
-  if (!worked.good) co_return worked;
-  grasps = *clear;
-  if (grasps.empty())
-    worked = Outcome::failure("the hand would come too near to the fingers of " + offer.giver);
-  co_return worked;
 }
 
 }  // namespace handsel::manipulation_planner

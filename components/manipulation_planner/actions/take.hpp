@@ -20,8 +20,5 @@ struct TakeAttempt {
 // References must outlive the routines.
 /// Takes the object; a failure leaves the hand off the giver.
 Routine<Outcome> take(Parts& parts, const TakeAttempt& attempt);
-/// Leaves the grasps whose approach and closing fingers keep clearance to the giver's hand as it is
-/// observed now; with none left the result says so.
-Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer, std::vector<Grasp>& grasps);
 
 }  // namespace handsel::manipulation_planner

@@ -237,9 +237,9 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
     } else {
       last = planned.outcome;
       in_the_way = planned.start_touches;
-      if (parts.now.is_lost(in_the_way)) {
+      if (is_lost(parts.now, in_the_way)) {
         parts.refuse(text_of(motion.phase), last.reason);
-        const auto is_gone = [&] { return !parts.now.is_lost(in_the_way); };
+        const auto is_gone = [&] { return !is_lost(parts.now, in_the_way); };
         co_await parts.waiting.until(is_gone, parts.settings.permission_timeout);
         continue;
       }

@@ -164,12 +164,13 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
 }
 
 Routine<std::vector<Pose>> find_standing_places(Parts& parts, const SceneBox& surface,
-                                                const std::string& taker) {
+                                                const std::string& taker, const std::string& object,
+                                                const Pose& T_world_object) {
   PlacingJob placing = placing_job(parts);
   search_for(parts, taker, placing);
   auto found = std::make_shared<std::vector<Pose>>();
-  const std::function<void()> job = [found, box = surface, object = parts.held.id(),
-                                     in = std::move(placing), T_now = parts.held.T_world_object()] {
+  const std::function<void()> job = [found, box = surface, object, in = std::move(placing),
+                                     T_now = T_world_object] {
     for (const Pose& place : best_places_on(in, box, object, T_now, kMaxPassedPlaces)) {
       for (const double turn : kPassedTurns) {
         Pose T = place;

@@ -42,10 +42,12 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
                                          const std::string& surface,
                                          const std::vector<Grasp>& grasps,
                                          const DestinationLimits& limits);
-/// Searches places on a surface where what is held can stand, turned in several ways, in reach of
-/// the arm `taker` but perhaps not of the arm in use. Returns T_world_object, the best place first.
+/// Searches places on a surface where an object of the scene can stand, turned in several ways, in
+/// reach of the arm `taker` but perhaps not of the arm in use. `T_world_object`: the object now.
+/// Returns T_world_object at the places, the best first.
 Routine<std::vector<Pose>> find_standing_places(Parts& parts, const SceneBox& surface,
-                                                const std::string& taker);
+                                                const std::string& taker, const std::string& object,
+                                                const Pose& T_world_object);
 /// Searches places on a surface for what is held; the one that was found before the grasp comes
 /// first. `opening`: fingers after the release. `taker`: arm that is to reach the place well,
 /// because it takes the object from there; empty: the arm in use.

@@ -380,8 +380,14 @@ TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
   world.set_scene(with_digits);
   world.set_attachment({}, {scene.objects[0].id});
   for (const Grasp& g : c.grasps) {
-    for (const Vector* fingers : {&g.hand_joints, &g.pregrasp_joints})
-      EXPECT_TRUE(world.check_scene(posture(g.arm_joints, *fingers)).free) << g.id;
+    for (int k = 0; k <= 4; ++k) {
+      const double s = 0.25 * k;
+      const Vector closing = g.pregrasp_joints + s * (g.hand_joints - g.pregrasp_joints),
+                   coming = g.approach_joints + s * (g.arm_joints - g.approach_joints);
+      EXPECT_TRUE(world.check_scene(posture(g.arm_joints, closing)).free) << g.id << " at " << s;
+      EXPECT_TRUE(world.check_scene(posture(coming, g.pregrasp_joints)).free)
+          << g.id << " at " << s;
+    }
   }
 }
 

@@ -1,0 +1,23 @@
+// Clearance of grasps to the hand of the person who offers the object. The digits of that hand are
+// not observed but assumed.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "components/manipulation_planner/parts.hpp"
+
+namespace handsel::manipulation_planner {
+
+// References must outlive the routines.
+/// Leaves the grasps whose approach and closing fingers keep giver_hand_clearance to the giver's
+/// hand as it is observed now, and to the digits that are assumed; with none left the result says
+/// so.
+Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer, std::vector<Grasp>& grasps);
+/// Returns the ids of the grasps that keep the same clearance also where the giver's hand is turned
+/// about its fingers by up to `digits_turn` to either side: that turn is not observed.
+Routine<std::set<std::uint64_t>> clear_of_turned_hand(Parts& parts, const Offer& offer,
+                                                      const std::vector<Grasp>& grasps);
+
+}  // namespace handsel::manipulation_planner
