@@ -84,17 +84,12 @@ const char* reason_text(ChoiceReason reason) {
   return "unknown";
 }
 
-namespace {
-
-/// Returns the most frequent contact, in brackets.
-std::string most_frequent(const std::map<std::string, int>& contacts) {
+std::string NamedContacts::commonest() const {
   const auto most =
-      std::max_element(contacts.begin(), contacts.end(),
+      std::max_element(counts_.begin(), counts_.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == contacts.end() ? "" : " (most often " + most->first + ")";
+  return most == counts_.end() ? "" : most->first;
 }
-
-}  // namespace
 
 Refusals Choice::refusals() const {
   Refusals out;
@@ -135,10 +130,12 @@ std::string Choice::why_none(const GraspList& list) const {
   if (std::distance(often.begin(), last) >= static_cast<std::ptrdiff_t>(kReasonsGiven))
     std::iter_swap(last, often.begin() + kReasonsGiven - 1);
   std::string why = "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here";
-  for (std::size_t i = 0; i < std::min(often.size(), kReasonsGiven); ++i)
+  const std::string contact = contacts.commonest();
+  for (std::size_t i = 0; i < std::min(often.size(), kReasonsGiven); ++i) {
+    const bool is_named = often[i].second == ChoiceReason::collision && !contact.empty();
     why += (i == 0 ? ": for " : ", for ") + std::to_string(often[i].first) + " " +
-           reason_text(often[i].second) +
-           (often[i].second == ChoiceReason::collision ? most_frequent(contacts) : "");
+           reason_text(often[i].second) + (is_named ? " (most often " + contact + ")" : "");
+  }
   if (often.size() > kReasonsGiven) why += ", ...";
   if (const auto untried = reasons[static_cast<std::size_t>(ChoiceReason::not_considered)])
     why += "; " + std::to_string(untried) + " were not tried, the budget was used up";

@@ -87,8 +87,22 @@ struct PlatformSearch {
   std::uint64_t places{}, blocked{}, near_person{}, useless{};
 };
 
-inline constexpr int kNamedContacts = 100;  ///< grasps of which a contact is named
+/// What arm or hand would touch at grasps, for the reason of a failed choice.
+class NamedContacts {
+ public:
+  /// Returns whether enough contacts are counted: naming a contact costs a collision check.
+  bool is_full() const { return count_ >= 100; }
+  /// Counts a contact, "link forearm and box table".
+  void add(const std::string& which) { ++count_, ++counts_[which]; }
+  /// Returns the commonest contact; empty: none was counted.
+  std::string commonest() const;
 
+ private:
+  int count_{};
+  std::map<std::string, int> counts_;
+};
+
+/// The grasps that serve, and why others do not.
 struct Choice {
   std::vector<Grasp> grasps;       ///< with arm_joints and approach_joints, best first
   std::vector<PuttingDown> goals;  ///< of each grasp, when there is a goal
@@ -97,9 +111,7 @@ struct Choice {
   std::vector<std::optional<TransferPose>> transfers;
   /// Listed grasps by ChoiceReason, for where the robot stands.
   std::array<std::uint64_t, static_cast<std::size_t>(ChoiceReason::count)> reasons{};
-  /// What arm or hand would touch at a grasp, "link forearm and box table", with the number of the
-  /// grasps; of the first kNamedContacts grasps.
-  std::map<std::string, int> contacts;
+  NamedContacts contacts;            ///< of grasps where arm or hand would collide
   std::uint64_t reaches{};           ///< inverse kinematics solved or tried
   std::uint64_t transfer_reaches{};  ///< those for places to hand over
   std::uint64_t states{};            ///< robot states checked for collision

@@ -317,12 +317,6 @@ double GraspChooser::Search::on_our_side(const Grasp& g) const {
   return 0.5 * (1 + to_hand.stableNormalized().dot(to_robot));
 }
 
-bool GraspChooser::Search::touches_holder(const Grasp& g) {
-  if (!holder_body) return false;
-  ++out.touch_tests;
-  return hand.touches(*holder_body, g);
-}
-
 bool GraspChooser::Search::off_giver(const Vector& arm_q, const Grasp& g) {
   ++out.states;
   return giver->check_people(whole(arm_q, g.pregrasp_joints)).free;
@@ -344,13 +338,10 @@ GraspChooser::Search::Ranked GraspChooser::Search::ranked() {
   return all;
 }
 
-void GraspChooser::Search::note_contact(const std::string& which) {
-  if (named_contacts++ < kNamedContacts) ++out.contacts[which];
-}
-
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
-  if (touches_holder(g)) {
-    note_contact("the hand and that of " + holder);
+  if (holder_body) ++out.touch_tests;
+  if (holder_body && hand.touches(*holder_body, g)) {
+    out.contacts.add("the hand and that of " + holder);
     return ChoiceReason::collision;
   }
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;
@@ -358,9 +349,9 @@ ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
   if (!grasp_q) return ChoiceReason::out_of_reach;
   for (const Vector* fingers : {&g.hand_joints, &g.pregrasp_joints}) {
     if (free(start.world, *grasp_q, *fingers)) continue;
-    if (named_contacts < kNamedContacts) {
+    if (!out.contacts.is_full()) {
       const CollisionVerdict verdict = start.world.check(whole(*grasp_q, *fingers));
-      note_contact(verdict.first + " and " + verdict.second);
+      out.contacts.add(verdict.first + " and " + verdict.second);
     }
     return ChoiceReason::collision;
   }

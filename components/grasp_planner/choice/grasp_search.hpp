@@ -73,14 +73,10 @@ struct GraspChooser::Search {
   double stand_off() const;  ///< before the object, where the straight approach begins [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   ChoiceReason pick_up(Grasp& g);
-  /// Counts what a grasp would touch.
-  void note_contact(const std::string& which);
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
   /// How far on the robot's side of the object the hand is, [0, 1]: the person with the object in
   /// the hand is on the other.
   double on_our_side(const Grasp& g) const;
-  /// Whether the hand touches who holds the object, however the arm gets to the grasp.
-  bool touches_holder(const Grasp& g);
   /// Far enough from head, torso, upper arms and legs of the person that holds it, the hand open.
   bool off_giver(const Vector& arm_q, const Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
@@ -99,7 +95,6 @@ struct GraspChooser::Search {
   // with the object in the hand, at the handover: the person's arms are no obstacle
   std::optional<CollisionWorld> held;
   bool goal_is_taken{};
-  int named_contacts{};
   Pose T_root_world{Pose::Identity()};
   std::optional<Vector3> eye;                   // world: of the person, else of the robot
   std::optional<HandoverPoint> handover_point;  // of the person; empty: not known
