@@ -23,7 +23,7 @@ struct RequestLimits {
 /// What a newer request of a client means for its older ones.
 enum class OlderRequests {
   keep,       ///< each is answered
-  supersede,  ///< void, see superseded(); those that are open stay so until close()
+  supersede,  ///< older ones are superseded, see superseded(); open ones stay open
 };
 
 /// Open requests and kept replies. `Reply::id` has the fields `client` and `number`; the numbers of

@@ -39,6 +39,8 @@ settings::GraspPlannerSettings load_settings(const std::filesystem::path& folder
   if (!(s.weight_stability + s.weight_centre + s.weight_force + s.weight_curvature > 0))
     text.refuse("weight_stability",
                 "is 0 as the other weights of the quality; one must be above 0");
+  if (s.min_margin_held > s.min_margin)
+    text.refuse("min_margin_held", "must be at most min_margin");
   if (s.off_giver < s.off_fingers) text.refuse("off_giver", "must be at least off_fingers");
   return s;
 }

@@ -1,6 +1,7 @@
 #include "sim/people/free_grasp.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -30,7 +30,7 @@ struct FreeGraspSettings {
   int min_digits{3};            ///< min number of digits in contact
   double min_opposition{0.2};   ///< min cosine between thumb or palm and opposed fingers
   double side_preference{0.5};  ///< cost of a hand opposite the preferred direction
-  double room_preference{2.0};  ///< cost of a hand at the point that is left to a receiver
+  double room_preference{2.0};  ///< cost of a hand near the surface left to a receiver
   double away_weight{0.7};      ///< side away from the robot, relative to that toward the person
 };
 

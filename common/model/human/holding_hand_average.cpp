@@ -19,7 +19,7 @@ void HoldingHandAverage::add(const Scene& scene, const HumanState& people) {
   std::map<std::string, Hold> holds;
   for (const SceneObject& object : scene.objects) {
     if (object.holder != Holder::human) continue;
-    const ObjectModel* model = models_(object.model);
+    const ObjectModel* model = models_ ? models_(object.model) : nullptr;
     const auto person = std::find_if(people.people.begin(), people.people.end(),
                                      [&](const Person& p) { return p.id == object.holder_id; });
     if (person == people.people.end() || model == nullptr) continue;

@@ -15,10 +15,10 @@ namespace handsel {
 /// and an object does not move in the hand of its holder. Own method.
 class HoldingHandAverage {
  public:
-  /// Returns the model of that name; null: unknown.
+  /// Returns the model of that name; null: unknown. Empty: nothing is averaged.
   using Models = std::function<const ObjectModel*(const std::string&)>;
 
-  /// `samples`: number of latest samples that count, >= 1.
+  /// `samples`: each sample counts 1 / samples, the first samples as their mean; >= 1.
   HoldingHandAverage(Models models, int samples);
 
   /// Adds where hands and objects are, both in the world frame.

@@ -216,14 +216,16 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
     others = std::move(left);
   }
   for (const auto& [rank, index] : others) consider(rank, index, {});
-  // A giver leaves little room: a weaker grasp is better than none.
+  // Weaker grasps, ranked with the others, where fewer than min_grasps_held serve.
   for (const auto& [rank, index] : weak) {
     if (found.size() < settings_.min_grasps_held)
       consider(rank, index, {});
     else
       ++search.out.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)];
   }
+  const NamedContacts contacts_here = search.out.contacts;
   if (found.empty() && request.move_platform) search_places(search, order, found);
+  search.out.contacts = contacts_here;
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.rank > b.rank; });
   // One of each kind first: when the best fails, the next should be different.

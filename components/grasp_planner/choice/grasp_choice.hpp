@@ -93,8 +93,11 @@ class NamedContacts {
   /// Returns whether enough contacts are counted: naming a contact costs a collision check.
   bool is_full() const { return count_ >= 100; }
   /// Counts a contact, "link forearm and box table".
-  void add(const std::string& which) { ++count_, ++counts_[which]; }
-  /// Returns the commonest contact; empty: none was counted.
+  void add(const std::string& which) {
+    ++count_;
+    ++counts_[which];
+  }
+  /// Returns the commonest of the first 100 contacts; empty: none was counted.
   std::string commonest() const;
 
  private:

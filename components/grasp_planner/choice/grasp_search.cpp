@@ -255,6 +255,7 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
   const Vector from = whole(approach_q, g.pregrasp_joints), to = whole(grasp_q, g.pregrasp_joints);
   const int steps = static_cast<int>(std::ceil(stand_off() / kSweepStep));
   const Pose T_object_root = site.T_world_object.inverse() * scene.T_world_base;
+  const bool from_hand = holder_body.has_value() && &site == &start;
   for (int i = 0; i <= steps; ++i) {
     const double share = static_cast<double>(i) / steps;
     const Pose T_object_hand =
@@ -264,7 +265,7 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
         i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
     if (self.hand_geometry_->shape.touches(T_open, inputs.object, T_object_hand, clearance))
       return false;
-    const bool from_hand = holder_body.has_value() && &site == &start;
+    if (from_hand) ++out.touch_tests;
     if (from_hand && HandShape::hands_touch(
                          self.hand_geometry_->shape.placed(T_open, T_object_hand), *holder_body, 0))
       return false;
@@ -339,9 +340,8 @@ GraspChooser::Search::Ranked GraspChooser::Search::ranked() {
 }
 
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
-  if (holder_body) ++out.touch_tests;
-  if (holder_body && hand.touches(*holder_body, g)) {
-    out.contacts.add("the hand and that of " + holder);
+  if (holder_body && hand.touches(*holder_body, g, out.touch_tests)) {
+    if (!out.contacts.is_full()) out.contacts.add("the hand and that of " + holder);
     return ChoiceReason::collision;
   }
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;

@@ -27,7 +27,7 @@ struct GraspChooser::Search {
   Vector3 p_world_robot() const;
   /// Ranks of grasps and their places in the list, best first.
   using Ranking = std::vector<std::pair<double, std::size_t>>;
-  /// Grasps by which one hand holds the object, and weaker ones that serve in need.
+  /// Grasps by which one hand holds the object, and weaker ones, used where few others serve.
   struct Ranked {
     Ranking strong, weak;
   };

@@ -79,7 +79,8 @@ Routine<ClearGrasps> select_clear(Parts& parts, const HumanState& around, const 
   };
   ClearGrasps result;
   result.outcome = co_await parts.worker.run(job);
-  result.grasps = *clear;
+  // After a timeout the job may still write.
+  if (result.outcome.good) result.grasps = std::move(*clear);
   co_return result;
 }
 
@@ -100,7 +101,8 @@ Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
 Routine<std::set<std::uint64_t>> clear_of_turned_hand(Parts& parts, const Offer& offer,
                                                       const std::vector<Grasp>& grasps) {
   const double turn = parts.settings.digits_turn;
-  const std::vector<double> turns{-turn, -turn / 2, 0.0, turn / 2, turn};
+  std::vector<double> turns{0.0};
+  if (turn > 0) turns = {-turn, -turn / 2, 0.0, turn / 2, turn};
   const HumanState around = people_with_digits(parts, offer, turns);
   const ClearGrasps clear = co_await select_clear(parts, around, offer.object, grasps);
   std::set<std::uint64_t> ids;

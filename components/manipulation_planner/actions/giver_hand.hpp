@@ -11,9 +11,8 @@
 namespace handsel::manipulation_planner {
 
 // References must outlive the routines.
-/// Leaves the grasps whose approach and closing fingers keep giver_hand_clearance to the giver's
-/// hand as it is observed now, and to the digits that are assumed; with none left the result says
-/// so.
+/// Removes the grasps whose approach or closing fingers come nearer than giver_hand_clearance to
+/// the giver's hand as observed now, or to its assumed digits. Failure: none is left.
 Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer, std::vector<Grasp>& grasps);
 /// Returns the ids of the grasps that keep the same clearance also where the giver's hand is turned
 /// about its fingers by up to `digits_turn` to either side: that turn is not observed.

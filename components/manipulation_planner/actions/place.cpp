@@ -156,7 +156,8 @@ Routine<Outcome> place(Parts& parts, const std::string& object, const std::strin
     goal.surface = onto;
     Outcome passed = co_await regrasp(parts, goal);
     if (passed.good) co_return passed;
-    co_return Outcome::failure(none.reason + "; by the other hand: " + passed.reason, passed.kind);
+    co_return Outcome::failure(none.reason + "; by a change of hands: " + passed.reason,
+                               passed.kind);
   }
   Outcome done = co_await put_down_at(parts, object, onto, nobody, found);
   co_return done;

@@ -165,8 +165,10 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
                                            const std::string& onto, const Vector3& p_object) {
   OfferGrasps first;
   std::string first_arm;
-  const SceneBox* surface = parts.now.surface(onto);
-  std::vector<std::string> arms = arms_for(parts, p_object, surface);
+  const SceneBox* seen = parts.now.surface(onto);
+  const std::optional<SceneBox> surface =
+      seen != nullptr ? std::optional<SceneBox>(*seen) : std::nullopt;
+  std::vector<std::string> arms = arms_for(parts, p_object, surface ? &*surface : nullptr);
   const std::vector<std::string> near = arms_for(parts, p_object, nullptr);
   std::copy_if(near.begin(), near.end(), std::back_inserter(arms), [&arms](const std::string& arm) {
     return std::find(arms.begin(), arms.end(), arm) == arms.end();
@@ -187,7 +189,8 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
     }
   }
   if (first_arm != arms.back()) co_await use_arm(parts, first_arm);
-  if (surface != nullptr) first.serves = co_await another_arm_places(parts, offer.object, *surface);
+  if (surface && !first.list.grasps.empty())
+    first.serves = co_await another_arm_places(parts, offer.object, *surface);
   co_return first;
 }
 

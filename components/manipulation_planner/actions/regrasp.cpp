@@ -278,20 +278,21 @@ Routine<StepResult> execute_step(Parts& parts, const std::string& object, const 
   co_return result;
 }
 
-/// Returns places on a surface that an arm which is not in use reaches well, else places that the
-/// arm in use reaches, with another grasp than the present one; empty: none.
+/// Returns places on a surface that an arm which is not in use reaches; with none of these, places
+/// that the arm in use reaches, where it needs another grasp; empty: none.
 Routine<std::vector<Pose>> places_for_held(Parts& parts, const std::string& onto) {
-  const SceneBox* surface = parts.now.surface(onto);
+  const SceneBox* seen = parts.now.surface(onto);
   std::vector<Pose> places;
-  if (surface == nullptr) co_return places;
+  if (seen == nullptr) co_return places;
+  const SceneBox surface = *seen;
   const std::string in_use = parts.arm.group().name, object = parts.held.id();
+  const Pose T_world_object = parts.held.T_world_object();
   std::vector<std::string> arms;
   for (const Manipulator& other : parts.arm.manipulators())
     if (other.arm != nullptr && other.name != in_use) arms.push_back(other.name);
   arms.push_back(in_use);
   for (const std::string& arm : arms) {
-    places =
-        co_await find_standing_places(parts, *surface, arm, object, parts.held.T_world_object());
+    places = co_await find_standing_places(parts, surface, arm, object, T_world_object);
     if (!places.empty()) break;
   }
   co_return places;

@@ -1,10 +1,7 @@
 #include "components/manipulation_planner/actions/take.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <memory>
 
-#include "common/model/human/holding_hand.hpp"
 #include "components/manipulation_planner/actions/giver_hand.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"

@@ -179,8 +179,8 @@ Routine<std::vector<Pose>> find_standing_places(Parts& parts, const SceneBox& su
       }
     }
   };
-  co_await parts.worker.run(job);
-  co_return *found;
+  const Outcome worked = co_await parts.worker.run(job);
+  co_return worked.good ? *found : std::vector<Pose>{};
 }
 
 Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening,
