@@ -391,6 +391,37 @@ TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
   }
 }
 
+TEST(HeldOut, weaker_grasps_serve_from_a_hand_only_and_where_few_others_do) {
+  HumanState people;
+  const Scene held = held_out(people), standing_mug = table_with_mug();
+  GraspList list = mug().list;
+  list.min_margin = 1000;  // no grasp holds firmly
+  const auto serving = [&](const Scene& scene, double min_margin, std::size_t min_grasps) {
+    ChoiceSettings settings;
+    settings.min_margin_held = min_margin;
+    settings.min_grasps_held = min_grasps;
+    const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, "arm");
+    return chooser.choose({request(), list, *mug().object, scene, people}).grasps.size();
+  };
+  EXPECT_EQ(serving(held, -1000, 0), 0U);
+  EXPECT_EQ(serving(held, -1000, 2), 2U);
+  EXPECT_EQ(serving(held, 1000, 2), 0U);
+  EXPECT_EQ(serving(standing_mug, -1000, 2), 0U) << "nobody holds the mug";
+}
+
+TEST(HeldOut, a_failed_choice_names_what_the_hand_would_touch) {
+  HumanState people;
+  const Scene scene = held_out(people);
+  ChoiceSettings settings;
+  settings.off_digits = settings.off_fingers = 0.4;
+  settings.off_giver = 0.5;
+  const Choice none = choose(request(), scene, people, settings);
+  ASSERT_TRUE(none.grasps.empty());
+  EXPECT_NE(none.why_none(mug().list).find("(most often the hand and that of anna)"),
+            std::string::npos)
+      << none.why_none(mug().list);
+}
+
 TEST(HeldOut, grasps_that_touch_who_holds_it_cost_no_inverse_kinematics) {
   HumanState people;
   const Scene scene = held_out(people);
