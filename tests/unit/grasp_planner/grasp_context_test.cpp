@@ -10,6 +10,7 @@
 #include "common/model/human/human_body.hpp"
 #include "common/model/platform.hpp"
 #include "components/grasp_planner/choice/grasp_choice.hpp"
+#include "components/grasp_planner/choice/hand_at_object.hpp"
 #include "components/grasp_planner/choice/visibility.hpp"
 #include "tests/support/grasp_lists.hpp"
 
@@ -389,6 +390,37 @@ TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
           << g.id << " at " << s;
     }
   }
+}
+
+TEST(HeldOut, a_hand_that_touches_only_while_it_closes_is_seen_to_touch) {
+  const HandGeometry& geometry = *mug().hand_geometry;
+  HandAtObject hand(geometry, *mug().object, 0.0);
+  const Person far = anna(9, 9).people.front();
+  int cases = 0;
+  for (const ListedGrasp& listed : mug().list.grasps) {
+    const Grasp& g = listed.grasp;
+    const auto at = [&](double closure) {
+      std::vector<std::vector<Pose>> T_hand_step;
+      geometry.forward(g.pregrasp_joints + closure * (g.hand_joints - g.pregrasp_joints),
+                       T_hand_step);
+      return T_hand_step;
+    };
+    const std::vector<std::vector<Pose>> half = at(0.5);
+    for (const std::vector<Pose>& finger : half) {
+      // A small ball where the last joint of the finger is half-way.
+      const Vector3 p = g.T_object_hand * finger.back().translation();
+      const HandShape::PlacedHand ball = body_at_object(far, Pose::Identity(), {{p, p, 0.001}});
+      const auto touches = [&](double closure) {
+        return HandShape::hands_touch(geometry.shape.placed(at(closure), g.T_object_hand), ball, 0);
+      };
+      if (touches(0) || touches(1)) continue;
+      ++cases;
+      std::uint64_t tests = 0;
+      EXPECT_TRUE(hand.touches(ball, g, tests)) << g.id;
+      EXPECT_GT(tests, 2U);
+    }
+  }
+  EXPECT_GT(cases, 0);
 }
 
 TEST(HeldOut, weaker_grasps_serve_from_a_hand_only_and_where_few_others_do) {
