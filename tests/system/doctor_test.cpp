@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <thread>
 
 #include "common/bus/dds/dds_bus.hpp"
 #include "common/bus/dds/dds_configuration.hpp"
@@ -192,6 +193,37 @@ TEST_F(Doctor, is_silent_beside_a_healthy_system_and_sees_its_inputs) {
   EXPECT_FALSE(diagnosis.find("commander", "trajectory_controller").is_null()) << diagnosis.all();
   EXPECT_FALSE(diagnosis.find("inputs", "handsel/human_observation comes").is_null())
       << diagnosis.all();
+}
+
+/// The process of the simulator on kDomain; -1: none.
+pid_t simulator() {
+  for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
+    std::ifstream file(process.path() / "cmdline");
+    std::vector<std::string> arguments;
+    for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
+    if (arguments.size() > 2 && fs::path(arguments[0]).filename() == "handsel_sim" &&
+        arguments[1] == "--domain" && arguments[2] == std::to_string(kDomain))
+      return std::stoi(process.path().filename());
+  }
+  return -1;
+}
+
+TEST_F(Doctor, accepts_stamps_beside_a_simulator_that_has_halted_the_time) {
+  Background up(
+      {HANDSEL_COMMAND, "up", "--headless", "--port", "0", "--domain", std::to_string(kDomain)});
+  ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
+  const pid_t sim = simulator();
+  ASSERT_GT(sim, 0);
+  for (int stop = 0; stop < 3; ++stop) {
+    kill(sim, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    kill(sim, SIGCONT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
+  const Diagnosis diagnosis = doctor("--driver");
+  const Json clocks = diagnosis.find("clocks", "");
+  ASSERT_FALSE(clocks.is_null()) << diagnosis.all();
+  EXPECT_EQ(clocks["result"], "ok") << diagnosis.all();
 }
 
 TEST_F(Doctor, finds_that_peers_do_not_answer) {

@@ -18,8 +18,10 @@
 #include "common/messages/perception.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/robot.hpp"
+#include "common/messages/system.hpp"
 #include "deploy/handsel/doctor/doctor.hpp"
 #include "deploy/handsel/doctor/domain_findings.hpp"
+#include "deploy/handsel/doctor/halts.hpp"
 #include "deploy/handsel/doctor/probe.hpp"
 #include "deploy/handsel/system/launcher.hpp"
 #include "deploy/handsel/system/machine.hpp"
@@ -116,6 +118,9 @@ class Look {
     bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt& receipt) {
       clocks_[health.component].add(health.stamp, receipt.arrival);
     });
+    bus.subscribe<SimClock>([this](const SimClock& clock, const Receipt& receipt) {
+      halts_.announced(clock, receipt.arrival);
+    });
     watch<RobotState>("the robot's state", [this](const RobotState& state) {
       bases_[state.robot] = state.T_world_base;
     });
@@ -185,8 +190,8 @@ class Look {
   void watch(const char* what, std::function<void(const M&)> look) {
     auto offset = std::make_shared<Offset>();
     const SubscriptionStatus& status =
-        session_.bus().subscribe<M>([offset, look](const M& message, const Receipt& receipt) {
-          offset->add(message.stamp, receipt.arrival);
+        session_.bus().subscribe<M>([this, offset, look](const M& message, const Receipt& receipt) {
+          offset->add(message.stamp, receipt.arrival - halts_.at(receipt.arrival));
           look(message);
         });
     inputs_.push_back({what, &TopicOf<M>::row, &status, offset});
@@ -197,6 +202,7 @@ class Look {
   std::size_t speakers_;
   Session session_;
   std::set<std::uint64_t> heard_;
+  SimulatorHalts halts_;
   std::map<std::string, Offset> clocks_;
   std::vector<Input> inputs_;
   std::set<std::string> sources_;

@@ -14,6 +14,7 @@
 #include "common/messages/world.hpp"
 #include "components/spark/scene_model.hpp"
 #include "deploy/handsel/doctor/doctor.hpp"
+#include "deploy/handsel/doctor/halts.hpp"
 #include "deploy/handsel/doctor/perception_review.hpp"
 #include "deploy/handsel/doctor/probe.hpp"
 #include "deploy/handsel/system/processes.hpp"
@@ -193,11 +194,10 @@ std::vector<Finding> look(const DoctorOptions& options) {
   DdsBus bus({.component = "doctor",
               .domain = static_cast<std::uint32_t>(options.domain),
               .health = false});
-  // Where the simulator gives the pace, stamps are of the system's time, which has stood still for
-  // so long.
-  Duration stood_still{};
-  bus.subscribe<SimClock>(
-      [&](const SimClock& clock, const Receipt&) { stood_still = from_seconds(clock.waited); });
+  SimulatorHalts halts;
+  bus.subscribe<SimClock>([&](const SimClock& clock, const Receipt& receipt) {
+    halts.announced(clock, receipt.arrival);
+  });
   bool counts = false;
   std::set<std::string> heard;
   const auto watch = [&]<class M>(const Lenient& type, std::string topic,
@@ -207,7 +207,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
                                heard.insert(topic);
                                if (counts)
                                  review.on(*static_cast<const M*>(message), receipt.arrival,
-                                           bus.stamp_now() - stood_still.count());
+                                           bus.stamp_now() - halts.at(receipt.arrival).count());
                              },
                              {});
   };
