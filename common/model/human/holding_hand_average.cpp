@@ -9,8 +9,27 @@ namespace {
 
 // A hand that is this far from its average holds the object at another place [m].
 constexpr double kOtherPlace = 0.06;
+// Same for its average over so many samples.
+constexpr double kOtherPlaceOfMean = 0.02;
+constexpr int kRecentSamples = 5;
+constexpr int kSamplesAfterChange = 2;  // weight of such a mean, mixed with the place before
+
+/// Moves an average toward a sample, which counts 1 / samples.
+void add_to(HoldingHand& average, const HoldingHand& seen, int samples) {
+  average.p_wrist += (seen.p_wrist - average.p_wrist) / samples;
+  average.p_hand += (seen.p_hand - average.p_hand) / samples;
+}
 
 }  // namespace
+
+void HoldingHandAverage::Hold::add(const HoldingHand& seen, int max_samples) {
+  samples = std::min(samples + 1, max_samples);
+  add_to(hand, seen, samples);
+  add_to(recent, seen, std::min(samples, kRecentSamples));
+  if ((recent.p_hand - hand.p_hand).norm() < kOtherPlaceOfMean) return;
+  hand = recent;
+  samples = std::min(samples, kSamplesAfterChange);
+}
 
 HoldingHandAverage::HoldingHandAverage(Models models, int samples)
     : models_(std::move(models)), max_samples_(std::max(1, samples)) {}
@@ -25,15 +44,13 @@ void HoldingHandAverage::add(const Scene& scene, const HumanState& people) {
     if (person == people.people.end() || model == nullptr) continue;
     const auto seen = holding_hand(*person, *model, object.T_world_object);
     if (!seen) continue;
-    Hold hold{person->id, *seen, 0};
+    Hold hold{person->id, *seen, *seen, 0};
     const auto before = holds_.find(object.id);
     if (before != holds_.end() && before->second.person == person->id &&
         before->second.hand.side == seen->side &&
         (before->second.hand.p_hand - seen->p_hand).norm() < kOtherPlace)
       hold = before->second;
-    hold.samples = std::min(hold.samples + 1, max_samples_);
-    hold.hand.p_wrist += (seen->p_wrist - hold.hand.p_wrist) / hold.samples;
-    hold.hand.p_hand += (seen->p_hand - hold.hand.p_hand) / hold.samples;
+    hold.add(*seen, max_samples_);
     holds.emplace(object.id, std::move(hold));
   }
   holds_ = std::move(holds);

@@ -31,7 +31,10 @@ class HoldingHandAverage {
   struct Hold {
     std::string person;  // id
     HoldingHand hand;    // on average
+    HoldingHand recent;  // on average over the last few samples
     int samples{};
+
+    void add(const HoldingHand& seen, int max_samples);
   };
 
   Models models_;

@@ -91,6 +91,15 @@ TEST_F(HoldingHandTest, a_hand_at_another_place_begins_anew) {
   EXPECT_LT(error("r_hand"), kNoise / 2);
 }
 
+TEST_F(HoldingHandTest, a_hand_that_moves_on_the_object_by_4_cm_begins_anew) {
+  add(40);
+  hold({0.0, 0.06, 0.0}, {0.09, 0.07, -0.01});
+  add(15);
+  EXPECT_LT(error("r_hand"), kNoise);
+  add(25);
+  EXPECT_LT(error("r_hand"), kNoise / 2);
+}
+
 TEST_F(HoldingHandTest, an_object_in_nobodys_hand_changes_nobody) {
   add(40);
   scene_.objects[0].holder = Holder::robot;
