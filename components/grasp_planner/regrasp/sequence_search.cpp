@@ -48,7 +48,8 @@ void SequenceSearch::add_places() {
   places_.insert(places_.end(), task_.placements.begin(), task_.placements.end());
 }
 
-/// Adds picking and placing with the grasps of each arm that may be used.
+/// Adds picking and placing with the grasps of each arm that may be used. There may be many places
+/// to put the object down: those that the arm reaches most easily are checked first.
 void SequenceSearch::add_grasps() {
   for (int a = 0; a < static_cast<int>(check_.arms().size()); ++a) {
     const RegraspArm& arm = check_.arms()[static_cast<std::size_t>(a)];
@@ -62,8 +63,13 @@ void SequenceSearch::add_grasps() {
     for (const std::size_t i : taken) {
       for (std::size_t p = 0; p < places_.size(); ++p) {
         const Grasp& g = check_.grasp(a, i);
+        const std::optional<double> strain = check_.strain(a, i, places_[p]);
+        if (!strain) {
+          ++rejected_["grasps at a place: no configuration of the arm reaches it"];
+          continue;
+        }
         graph_.add({-1, p}, {a, i}, g.quality, g.margin);
-        graph_.add({a, i}, {-1, p}, g.quality, g.margin);
+        graph_.add({a, i}, {-1, p}, g.quality, g.margin, *strain);
       }
     }
   }
@@ -83,8 +89,8 @@ void SequenceSearch::add_passes() {
     const DoubleGrasp& d = doubles_.grasps[n];
     const double margin =
         std::min(check_.grasp(0, d.first).margin, check_.grasp(1, d.second).margin);
-    graph_.add({0, d.first}, {1, d.second}, d.quality, margin, n);
-    graph_.add({1, d.second}, {0, d.first}, d.quality, margin, n);
+    graph_.add({0, d.first}, {1, d.second}, d.quality, margin, 0.0, n);
+    graph_.add({1, d.second}, {0, d.first}, d.quality, margin, 0.0, n);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "common/model/arm_reach.hpp"
 #include "components/grasp_planner/list/so3_grid.hpp"
 #include "components/grasp_planner/pair/retreat.hpp"
 
@@ -45,7 +46,11 @@ StepCheck::StepCheck(const RobotModel& robot, std::vector<RegraspArm> arms, cons
       shapes_.push_back({static_cast<int>(l), CollisionShape::make(p.shape), p.T_parent_shape});
   }
   retreats_.reserve(arms_.size());
-  for (const RegraspArm& x : arms_) retreats_.push_back(retreat_directions(x.hand_geometry->hand));
+  for (const RegraspArm& x : arms_) {
+    retreats_.push_back(retreat_directions(x.hand_geometry->hand));
+    p_shoulders_.push_back(shoulder(static_cast<int>(p_shoulders_.size())));
+    lengths_.push_back(arm_reach(robot_, x.arm.arm, x.arm.palm).length - kObjectBeyondTool);
+  }
 }
 
 const Grasp& StepCheck::grasp(int arm, std::size_t i) const {
@@ -102,6 +107,17 @@ std::optional<Vector> StepCheck::straight(int arm, std::size_t i, const Pose& T_
   for (const double ratio : {0.25, 0.5, 0.75, 0.9})
     if (!clear_of_object(from + ratio * (to - from), T_world_object, 1 - arm)) return std::nullopt;
   return from;
+}
+
+std::optional<double> StepCheck::strain(int arm, std::size_t i, const Pose& T_world_object) const {
+  constexpr double kComfortable = 0.7;  // of the arm's length
+  const auto a = static_cast<std::size_t>(arm);
+  const Pose T_world_hand = T_world_object * grasp(arm, i).T_object_hand;
+  const Vector3 away = T_world_hand.translation() - p_shoulders_[a];
+  const double stretched = away.norm() / lengths_[a];
+  if (stretched > 1) return std::nullopt;
+  const double backward = (1 - T_world_hand.linear().col(2).dot(away.stableNormalized())) / 2;
+  return 0.5 * backward + 0.5 * std::max(0.0, stretched - kComfortable) / (1 - kComfortable);
 }
 
 CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_object) {
@@ -162,7 +178,8 @@ Vector3 StepCheck::shoulder(int arm) const {
 /// away from their shoulders and keep the object upright.
 std::vector<StepCheck::PassPlace> StepCheck::pass_places(const Pass& pass) const {
   static const std::vector<Eigen::Quaterniond> turns = so3_sequence(so3_grid_size(0));
-  const Vector3 a = shoulder(pass.from), b = shoulder(pass.to), middle = 0.5 * (a + b),
+  const Vector3 a = p_shoulders_[static_cast<std::size_t>(pass.from)],
+                b = p_shoulders_[static_cast<std::size_t>(pass.to)], middle = 0.5 * (a + b),
                 apart = b - a;
   Vector3 forward = T_world_base_.linear().col(0);
   std::vector<PassPlace> out;

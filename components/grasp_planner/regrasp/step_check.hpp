@@ -50,6 +50,10 @@ class StepCheck {
   std::optional<Vector> stand_off(int arm, std::size_t i, const Pose& T_world_object,
                                   const Vector& q, const Vector& arm_q);
 
+  /// Returns how much speaks against the arm's reaching a grasp of the object at this pose, [0, 1]:
+  /// the hand points back toward the shoulder or is as far away as the arm is long. nullopt:
+  /// farther. Takes 1 us where an inverse solution takes milliseconds. Own method.
+  std::optional<double> strain(int arm, std::size_t i, const Pose& T_world_object) const;
   /// Checks picking the object up from where it stands, or, backwards, putting it down there.
   CheckedStep check_pick(int arm, std::size_t i, const Pose& T_world_object);
   /// A pass from one hand to the other.
@@ -93,6 +97,8 @@ class StepCheck {
   std::vector<LinkShape> shapes_;
   std::vector<int> hand_of_;                    // per link: the arm whose hand it belongs to
   std::vector<std::vector<Vector3>> retreats_;  // per arm: directions in the frame of its hand
+  std::vector<Vector3> p_shoulders_;            // per arm, world [m]
+  std::vector<double> lengths_;                 // per arm, shoulder to palm [m]
   std::vector<Pose> T_root_link_;
 };
 

@@ -9,15 +9,17 @@ namespace {
 
 constexpr double kQualityCost = 0.01;  // of a step: grasps decide between sequences of equal length
 constexpr double kWeakCost =
-    0.05;                        // of a step whose grip force does not hold wherever the load pulls
-constexpr double kWeakest = 10;  // below a margin of less than this all are alike [N]
+    0.05;  // of a step whose grip force does not hold wherever the load pulls
+constexpr double kStrainCost = 0.03;  // of a step that is hardly possible: those are checked last
+constexpr double kWeakest = 10;       // below a margin of less than this all are alike [N]
 
 }  // namespace
 
 void StepGraph::add(const GraphNode& from, const GraphNode& to, double quality, double margin,
-                    std::size_t pair) {
+                    double strain, std::size_t pair) {
   const double weak = std::clamp(-margin / kWeakest, 0.0, 1.0);
-  edges_[from].push_back({to, 1 + kQualityCost * (1 - quality) + kWeakCost * weak, pair});
+  const double cost = 1 + kQualityCost * (1 - quality) + kWeakCost * weak + kStrainCost * strain;
+  edges_[from].push_back({to, cost, pair});
 }
 
 void StepGraph::remove(const GraphNode& from, const GraphNode& to) {

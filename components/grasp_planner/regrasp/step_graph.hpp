@@ -20,9 +20,10 @@ struct GraphNode {
 class StepGraph {
  public:
   /// Adds a step. `quality`: of its grasps, [0, 1]. `margin`: the smallest of the grasps that it
-  /// leads from or to [N]. `pair`: of a pass: index of the pair of grasps.
+  /// leads from or to [N]. `strain`: what speaks against its being possible, [0, 1]. `pair`: of a
+  /// pass: index of the pair of grasps.
   void add(const GraphNode& from, const GraphNode& to, double quality, double margin,
-           std::size_t pair = 0);
+           double strain = 0, std::size_t pair = 0);
   /// Removes the step between two nodes.
   void remove(const GraphNode& from, const GraphNode& to);
   /// Returns the pair of a step that was added.

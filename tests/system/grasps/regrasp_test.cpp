@@ -203,16 +203,21 @@ TEST(Regrasp, a_hand_changes_its_own_grasp_through_the_other_hand) {
   }
 }
 
-TEST(Regrasp, what_one_hand_holds_the_other_puts_down_at_any_of_the_places) {
-  const std::string object = "bottle";
-  RegraspPlanner planner = duo().planner(object);
+/// Lets a task begin with the grasp by which the right hand picks the object up for the left.
+void hold_in_right_hand(RegraspPlanner& planner, const std::string& object, RegraspTask& task) {
   RegraspTask first;
   first.start.T_world_object = DuoStage::standing(object, 0.5, -0.35);
   first.goal.arm = 1;
   const RegraspPlan picked = planner.plan(first);
   ASSERT_TRUE(picked.solved) << picked.reason;
-  RegraspTask task;
   task.start = {0, picked.steps.front().grasp_to, Pose::Identity()};
+}
+
+TEST(Regrasp, what_one_hand_holds_the_other_puts_down_at_any_of_the_places) {
+  const std::string object = "bottle";
+  RegraspPlanner planner = duo().planner(object);
+  RegraspTask task;
+  ASSERT_NO_FATAL_FAILURE(hold_in_right_hand(planner, object, task));
   task.goal.T_world_object = DuoStage::standing(object, 3, 0.5);
   const RegraspPlan none = planner.plan(task);
   EXPECT_FALSE(none.solved);
@@ -225,6 +230,22 @@ TEST(Regrasp, what_one_hand_holds_the_other_puts_down_at_any_of_the_places) {
   EXPECT_EQ(plan.steps[0].kind, RegraspStepKind::pass);
   EXPECT_EQ(plan.steps[1].kind, RegraspStepKind::place);
   EXPECT_TRUE(plan.steps[1].T_world_object.isApprox(T_reached));
+  expect_sequence(plan, object, task.start);
+}
+
+TEST(Regrasp, the_one_place_in_reach_is_found_among_a_hundred) {
+  const std::string object = "bottle";
+  RegraspPlanner planner = duo().planner(object);
+  RegraspTask task;
+  ASSERT_NO_FATAL_FAILURE(hold_in_right_hand(planner, object, task));
+  task.goal.T_world_object = DuoStage::standing(object, 1.5, 0);
+  for (int i = 1; i < 100; ++i)
+    task.other_goals.push_back(DuoStage::standing(object, 1.5, 0.02 * i));
+  const Pose T_reached = DuoStage::standing(object, 0.5, 0.5, 1.0);
+  task.other_goals.push_back(T_reached);
+  const RegraspPlan plan = planner.plan(task);
+  ASSERT_TRUE(plan.solved) << plan.reason;
+  EXPECT_TRUE(plan.steps.back().T_world_object.isApprox(T_reached));
   expect_sequence(plan, object, task.start);
 }
 
