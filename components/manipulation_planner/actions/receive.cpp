@@ -80,10 +80,10 @@ double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& gr
   return lack;
 }
 
-/// Sorts grasps: the arm's shortest motion first, since a giver does not wait long, unless the
-/// grasp is weak, the hand may touch the giver's digits, the arm would come near to the giver's
-/// body, or the object cannot be put down by that grasp. Leaves the best. Returns false where the
-/// object can be put down by none.
+/// Sorts grasps: those that hold first, of these the arm's shortest motion first, since a giver
+/// does not wait long, unless the grasp is weak, the hand may touch the giver's digits, the arm
+/// would come near to the giver's body, or the object cannot be put down by that grasp. Leaves the
+/// best. Returns false where the object can be put down by none.
 Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
                           std::vector<Grasp>& grasps) {
   const DestinationLimits limits{grasps.size(), parts.settings.receive_places};
@@ -93,14 +93,16 @@ Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& o
     parts.refuse("place", "no grasp of " + offer.object +
                               " as it is held serves for putting it down: " + later.objections);
   const std::set<std::uint64_t> clear = co_await clear_of_turned_hand(parts, offer, grasps);
-  std::vector<std::pair<double, Grasp>> ranked;
+  std::vector<std::pair<std::pair<bool, double>, Grasp>> ranked;
   for (Grasp& g : grasps) {
     const double penalty = parts.settings.weak_grip_detour * std::max(0.0, -g.margin) +
                            parts.settings.giver_detour * lacking_clearance(parts, offer, g) +
                            (clear.count(g.id) > 0 ? 0.0 : parts.settings.digits_detour) +
                            (parts.destinations.has(g.id) ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
-    ranked.emplace_back(std::floor((distance + penalty) / kSameDistance), std::move(g));
+    const bool may_slip = g.margin < parts.settings.min_sure_margin;
+    ranked.emplace_back(std::pair(may_slip, std::floor((distance + penalty) / kSameDistance)),
+                        std::move(g));
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
