@@ -261,11 +261,24 @@ void People::pull(Body& person, double dt) {
   }
   if (!person.grip.holding()) return;
   ObjectBody& object = objects_[person.object];
+  if (person.model.phase() == PersonPhase::offering && person.model.p_hand_object_to_give())
+    move_in_hand(person, *person.model.p_hand_object_to_give(), dt);
   const Wrench& w = person.grip.update(person.hand().state(), object.state(), object.model().mass,
                                        object.min_inertia(), dt);
   object.push(w);
   person.hand().push(object.state().T_world_body.translation(), {-w.force, -w.torque});
   person.broke = !person.grip.holding();
+}
+
+/// Moves the held object in the hand, toward this position in the frame of the hand [m].
+void People::move_in_hand(Body& person, const Vector3& p_hand_object, double dt) const {
+  constexpr double kSpeed = 0.15;  // [m/s]
+  const ObjectBody& object = objects_[person.object];
+  Pose T = person.grip.T_holder_object();
+  const Pose T_body_object = object.state().T_world_body.inverse() * object.T_world_object();
+  const Vector3 left = p_hand_object - (T * T_body_object).translation();
+  T.translation() += std::min(1.0, kSpeed * dt / std::max(left.norm(), 1e-9)) * left;
+  person.grip.set_T_holder_object(T);
 }
 
 double People::hand_gap(const Body& person) const {

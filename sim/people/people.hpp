@@ -101,6 +101,7 @@ class People {
                const std::vector<HandPart>& robot);
   void hold_or_release(Body&);
   void pull(Body&, double dt);
+  void move_in_hand(Body&, const Vector3& p_hand_object, double dt) const;
   double hand_gap(const Body&) const;
 
   ObjectBodies& objects_;

@@ -171,6 +171,9 @@ class PersonModel {
   const std::optional<HandConfiguration>& hand_configuration() const { return hand_configuration_; }
   /// Returns the shape of a hand; 0 left, 1 right.
   HumanHand hand_shape(int side) const;
+  /// Returns where in the frame of hand() the person moves the held object, to leave a receiver
+  /// room on it [m]; nullopt: the object stays where it is in the hand.
+  const std::optional<Vector3>& p_hand_object_to_give() const { return p_hand_object_to_give_; }
   bool placed() const { return placed_; }  ///< the body was placed elsewhere without a motion
   double reach() const { return reach_; }  ///< shoulder to the centre of the hand [m]
 
@@ -216,6 +219,8 @@ class PersonModel {
   void choose_place(const PersonView&);
   Vector3 side_to_take(const PersonView&) const;
   FreeGraspQuery place_query(const ObjectModel&, const HumanArm&) const;
+  std::optional<Vector3> choose_place_to_give(const ObjectModel&, const Eigen::Quaterniond& turn);
+  void hold_to_give_back(const PersonView&);
   bool gives_from_place() const;
   double lean_to_reach(const Vector3& p_hand) const;
   double lean_to_take(const PersonView&) const;
@@ -281,10 +286,11 @@ class PersonModel {
       walk_direction_{1}, waited_for_robot_{0};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()},
       side_of_object_{Vector3::UnitX()}, warp_{Vector3::Zero()}, step_{Vector3::Zero()};
-  std::optional<FollowedBody> followed_;    // body of an external person
-  std::optional<MovingOffer> moving_;       // motion of the offer; nullopt: not begun
-  Vector3 p_hand_object_{Vector3::Zero()};  // the moved object in the hand frame [m]
-  TakingHand taking_;                       // place of the hand on an object that is taken
+  std::optional<FollowedBody> followed_;          // body of an external person
+  std::optional<MovingOffer> moving_;             // motion of the offer; nullopt: not begun
+  Vector3 p_hand_object_{Vector3::Zero()};        // the moved object in the hand frame [m]
+  std::optional<Vector3> p_hand_object_to_give_;  // as p_hand_object_to_give()
+  TakingHand taking_;                             // place of the hand on an object that is taken
   std::optional<HandConfiguration> hand_configuration_;  // of the handover hand; nullopt: a fist
   // Orientation of the handover hand before a reach.
   Eigen::Quaterniond R_world_rest_{Eigen::Quaterniond::Identity()};

@@ -25,7 +25,6 @@ constexpr double kOfferTime = 1.0;          // duration of the motion to an offe
 // Time constant of the hand's return to the neutral wrist configuration [s].
 constexpr double kWristReturnTime = 0.5;
 constexpr double kMaxOfferTurn = 0.6;       // max angle of an offer from straight ahead [rad]
-constexpr double kMinHandDistance = 0.5;    // min distance of an offer from the robot's hand [m]
 constexpr double kMaxIgnoredTime = 8.0;     // time after which an ignored offer is repeated [s]
 constexpr double kStepNearerLength = 0.12;  // step toward the robot before a repeated offer [m]
 constexpr int kMaxStepsNearer = 2;          // max number of these steps
@@ -82,6 +81,7 @@ void PersonModel::hold_object(const PersonView& view) {
   from_ = hand_target_;
   home_ = feet_;
   duration_ = back;
+  hold_to_give_back(view);
   p_shoulder_offer_ = offer_from_shoulder(view);
   enter(PersonPhase::offering);
 }
@@ -106,7 +106,7 @@ Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& 
   if (shortfall > 0) arm.head<2>() *= std::max(0.0, 1 - shortfall / arm.head<2>().norm());
   // An object beside the hand is offered as far from the body as an object in front of the hand,
   // and straight ahead.
-  const Vector3 held = facing() * view.p_hand_object;
+  const Vector3 held = facing() * p_hand_object_to_give_.value_or(view.p_hand_object);
   if (taking_.has_place())
     arm +=
         std::max(0.0, kObjectAhead - held.dot(forward())) * forward() - held.dot(left()) * left();

@@ -10,6 +10,8 @@ namespace handsel::sim {
 
 /// Grip force beyond which the person releases the object [N].
 inline constexpr double kMaxToleratedForce = 30.0;
+/// Min distance of an offer from the robot's hand [m].
+inline constexpr double kMinHandDistance = 0.5;
 /// Distance of an object's origin ahead of a fist that holds the object unturned [m].
 inline constexpr double kObjectAhead = 0.08;
 inline constexpr double kWalkSpeed = 0.6;   ///< mean walking speed [m/s]

@@ -21,10 +21,10 @@ HumanHand PersonModel::hand_shape(int side) const {
 }
 
 /// Returns whether the person looks for a place that the robot leaves free. The hands of people
-/// from outside have no orientation, and what a fetcher takes no robot holds. A partner, who gives
-/// the object back, holds the object in a fist.
+/// from outside have no orientation, and what a fetcher takes no robot holds.
 bool PersonModel::chooses_place() const {
-  return settings_.kind == PersonKind::taker && !settings_.recording;
+  return (settings_.kind == PersonKind::taker || settings_.kind == PersonKind::partner) &&
+         !settings_.recording;
 }
 
 /// Returns the preferred side of an offered object: toward the person and away from the robot's
@@ -54,14 +54,17 @@ FreeGraspQuery PersonModel::place_query(const ObjectModel& object, const HumanAr
 
 /// Returns whether the hand holds an object that the person gives in a chosen place.
 bool PersonModel::gives_from_place() const {
-  return settings_.kind == PersonKind::giver && wants_grip_ && taking_.has_place();
+  return (settings_.kind == PersonKind::giver || settings_.kind == PersonKind::partner) &&
+         wants_grip_ && taking_.has_place();
 }
 
-std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
-                                                     const Eigen::Quaterniond& turn) {
+/// Chooses a place that leaves a receiver room on a held object; returns the position of the object
+/// in the frame of hand(), nullopt: there is none.
+std::optional<Vector3> PersonModel::choose_place_to_give(const ObjectModel& object,
+                                                         const Eigen::Quaterniond& turn) {
   constexpr double kOutwardWeight = 0.8, kBackWeight = 0.6;  // of the hand's side of the object
   const auto arm = human_arm(body_, side_);
-  if (!arm || settings_.kind != PersonKind::giver) return std::nullopt;
+  if (!arm) return std::nullopt;
   FreeGraspQuery query = place_query(object, *arm);
   query.T_world_object = make_pose(comfortable_reach(body_, side_), facing() * turn);
   const Vector3 outward = side_ == Side::left ? left() : Vector3(-left());
@@ -73,9 +76,29 @@ std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
     const Vector3 p = query.T_world_object * vertex;
     if (p.dot(away) > max_away) max_away = p.dot(away), query.p_left = p;
   }
-  if (!taking_.hold(query, hand_shape(hand_index()), settings_.taking)) return std::nullopt;
+  TakingHand chosen;
+  if (!chosen.hold(query, hand_shape(hand_index()), settings_.taking)) return std::nullopt;
+  taking_ = chosen;
   const Vector3 p_hand = taking_.goal(query.T_world_object).translation();
-  return make_pose(facing().inverse() * (query.T_world_object.translation() - p_hand), turn);
+  return facing().inverse() * (query.T_world_object.translation() - p_hand);
+}
+
+std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
+                                                     const Eigen::Quaterniond& turn) {
+  if (settings_.kind != PersonKind::giver && !settings_.holds) return std::nullopt;
+  const auto p_hand_object = choose_place_to_give(object, turn);
+  if (!p_hand_object) return std::nullopt;
+  return make_pose(*p_hand_object, turn);
+}
+
+/// Chooses anew how a partner holds what the robot asks for, while the robot's hand is far.
+void PersonModel::hold_to_give_back(const PersonView& view) {
+  p_hand_object_to_give_.reset();
+  const bool is_far = view.object != nullptr && !view.held_by_robot &&
+                      (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
+  if (settings_.kind != PersonKind::partner || !taking_.has_place() || !is_far) return;
+  const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
+  p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
 }
 
 void PersonModel::choose_place(const PersonView& view) {

@@ -201,6 +201,43 @@ TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
   }
 }
 
+TEST(SimPerson, partner_holds_anew_what_the_robot_asks_for_and_leaves_room_at_its_upper_end) {
+  PersonSettings settings = giver();
+  settings.feet = Vector3(1.35, 0, 0);
+  settings.kind = PersonKind::partner;
+  PersonModel person(settings);
+  PersonView view = offer({0.95, 0.05, 1.05});
+  person.announce(Announcement::offers);
+  step_until(person, view, PersonPhase::pulling, 6);
+  ASSERT_EQ(person.phase(), PersonPhase::pulling);
+  EXPECT_TRUE(person.hand_configuration()) << "taken with the digits";
+  Pose T_hand_object = person.hand().T_world_body.inverse() * view.T_world_object;
+  const auto held = [&] {
+    view.robot_hand = {0.3, 0.5, 1.0};
+    view.T_world_object = person.hand().T_world_body * T_hand_object;
+    view.p_hand_object = T_hand_object.translation();
+    view.held_by_robot = view.held_firmly = false;
+    return view;
+  };
+  for (int i = 0; i < 4000; ++i) person.step(0.001, held());
+  ASSERT_EQ(person.phase(), PersonPhase::keeping);
+  EXPECT_TRUE(person.hand_configuration());
+  EXPECT_FALSE(person.p_hand_object_to_give());
+  person.announce(Announcement::asks);
+  for (int i = 0; i < 4000; ++i) {
+    person.step(0.001, held());
+    if (person.p_hand_object_to_give())
+      T_hand_object.translation() = *person.p_hand_object_to_give();
+  }
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  ASSERT_TRUE(person.p_hand_object_to_give());
+  EXPECT_TRUE(person.hand_configuration());
+  // The mug is 0.1 m high; the hand leaves its upper end free.
+  const double hand_above_middle =
+      person.hand().T_world_body.translation().z() - (held().T_world_object * view.object->com).z();
+  EXPECT_LT(hand_above_middle, 0.02);
+}
+
 TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
   PersonModel person(giver());
   live(person, 3, {1.0, -0.2, 1.2});
