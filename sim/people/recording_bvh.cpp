@@ -87,6 +87,17 @@ BvhMap map_joints(const Bvh& bvh, const std::string& name) {
   return map;
 }
 
+// Many files begin with the rest pose of the skeleton. Joints would jump from there into the
+// motion, faster than any joint of a person moves [m/s].
+constexpr double kMaxJointSpeed = 15.0;
+
+/// Returns the largest displacement of a joint between two frames [m].
+double max_displacement(const BodyPoints& from, const BodyPoints& to) {
+  double max = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) max = std::max(max, (to[i] - from[i]).norm());
+  return max;
+}
+
 }  // namespace
 
 Recording parse_bvh_recording(std::string_view text, const std::string& name) {
@@ -134,6 +145,8 @@ Recording parse_bvh_recording(std::string_view text, const std::string& name) {
       body[kHand[s]] = body[kWrist[s]] + palm * fingers.stableNormalized();
     }
   }
+  if (frames.size() > 2 && max_displacement(frames[0], frames[1]) > kMaxJointSpeed * bvh.frame_time)
+    frames.erase(frames.begin());
   check_body(frames[0], name, 1);
   return finish(std::move(frames), 1 / bvh.frame_time, true);
 }

@@ -102,6 +102,8 @@ TEST(Bvh, every_file_of_others_is_read_and_is_a_body) {
     }
     EXPECT_NEAR(lowest, 0.039 * r.stature, 1e-6) << name << ": the feet are on the floor";
     EXPECT_LE(travel, 0.5) << name << ": who walks, walks on the spot";
+    for (std::size_t i = 0; i < first.size(); ++i)
+      EXPECT_LT((r.frames[1][i] - first[i]).norm() * r.rate, 15) << name << ": begins with a jump";
     EXPECT_GT((first[joint("r_wrist")] - first[joint("r_elbow")]).norm(), 0.15) << name;
     EXPECT_LT((first[joint("r_wrist")] - first[joint("r_elbow")]).norm(), 0.40) << name;
   }
@@ -117,6 +119,16 @@ TEST(Recordings, of_our_corpus_reach_with_the_right_hand) {
     EXPECT_NEAR(r.frames.front()[joint("head")].z(), 0.93 * r.stature, 0.08) << name;
     EXPECT_GT(r.contact, 0.0) << name;
   }
+}
+
+TEST(Recordings, begin_after_the_rest_pose_of_the_skeleton) {
+  const Recording r = load_recording(ours("bvh/good_rest_pose.bvh")),
+                  same = load_recording(ours("bvh/good_cm.bvh"));
+  ASSERT_EQ(r.frames.size(), same.frames.size());
+  const double off =
+      (r.frames.front()[joint("r_hand")] - same.frames.front()[joint("r_hand")]).norm();
+  EXPECT_LT(off, 0.01);
+  EXPECT_EQ(r.contact, same.contact);
 }
 
 TEST(Recordings, uneven_times_are_resampled) {
