@@ -246,6 +246,8 @@ TEST(Regrasp, the_one_place_in_reach_is_found_among_a_hundred) {
   const RegraspPlan plan = planner.plan(task);
   ASSERT_TRUE(plan.solved) << plan.reason;
   EXPECT_TRUE(plan.steps.back().T_world_object.isApprox(T_reached));
+  print(plan, object, "to the one place in reach");
+  EXPECT_LT(plan.checked, 300U);
   expect_sequence(plan, object, task.start);
 }
 
