@@ -19,6 +19,7 @@ constexpr double kGivenUp = 1.0;    // [s] no reaction: counts as this
 constexpr double kStill = 0.05;     // [m/s] a joint slower than this does not move
 constexpr double kTruthStep = 0.1;  // [s] a longer silence of the truth counts as no more
 constexpr double kClose = 0.5;      // [m] within which closing speeds count
+constexpr double kPassing = 2.0;    // [m] within which it matters whether the person sees the robot
 constexpr double kJump =
     0.1;  // [m] between two truths: what is excepted has changed, nobody moved so far
 constexpr Duration kBefore = std::chrono::milliseconds(500);
@@ -39,6 +40,17 @@ double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) -
                 1];
+}
+
+/// Returns the level angle between the front of a person and a point, world [m]: 0 in front, pi
+/// behind [rad]; nullopt: the point is at the person's middle.
+std::optional<double> angle_from_front(const Person& person, const Vector3& p) {
+  const Vector3 to_point = p - find_joint(person, "torso")->position,
+                front = torso_axes(person).col(0);
+  const Eigen::Vector2d a = to_point.head<2>(), b = front.head<2>();
+  const double lengths = a.norm() * b.norm();
+  if (lengths <= 0) return std::nullopt;
+  return std::acos(std::clamp(a.dot(b) / lengths, -1.0, 1.0));
 }
 
 /// Of the person: how fast their fastest joint is, and how fast the nearest to `p` comes nearer to
@@ -156,18 +168,19 @@ void Criteria::watch_handover(const GroundTruth& ground_truth) {
 }
 
 void Criteria::watch_passing(const GroundTruth& ground_truth) {
-  const bool is_nearer = !nearest_ || ground_truth.separation < *nearest_;
-  if (!ground_truth.robot_moving || !is_nearer || ground_truth.person.size() != kBodyJoints.size())
+  const bool is_nearer = last_ && ground_truth.separation < last_->separation,
+             is_nearest = !nearest_ || ground_truth.separation < *nearest_;
+  if (!ground_truth.robot_moving || !(is_nearer || is_nearest) ||
+      ground_truth.person.size() != kBodyJoints.size())
     return;
-  nearest_ = ground_truth.separation;
   Person person;
   person.joints = ground_truth.person;
-  Vector3 to_robot = status_.nearest_on_robot - find_joint(person, "torso")->position;
-  to_robot.z() = 0;
-  Vector3 front = torso_axes(person).col(0);
-  front.z() = 0;
-  const double lengths = to_robot.norm() * front.norm();
-  if (lengths > 0) nearest_angle_ = std::acos(std::clamp(to_robot.dot(front) / lengths, -1.0, 1.0));
+  const std::optional<double> angle = angle_from_front(person, status_.nearest_on_robot);
+  if (is_nearer && angle && *angle > M_PI / 2 && ground_truth.separation < kPassing)
+    unseen_approach_ += std::min(ground_truth.sim_time - last_->sim_time, kTruthStep);
+  if (!is_nearest) return;
+  nearest_ = ground_truth.separation;
+  if (angle) nearest_angle_ = angle;
 }
 
 nlohmann::json Criteria::fields() const {
@@ -203,6 +216,7 @@ nlohmann::json Criteria::fields() const {
           {"discomfort", discomfort_ ? Json(*discomfort_) : Json(nullptr)},
           {"legibility", legibility_ ? Json(*legibility_) : Json(nullptr)},
           {"nearest_angle_rad", nearest_angle_ ? Json(*nearest_angle_) : Json(nullptr)},
+          {"unseen_approach_s", unseen_approach_},
           {"max_tilt_rad", max_tilt_ ? Json(*max_tilt_) : Json(nullptr)},
           {"cpu_s", cpu},
           {"cpu_chain_s", chain},
