@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <thread>
 
 #include "common/bus/dds/dds_bus.hpp"
 #include "common/bus/dds/dds_configuration.hpp"
@@ -214,12 +213,19 @@ TEST_F(Doctor, accepts_stamps_beside_a_simulator_that_has_halted_the_time) {
   ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
   const pid_t sim = simulator();
   ASSERT_GT(sim, 0);
-  for (int stop = 0; stop < 3; ++stop) {
+  DdsBus bus({.component = "stranger", .domain = kDomain, .health = false});
+  double waited = -1;
+  bus.subscribe<SimClock>([&](const SimClock& clock, const Receipt&) { waited = clock.waited; });
+  bus.every(from_seconds(0.02), [](TimePoint) {});
+  ASSERT_TRUE(bus.run_until([&] { return waited >= 0; }, from_seconds(10)));
+  for (int stop = 0; stop < 10 && waited < 1.3; ++stop) {
+    const double before = waited;
     kill(sim, SIGSTOP);
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    bus.run_until([] { return false; }, from_seconds(0.5));
     kill(sim, SIGCONT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ASSERT_TRUE(bus.run_until([&] { return waited > before + 0.3; }, from_seconds(5))) << waited;
   }
+  ASSERT_GT(waited, 1.3) << "the doctor would accept older stamps than this anyway";
   const Diagnosis diagnosis = doctor("--driver");
   const Json clocks = diagnosis.find("clocks", "");
   ASSERT_FALSE(clocks.is_null()) << diagnosis.all();

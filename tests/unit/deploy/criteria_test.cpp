@@ -100,6 +100,29 @@ TEST_F(CriteriaTest,
   EXPECT_TRUE(criteria_.fields()["legibility"].is_null());
 }
 
+TEST_F(CriteriaTest, an_approach_from_behind_is_unseen_within_two_metres) {
+  constexpr double kBehind = 1.6, kBefore = 0.1;  // x of the robot; the person at 0.85 faces -x
+  const auto approach = [&](double x, double separation, double by) {
+    const double before = criteria_.fields()["unseen_approach_s"];
+    ExecutionStatus status;
+    status.robot = "jido";
+    status.nearest_on_robot = {x, 0.0, 1.0};
+    status_out_->publish(status);
+    ground_truth_.robot_moving = true;
+    ground_truth_.separation = separation;
+    tell();
+    for (int i = 0; i < 50; ++i) {
+      ground_truth_.separation += by;
+      tell();
+    }
+    return criteria_.fields()["unseen_approach_s"].get<double>() - before;
+  };
+  EXPECT_NEAR(approach(kBehind, 1.9, -0.01), 1.0, 0.03);
+  EXPECT_NEAR(approach(kBefore, 1.9, -0.01), 0.0, 1e-9);
+  EXPECT_NEAR(approach(kBehind, 1.4, 0.01), 0.0, 1e-9) << "it leaves";
+  EXPECT_NEAR(approach(kBehind, 3.0, -0.01), 0.0, 1e-9) << "it is far away";
+}
+
 TEST_F(CriteriaTest, a_delay_is_when_neither_of_them_moves) {
   tell();
   tell(50);
