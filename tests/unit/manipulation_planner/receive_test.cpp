@@ -351,26 +351,36 @@ TEST(ManipulationPlanner, what_the_giver_leaves_in_the_hand_on_a_surface_is_lift
     }
 }
 
+/// Returns whether the robot takes an object by the farther of two grasps, from above. `below`,
+/// `above`: margins of the grip forces of both [N].
+bool takes_from_above(double below, double above) {
+  Rig rig;
+  rig.hold_out();
+  rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
+  rig.grasped_as_it_stands = true;
+  rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
+  const Vector &q_below = rig.grasps[0].approach_joints, &q_above = rig.grasps[1].approach_joints;
+  rig.grasps[0].margin = below;
+  rig.grasps[1].margin = above;
+  rig.q = RobotModel::with(rig.q, rig.robot->require_group("arm"),
+                           q_below + 0.35 * (q_above - q_below));
+  rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, false};
+  rig.start(ActionKind::receive);
+  rig.run_until("reaching the object");
+  rig.cycle();
+  return rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+}
+
 TEST(ManipulationPlanner, a_grip_that_bears_the_load_is_worth_a_longer_motion) {
-  for (const double margin : {1.0, -3.0}) {
-    Rig rig;
-    rig.hold_out();
-    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
-    rig.grasped_as_it_stands = true;
-    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
-    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
-    rig.grasps[0].margin = margin;
-    rig.grasps[1].margin = 1.0;
-    rig.q =
-        RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
-    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, false};
-    rig.start(ActionKind::receive);
-    rig.run_until("reaching the object");
-    rig.cycle();
-    const bool from_above =
-        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
-    EXPECT_EQ(from_above, margin < 0) << "the hand below it is nearer";
-  }
+  EXPECT_FALSE(takes_from_above(1.0, 1.0)) << "the hand below it is nearer";
+  EXPECT_TRUE(takes_from_above(-3.0, 1.0));
+}
+
+TEST(ManipulationPlanner, a_grip_that_may_slip_is_tried_last) {
+  const double least = rig::settings().min_sure_margin, sure = least + 0.01, slips = least - 0.01;
+  EXPECT_FALSE(takes_from_above(sure, sure)) << "the hand below it is nearer";
+  EXPECT_TRUE(takes_from_above(slips, sure));
+  EXPECT_FALSE(takes_from_above(slips, slips));
 }
 
 TEST(ManipulationPlanner, who_does_not_let_go_keeps_it) {
