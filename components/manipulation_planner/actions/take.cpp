@@ -49,6 +49,13 @@ bool is_near_object(const Parts& parts, const std::string& object) {
   return seen != nullptr && (seen->T_world_object.translation() - p_hand).norm() < kNear;
 }
 
+/// Returns whether an object is where it was before the hand came: the hand had pushed it.
+bool is_at(const Parts& parts, const std::string& object, const Vector3& p_world) {
+  const SceneObject* seen = parts.now.object(object);
+  return seen != nullptr &&
+         (seen->T_world_object.translation() - p_world).norm() < parts.settings.aim_slack / 2;
+}
+
 Outcome moved_away(const std::string& why) {
   Outcome outcome = Outcome::failure(why);
   outcome.end = MotionEnd::target_moved;
@@ -202,6 +209,8 @@ Routine<Step> reach_offer(Parts& parts, const TakeAttempt& take, std::optional<G
   done = co_await back_off(parts, take.offer, *grasp, done);
   if (!done.target_moved() || !is_offered(parts, take.offer))
     co_return Step{Progress::failed, done};
+  if (is_at(parts, object, p_object))
+    co_return Step{Progress::failed, Outcome::failure("the hand pushes " + object + " away")};
   grasp = grasp_now(parts, object, take.chosen);
   co_return Step{grasp ? Progress::again : Progress::failed, done};
 }

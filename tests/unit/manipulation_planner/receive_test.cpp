@@ -303,6 +303,24 @@ TEST(ManipulationPlanner, from_an_offer_that_is_moved_away_it_backs_off_with_the
   EXPECT_EQ(rig.planner.status().refusals.back().reason, "mug was moved away");
 }
 
+TEST(ManipulationPlanner, a_grasp_whose_hand_pushes_the_object_away_is_not_tried_again) {
+  Rig rig;
+  rig.moves = true;
+  ASSERT_TRUE(receive_until(rig, "reaching the object"));
+  for (int i = 0; i < 10; ++i) rig.cycle();
+  const Pose T_offered = rig.scene.objects[0].T_world_object;
+  rig.scene.objects[0].T_world_object.translation().z() -= 0.03;
+  rig.run_until("backing off");
+  ASSERT_EQ(phase_text(rig.planner.status()), "backing off");
+  rig.scene.objects[0].T_world_object = T_offered;
+  rig.run(3);
+  const auto& refusals = rig.planner.status().refusals;
+  const bool is_refused = std::any_of(refusals.begin(), refusals.end(), [](const auto& refusal) {
+    return refusal.reason == "the hand pushes mug away";
+  });
+  EXPECT_TRUE(is_refused);
+}
+
 TEST(ManipulationPlanner, an_unsure_grip_does_not_open_on_what_the_giver_has_released) {
   for (const bool released : {true, false}) {
     Rig rig;
