@@ -25,10 +25,22 @@ namespace {
 constexpr Duration kTwinWait = std::chrono::milliseconds(400);
 
 constexpr Duration kJobsEnd = std::chrono::milliseconds(600);
-constexpr useconds_t kLongestEnd = 950'000;  // [us] from the signal
+constexpr useconds_t kLongestEnd = 950'000;  // [us] from the decision to end
 
 std::atomic<DdsBus*> stopped_by_signal{nullptr};
 std::atomic<bool> asked_to_end{false};
+
+/// The code with which a process ends that has not ended in time.
+std::atomic<int> late_exit_code{0};
+
+/// Ends the process with `code` when it has not ended by itself within `kLongestEnd`: the transport
+/// waits without limit for a network that has gone away. Signals no longer stop the bus.
+void require_end(int code) {
+  stopped_by_signal = nullptr;
+  late_exit_code = code;
+  signal(SIGALRM, [](int) { _exit(late_exit_code); });
+  ualarm(kLongestEnd, 0);
+}
 
 void on_signal(int) {
   asked_to_end = true;
@@ -125,10 +137,16 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
                                 : std::filesystem::path(state);
   DdsBus bus(settings);
   stopped_by_signal = &bus;
-  if (asked_to_end) return 0;
-  if (!standby && bus.has_twin(kTwinWait))
-    throw ConfigError("domain " + std::to_string(settings.domain) + " already has a " + component +
-                      "; --standby starts one more");
+  if (!asked_to_end && !standby && bus.has_twin(kTwinWait)) {
+    const ConfigError refusal("domain " + std::to_string(settings.domain) + " already has a " +
+                              component + "; --standby starts one more");
+    require_end(2);
+    return complain(component, refusal, 2);
+  }
+  if (asked_to_end) {
+    require_end(0);
+    return 0;
+  }
   {
     const std::shared_ptr<void> node = make_node(bus, context);
     bus.set_ready();
@@ -140,9 +158,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
                 settings.realtime ? bus.realtime_note().c_str() : "");
     std::fflush(stdout);
     bus.run();
-    // The transport waits for ever for a network that has gone away under it.
-    signal(SIGALRM, [](int) { _exit(0); });
-    ualarm(kLongestEnd, 0);
+    require_end(0);
     bus.set_stopping();
     if (!bus.end_jobs(kJobsEnd)) {
       std::fprintf(stderr, "handsel_%s: a job did not stop when asked; ending without it\n",
@@ -150,7 +166,6 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
       std::_Exit(0);
     }
   }
-  stopped_by_signal = nullptr;
   return 0;
 }
 

@@ -1,6 +1,7 @@
 // A component as a process: ready line, clean end, refusals with their exit codes, one of a kind in
 // a domain.
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,7 +14,7 @@
 #include "common/messages/system.hpp"
 #include "common/messages/task.hpp"
 
-namespace handsel {
+namespace handsel::process_test {
 namespace {
 
 const std::uint32_t kDomain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
@@ -51,17 +52,30 @@ class Probe {
   std::string out_line() const { return line(out_); }
   std::string err_line() const { return line(err_); }
   void signal(int number) const { ::kill(child_, number); }
+  /// Returns the exit code, or the negative signal that ended the process; a process that does not
+  /// end by itself is killed.
   int wait() {
     int status = 0;
-    waitpid(child_, &status, 0);
+    bool ended = false;
+    for (int k = 0; k < 1000 && !ended; ++k) {
+      usleep(10'000);
+      ended = waitpid(child_, &status, WNOHANG) != 0;
+    }
+    if (!ended) {
+      ::kill(child_, SIGKILL);
+      waitpid(child_, &status, 0);
+    }
     child_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
 
  private:
+  /// Returns the next line; ends after 10 s without a character.
   static std::string line(int fd) {
     std::string text;
-    for (char c = 0; read(fd, &c, 1) == 1 && c != '\n';) text += c;
+    pollfd readable{.fd = fd, .events = POLLIN, .revents = 0};
+    for (char c = 0; poll(&readable, 1, 10'000) == 1 && read(fd, &c, 1) == 1 && c != '\n';)
+      text += c;
     return text;
   }
   pid_t child_{-1};
@@ -149,4 +163,4 @@ TEST_F(Process, killed_process_is_seen_within_its_lease) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::process_test
