@@ -13,7 +13,7 @@
 #include "components/trajectory_planner/trajectory_planner.hpp"
 #include "tests/support/broken_lines.hpp"
 
-namespace handsel::trajectory_planner {
+namespace handsel::trajectory_planner::broken_lines_test {
 namespace {
 
 constexpr unsigned kSeed = 44;
@@ -96,4 +96,4 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_planner
+}  // namespace handsel::trajectory_planner::broken_lines_test

@@ -14,7 +14,7 @@
 #include "tests/support/processes/thread_time.hpp"
 #include "tests/support/tool_motions.hpp"
 
-namespace handsel::trajectory_planner {
+namespace handsel::trajectory_planner::cartesian_motion_test {
 namespace {
 
 constexpr unsigned kSeed = 461;
@@ -135,4 +135,4 @@ TEST(CartesianMotion, of_the_iiwa_is_that_of_the_tool) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_planner
+}  // namespace handsel::trajectory_planner::cartesian_motion_test

@@ -6,7 +6,7 @@
 #include "common/collision/collision_world.hpp"
 #include "common/collision/gjk.hpp"
 
-namespace handsel {
+namespace handsel::collision_property_test {
 namespace {
 
 constexpr unsigned kSeed = 20261;
@@ -146,4 +146,4 @@ TEST(CollisionProperty, distance_is_symmetric_and_keeps_under_rigid_motion) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::collision_property_test

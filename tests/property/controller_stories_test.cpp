@@ -9,7 +9,7 @@
 #include "tests/support/allocation_counter.hpp"
 #include "tests/support/controller_bench.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_stories_test {
 namespace {
 
 class Story {
@@ -305,4 +305,4 @@ TEST(ControllerStories, a_step_never_uses_the_heap) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_stories_test

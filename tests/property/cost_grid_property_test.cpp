@@ -11,7 +11,7 @@
 #include "common/cost/reach_check.hpp"
 #include "components/costmap/layers.hpp"
 
-namespace handsel::costmap {
+namespace handsel::costmap::cost_grid_property_test {
 namespace {
 
 constexpr double kQuantum = 0.5 / 254;
@@ -238,4 +238,4 @@ TEST(CostGrid, ends_at_its_edges_and_forbids_where_most_neighbours_are_forbidden
 }
 
 }  // namespace
-}  // namespace handsel::costmap
+}  // namespace handsel::costmap::cost_grid_property_test

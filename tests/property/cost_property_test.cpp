@@ -7,7 +7,7 @@
 #include "common/cost/human_cost.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace handsel {
+namespace handsel::cost_property_test {
 namespace {
 
 constexpr unsigned kSeed = 77;
@@ -205,4 +205,4 @@ TEST(CostProperty, simplified_distance_agrees_with_points_sampled_on_the_body) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::cost_property_test

@@ -11,7 +11,7 @@
 #include "tests/support/controller_bench.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::driver_stories_test {
 namespace {
 
 using drivers::FakeCyclicArm;
@@ -391,4 +391,4 @@ TEST(FakeScript, a_line_that_cannot_be_read_is_named) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::driver_stories_test

@@ -12,7 +12,7 @@
 #include "tests/support/motion_draw.hpp"
 #include "tests/support/oracles/hull_oracle.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_oracles_test {
 namespace {
 
 /// Largest t with W lambda = 0, sum of lambda = 1, lambda >= t; -1 when there is none.
@@ -103,4 +103,4 @@ TEST(GraspOracles,
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_oracles_test

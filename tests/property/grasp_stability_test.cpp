@@ -8,7 +8,7 @@
 #include "components/grasp_planner/list/epsilon.hpp"
 #include "tests/support/oracles/hull_oracle.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_stability_test {
 namespace {
 
 using test::hull_oracle;
@@ -102,4 +102,4 @@ TEST(GraspStability, closure_is_strict_at_the_border) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_stability_test

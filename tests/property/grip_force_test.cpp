@@ -10,7 +10,7 @@
 
 #include <Eigen/Dense>
 
-namespace handsel {
+namespace handsel::grip_force_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -288,4 +288,4 @@ TEST(Maximise, corners_of_small_problems) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::grip_force_test

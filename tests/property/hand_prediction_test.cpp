@@ -10,7 +10,7 @@
 #include "sim/people/recording.hpp"
 #include "tests/support/recorded_handover.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::hand_prediction_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -227,4 +227,4 @@ TEST(HandPrediction, a_hand_out_of_sight_grows_and_a_lost_person_has_none) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::hand_prediction_test

@@ -14,7 +14,7 @@
 #include "components/trajectory_controller/supervise/go_gate.hpp"
 #include "components/trajectory_controller/supervise/mode_machine.hpp"
 
-namespace handsel {
+namespace handsel::latches_property_test {
 namespace {
 
 using supervisor::DurableState;
@@ -273,4 +273,4 @@ TEST(LatchesProperty, nothing_moves_while_a_latch_stands_whatever_restarts) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::latches_property_test

@@ -1,4 +1,4 @@
-handsel_test(offer_detection
+handsel_test(offer_detection GROUP manipulation_planner
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/offer_detection_test.cpp
     ${CMAKE_CURRENT_SOURCE_DIR}/support/acts/acted_person.cpp

@@ -10,7 +10,7 @@
 
 #include "components/attention/adaptive_clock.hpp"
 
-namespace handsel::attention {
+namespace handsel::attention::margin_clock_test {
 namespace {
 
 constexpr double kStep = 0.001;  // of the integration [s]
@@ -149,4 +149,4 @@ TEST(MarginClock, follows_its_formula_within_its_limits) {
 }
 
 }  // namespace
-}  // namespace handsel::attention
+}  // namespace handsel::attention::margin_clock_test

@@ -15,7 +15,7 @@
 #include "common/trajectory/time_scaling.hpp"
 #include "tests/support/motion_draw.hpp"
 
-namespace handsel {
+namespace handsel::motion_stories_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -191,4 +191,4 @@ TEST(MotionStories, that_once_went_wrong) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::motion_stories_test

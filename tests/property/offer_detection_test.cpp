@@ -18,7 +18,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/recorded_handover.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::offer_detection_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -418,4 +418,4 @@ TEST(OfferDetection, of_a_recorded_handover_only_the_giver_offers) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::offer_detection_test

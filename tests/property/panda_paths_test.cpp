@@ -12,7 +12,7 @@
 #include "tests/support/panda_problems.hpp"
 #include "tests/support/processes/thread_time.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::panda_paths_test {
 namespace {
 
 constexpr double kTimeLimit = 5.0;  // [s]
@@ -93,4 +93,4 @@ TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::panda_paths_test

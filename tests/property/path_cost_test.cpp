@@ -12,7 +12,7 @@
 #include "tests/support/beside_the_table.hpp"
 #include "tests/support/processes/thread_time.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::path_cost_test {
 namespace {
 
 using test::thread_time;
@@ -134,4 +134,4 @@ TEST_F(PathCost, paths_of_t_rrt_cost_less_and_keep_farther_off_than_those_of_rrt
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::path_cost_test

@@ -5,7 +5,7 @@
 #include "components/path_planner/path_planner.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::path_planner_property_test {
 namespace {
 
 constexpr unsigned kSeed = 4242;
@@ -68,4 +68,4 @@ TEST(PathPlannerProperty, paths_in_random_scenes_are_free_within_limits_and_repe
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::path_planner_property_test

@@ -11,7 +11,7 @@
 #include "common/config/resources.hpp"
 #include "components/spark/people/people_tracker.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::people_tracker_test {
 namespace {
 
 constexpr double kWalk = 1.6;     // nobody walks faster [m/s]
@@ -249,4 +249,4 @@ TEST_F(Sources, that_hand_people_over_and_are_bad) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::people_tracker_test

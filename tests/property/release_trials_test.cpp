@@ -12,7 +12,7 @@
 #include "components/trajectory_controller/arm/axis_mover.hpp"
 #include "components/trajectory_controller/hand/release_watch.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::release_trials_test {
 namespace {
 
 constexpr double kDt = 0.001, kGravity = 9.81;
@@ -263,4 +263,4 @@ TEST(Release, the_load_s_share_falls_as_the_person_s_rises) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::release_trials_test

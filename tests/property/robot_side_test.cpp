@@ -14,7 +14,7 @@
 #include "deploy/drivers/driver_core.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel {
+namespace handsel::robot_side_test {
 namespace {
 
 constexpr double kStep = 0.001;
@@ -435,4 +435,4 @@ TEST_F(Refusals, a_motion_too_fast_to_stop_before_a_bound_is_refused_before_it) 
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::robot_side_test

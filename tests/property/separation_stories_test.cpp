@@ -10,7 +10,7 @@
 #include "common/trajectory/stop.hpp"
 #include "tests/support/controller_bench.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::separation_stories_test {
 namespace {
 
 constexpr double kRounding = 1e-9;  // [m/s] of a difference of positions
@@ -158,4 +158,4 @@ TEST(SeparationStories, a_person_standing_still_leaves_most_of_the_time_producti
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::separation_stories_test

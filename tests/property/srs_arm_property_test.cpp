@@ -10,7 +10,7 @@
 #include "common/model/srs_arm.hpp"
 #include "tests/support/panda_problems.hpp"
 
-namespace handsel::ik {
+namespace handsel::ik::srs_arm_property_test {
 namespace {
 
 constexpr unsigned kSeed = 20311;
@@ -88,4 +88,4 @@ TEST(SrsArm, there_is_no_branch_out_of_reach) {
 }
 
 }  // namespace
-}  // namespace handsel::ik
+}  // namespace handsel::ik::srs_arm_property_test

@@ -14,7 +14,7 @@
 #include "common/trajectory/stop.hpp"
 #include "components/trajectory_controller/supervise/reach_limit.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::stop_proof_test {
 namespace {
 
 int number(const char* variable, int otherwise) {
@@ -249,4 +249,4 @@ TEST_F(StopProofStories, a_stop_that_would_leave_the_bounds_of_an_axis_is_refuse
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::stop_proof_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/task_rig.hpp"
 
-namespace handsel::supervisor {
+namespace handsel::supervisor::task_planner_property_test {
 namespace {
 
 int runs(int usual) {
@@ -291,4 +291,4 @@ TEST(TaskDomains, a_broken_one_is_refused_or_works) {
 }
 
 }  // namespace
-}  // namespace handsel::supervisor
+}  // namespace handsel::supervisor::task_planner_property_test

@@ -18,7 +18,7 @@
 #include "tests/support/oracles/ruckig_peer.hpp"
 #include "tests/support/oracles/slow_min_time.hpp"
 
-namespace handsel {
+namespace handsel::trajectory_property_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -473,4 +473,4 @@ TEST(SevenAxes, imposed_durations_are_inside_the_limits_whenever_that_is_possibl
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::trajectory_property_test

@@ -9,7 +9,7 @@
 #include "components/path_planner/path_planner.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::upright_paths_test {
 namespace {
 
 constexpr unsigned kSeed = 77;
@@ -114,4 +114,4 @@ TEST(UprightPaths, a_start_or_goal_that_leans_and_a_bound_that_means_nothing_are
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::upright_paths_test

@@ -14,13 +14,13 @@
 #include "tests/support/processes/busy_system.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::blind_test {
 namespace {
 
 using test::BusySystem;
 using test::environment;
 
-constexpr int kDomain = 118;
+constexpr int kDomain = 215;
 constexpr double kRest = 1e-3;    // [rad] the arm stands
 constexpr double kGoesOn = 0.01;  // [rad] it moves
 constexpr double kNamed = 1.0;    // [s] within which the cause is named
@@ -153,4 +153,4 @@ TEST_F(BlindOverDds, stops_in_time_says_why_and_completes_the_task_when_it_sees_
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::blind_test

@@ -11,7 +11,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::busy_machine_test {
 namespace {
 
 constexpr int kDomain = 203;
@@ -62,4 +62,4 @@ TEST(BusyMachine, two_systems_on_one_processor_hand_their_mugs_over) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::busy_machine_test

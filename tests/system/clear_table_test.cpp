@@ -9,7 +9,7 @@
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
 
-namespace handsel {
+namespace handsel::clear_table_test {
 namespace {
 
 bool stands_on(const config::BoxDescription& box, const Vector3& p) {
@@ -61,4 +61,4 @@ TEST(ClearTable, five_of_six_things_are_put_away_while_a_person_takes_one) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::clear_table_test

@@ -14,16 +14,16 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/websocket_client.hpp"
 
-namespace handsel::test {
+namespace handsel::test::command_test {
 namespace {
 
 using testing::HasSubstr;
 
 const std::string kHandsel = HANDSEL_COMMAND;
-const std::string kDomain = " --domain 39";
+const std::string kDomain = " --domain 208";
 
 int processes_running() {
-  return std::atoi(shell("ps -eo args | grep -c '[b]in/handsel_.*--domain 39'").out.c_str());
+  return std::atoi(shell("ps -eo args | grep -c '[b]in/handsel_.*--domain 208'").out.c_str());
 }
 
 /// One sentence, exit code, nothing left.
@@ -106,7 +106,7 @@ TEST(Command, a_scenario_without_tasks_cannot_be_performed) {
 
 TEST(Command, asking_an_empty_domain_says_that_nothing_runs_there) {
   for (const char* command : {"status", "task give mug", "speed 50", "task cancel"})
-    expect_refusal(command + kDomain, 3, "domain 39");
+    expect_refusal(command + kDomain, 3, "domain 208");
 }
 
 TEST(Command, topics_are_listed_as_json_lines) {
@@ -120,11 +120,11 @@ TEST(Command, topics_are_listed_as_json_lines) {
 }
 
 TEST(Command, a_domain_in_use_is_refused_and_the_system_there_lives_on) {
-  Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "39"});
+  Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "208"});
   ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
   const Outcome second = shell(kHandsel + " run --scenario give_mug" + kDomain);
   EXPECT_EQ(second.exit_code, 2);
-  EXPECT_THAT(second.err, HasSubstr("domain 39 is in use"));
+  EXPECT_THAT(second.err, HasSubstr("domain 208 is in use"));
   const Outcome status = shell(kHandsel + " status" + kDomain);
   EXPECT_EQ(status.exit_code, 0) << status.out;
   EXPECT_EQ(up.interrupt(), 0);
@@ -141,7 +141,7 @@ TEST(Command, a_taken_port_costs_the_page_and_nothing_else) {
   ASSERT_EQ(listen(taken, 1), 0);
   getsockname(taken, reinterpret_cast<sockaddr*>(&address), &size);
   const std::string port = std::to_string(ntohs(address.sin_port));
-  Background up({kHandsel, "up", "--headless", "--port", port, "--domain", "39"});
+  Background up({kHandsel, "up", "--headless", "--port", port, "--domain", "208"});
   ASSERT_TRUE(up.wait_for("no page: port " + port + " on 127.0.0.1 cannot be used")) << up.said();
   const Outcome status = shell(kHandsel + " status" + kDomain);
   EXPECT_EQ(status.exit_code, 0) << status.out;
@@ -151,10 +151,10 @@ TEST(Command, a_taken_port_costs_the_page_and_nothing_else) {
 }
 
 TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {
-  Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "39"});
+  Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "208"});
   ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
   const std::string running =
-      shell("ps -eo args | grep -o '[b]in/handsel_[a-z_]* --domain 39' | sort | uniq -c").out;
+      shell("ps -eo args | grep -o '[b]in/handsel_[a-z_]* --domain 208' | sort | uniq -c").out;
   for (const char* box : kProcesses)
     EXPECT_THAT(running, testing::ContainsRegex(std::string(" 1 bin/handsel_") + box + " ")) << box;
 
@@ -164,7 +164,7 @@ TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {
   HttpClient settings(port);
   settings.request("GET", "/config.json");
   const std::string told = settings.read();
-  for (const char* named : {"\"robot\":\"jido\"", "\"domain\":39", "\"mug\"", "handsel/scene"})
+  for (const char* named : {"\"robot\":\"jido\"", "\"domain\":208", "\"mug\"", "handsel/scene"})
     EXPECT_THAT(told, HasSubstr(named)) << named;
   WebSocketClient viewer(port);
   viewer.read("\"advertise\"");
@@ -177,4 +177,4 @@ TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::command_test

@@ -20,7 +20,7 @@
 #include "tests/support/processes/background.hpp"
 #include "tests/support/processes/shell.hpp"
 
-namespace handsel::test {
+namespace handsel::test::doctor_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -476,4 +476,4 @@ TEST_F(Doctor, says_the_same_in_a_locale_with_other_numbers) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::doctor_test

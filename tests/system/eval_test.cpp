@@ -12,7 +12,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::test {
+namespace handsel::test::eval_test {
 namespace {
 
 using testing::HasSubstr;
@@ -138,4 +138,4 @@ TEST(Eval, a_mode_that_cannot_be_is_refused) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::eval_test

@@ -14,7 +14,7 @@
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::exchange_moves_test {
 namespace {
 
 constexpr const char* kScenario = R"(name: "exchange_moves" robot: "jido"
@@ -160,4 +160,4 @@ TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_s
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::exchange_moves_test

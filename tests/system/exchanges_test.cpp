@@ -17,14 +17,14 @@
 #include "deploy/handsel/system/system.hpp"
 #include "deploy/handsel/system/system_options.hpp"
 
-namespace handsel {
+namespace handsel::exchanges_test {
 namespace {
 
 using Json = nlohmann::json;
 
 constexpr double kSuccess = 0.94;
 constexpr double kGiving = 15.0, kReceiving = 27.0;  // such a task lasts at least about so long [s]
-constexpr int kDomain = 39;
+constexpr int kDomain = 209;
 const Duration kPatience = std::chrono::minutes(4);
 const Duration kRestPatience = std::chrono::seconds(10);
 
@@ -172,4 +172,4 @@ TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::exchanges_test

@@ -14,7 +14,7 @@
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
 
-namespace handsel {
+namespace handsel::facts_truth_test {
 namespace {
 
 constexpr double kAgree = 0.2;         // [s]
@@ -205,4 +205,4 @@ TEST(SimulatedHandovers, facts_agree_with_the_truth) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::facts_truth_test

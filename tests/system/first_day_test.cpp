@@ -10,7 +10,7 @@
 #include "tests/support/processes/stall_watch.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel {
+namespace handsel::first_day_test {
 namespace {
 
 using test::FirstDay;
@@ -207,4 +207,4 @@ TYPED_TEST(FirstDayOf, braked_drives) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::first_day_test

@@ -20,7 +20,7 @@
 #include "components/trajectory_planner/node.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::flood_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -327,4 +327,4 @@ TEST_F(Flood, a_person_pauses_in_the_flood_and_asks_for_work_after_it) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::flood_test

@@ -9,7 +9,7 @@
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::hand_change_test {
 namespace {
 
 constexpr const char* kScenario = R"(name: "hand_change" robot: "jido"
@@ -76,4 +76,4 @@ TEST(HandChange, who_changes_hands_is_given_the_object_for_the_new_hand) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::hand_change_test

@@ -10,7 +10,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel {
+namespace handsel::handover_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -38,9 +38,10 @@ std::vector<Json> in_lockstep(const std::string& scenario, int seeds) {
 
 /// `timeout` [s]; empty: the scenario's.
 Json over_dds(const std::string& scenario, int seed, const std::string& timeout = {}) {
-  const test::Outcome outcome = test::shell(
-      std::string(HANDSEL_COMMAND) + " run --headless --port 0 --domain 38 --scenario " + scenario +
-      " --seed " + std::to_string(seed) + (timeout.empty() ? "" : " --timeout " + timeout));
+  const test::Outcome outcome =
+      test::shell(std::string(HANDSEL_COMMAND) +
+                  " run --headless --port 0 --domain 207 --scenario " + scenario + " --seed " +
+                  std::to_string(seed) + (timeout.empty() ? "" : " --timeout " + timeout));
   const Json report = Json::parse(outcome.out, nullptr, false);
   if (report.is_discarded()) {
     ADD_FAILURE() << "no report; exit code " << outcome.exit_code << ": " << outcome.err;
@@ -139,4 +140,4 @@ TEST(Recorded, people_take_it_too) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::handover_test

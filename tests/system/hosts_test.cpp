@@ -16,7 +16,7 @@
 #include "tests/support/processes/compose_file.hpp"
 #include "tests/support/processes/hosts.hpp"
 
-namespace handsel::test {
+namespace handsel::test::hosts_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -257,4 +257,4 @@ TEST(Mistakes, a_system_that_is_not_there_is_not_healthy) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::hosts_test

@@ -9,13 +9,13 @@
 #include "common/messages/perception.hpp"
 #include "tests/support/processes/shell.hpp"
 
-namespace handsel::test {
+namespace handsel::test::install_test {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr std::uint32_t kDomain = 38;
+constexpr std::uint32_t kDomain = 204;
 
 class Install : public testing::Test {
  protected:
@@ -102,4 +102,4 @@ TEST_F(Install, a_program_in_c_outside_the_build_matches_every_topic_and_is_hear
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::install_test

@@ -19,13 +19,13 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::latches_test {
 namespace {
 
 using test::BusySystem;
 using test::environment;
 
-constexpr int kDomain = 40;
+constexpr int kDomain = 212;
 constexpr double kRest = 5e-4;  // [rad] the arm stands: 0.000
 constexpr double kTenth = 0.1;  // of the speed
 constexpr Duration kMoves = std::chrono::seconds(20);
@@ -237,4 +237,4 @@ TEST(KilledSystem, leaves_the_pause_to_the_next_one_and_an_orderly_end_does_not)
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::latches_test

@@ -24,7 +24,7 @@
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::live_runs_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -491,4 +491,4 @@ TEST(LiveRuns, nothing_is_touched_goals_are_reached_and_paths_get_cheaper) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::live_runs_test

@@ -9,7 +9,7 @@
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
 
-namespace handsel {
+namespace handsel::lockstep_test {
 namespace {
 
 struct Trace {
@@ -127,4 +127,4 @@ TEST(Trials, wilson_intervals_are_those_of_the_literature) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::lockstep_test

@@ -13,7 +13,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel {
+namespace handsel::own_robot_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -109,4 +109,4 @@ TEST(OwnRobotFolder, is_enough_and_a_robot_without_limits_is_refused) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::own_robot_test

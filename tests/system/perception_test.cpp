@@ -14,7 +14,7 @@
 #include "tests/support/processes/background.hpp"
 #include "tests/support/processes/shell.hpp"
 
-namespace handsel::test {
+namespace handsel::test::perception_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -301,4 +301,4 @@ TEST(Recording, is_what_its_generator_makes) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::perception_test

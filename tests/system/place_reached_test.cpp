@@ -7,7 +7,7 @@
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
 
-namespace handsel {
+namespace handsel::place_reached_test {
 namespace {
 
 struct Ending {
@@ -54,4 +54,4 @@ TEST(PlaceReached, who_reaches_for_it_gets_it) {
 TEST(PlaceReached, who_passes_does_not) { EXPECT_EQ(count_given("place_mug_passed", runs()), 0); }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::place_reached_test

@@ -14,13 +14,13 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::test {
+namespace handsel::test::recorded_run_test {
 namespace {
 
 using testing::HasSubstr;
 
 const std::string kHandsel = HANDSEL_COMMAND;
-constexpr int kDomain = 38;
+constexpr int kDomain = 205;
 
 struct Recorded {
   mcap::Metadata metadata;
@@ -121,4 +121,4 @@ timeout: 40
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::recorded_run_test

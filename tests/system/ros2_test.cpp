@@ -21,7 +21,7 @@
 #include "idl/ros2/ros2.h"
 #include "tests/support/processes/background.hpp"
 
-namespace handsel::test {
+namespace handsel::test::ros2_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -251,4 +251,4 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::ros2_test

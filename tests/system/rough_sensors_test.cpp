@@ -17,7 +17,7 @@
 #include "deploy/handsel/eval/lockstep_system.hpp"
 #include "deploy/handsel/eval/trial.hpp"
 
-namespace handsel {
+namespace handsel::rough_sensors_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -158,4 +158,4 @@ TEST(RoughSensors, frozen_repeated_late_or_missing_data_stop_the_robot_in_time) 
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::rough_sensors_test

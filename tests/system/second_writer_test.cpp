@@ -26,10 +26,10 @@
 #include "deploy/handsel/system/system.hpp"
 #include "deploy/handsel/system/system_options.hpp"
 
-namespace handsel {
+namespace handsel::second_writer_test {
 namespace {
 
-constexpr int kDomain = 38;
+constexpr int kDomain = 206;
 constexpr double kPlace = 0.01;           // [rad]
 constexpr double kNamed = 1.0;            // [s]
 constexpr std::ptrdiff_t kFollowed = 50;  // set-points of which the robot follows one
@@ -449,4 +449,4 @@ TEST_F(SecondWriterTest, is_not_what_a_restarted_controller_is_taken_for) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::second_writer_test

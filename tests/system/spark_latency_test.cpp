@@ -14,7 +14,7 @@
 #include "common/model/human/human_body.hpp"
 #include "tests/support/processes/background.hpp"
 
-namespace handsel {
+namespace handsel::spark_latency_test {
 namespace {
 
 constexpr Duration kEvery = std::chrono::milliseconds(20);
@@ -114,4 +114,4 @@ TEST(SparkLatency, an_observation_is_in_the_scene_at_once) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::spark_latency_test

@@ -21,12 +21,12 @@
 #include "tests/support/processes/background.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::supervised_life_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDomain = 58;
+constexpr int kDomain = 214;
 constexpr double kBack = 5.0;          // [s] promised
 constexpr double kLongestPhase = 8.0;  // [s] after the task was given; a pick or place lasts longer
 const Duration kPatience = std::chrono::seconds(90), kRestPatience = std::chrono::seconds(10);
@@ -317,4 +317,4 @@ TEST(SupervisedLife,
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::supervised_life_test

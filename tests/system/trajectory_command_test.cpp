@@ -13,7 +13,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::test {
+namespace handsel::test::trajectory_command_test {
 namespace {
 
 using nlohmann::json;
@@ -308,4 +308,4 @@ TEST(TrajectoryCommand, beside_people_the_speed_follows_the_cost_of_the_way) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::trajectory_command_test

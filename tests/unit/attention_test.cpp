@@ -13,7 +13,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::attention {
+namespace handsel::attention::attention_test {
 namespace {
 
 using testing::HasSubstr;
@@ -689,4 +689,4 @@ TEST(AdvisedPeriod, keeps_to_what_is_advised_within_its_limits_and_forgets_old_a
 }
 
 }  // namespace
-}  // namespace handsel::attention
+}  // namespace handsel::attention::attention_test

@@ -13,7 +13,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/processes/websocket_client.hpp"
 
-namespace handsel::bridge {
+namespace handsel::bridge::bridge_server_test {
 namespace {
 
 using test::HttpClient;
@@ -319,4 +319,4 @@ TEST_F(BridgeServer, without_a_page_says_how_to_get_one) {
 }
 
 }  // namespace
-}  // namespace handsel::bridge
+}  // namespace handsel::bridge::bridge_server_test

@@ -20,7 +20,7 @@
 #include "components/bridge/system_graph.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::bridge {
+namespace handsel::bridge::bridge_viewer_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -542,4 +542,4 @@ TEST(SystemGraph, drops_a_component_that_stops_only_after_its_last_report) {
 }
 
 }  // namespace
-}  // namespace handsel::bridge
+}  // namespace handsel::bridge::bridge_viewer_test

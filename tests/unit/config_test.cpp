@@ -30,7 +30,7 @@
 #include "common/messages/task.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::config_test {
 namespace {
 
 using test::message_of;
@@ -241,4 +241,4 @@ TEST(Names, are_those_of_the_enumerators) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::config_test

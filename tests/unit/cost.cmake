@@ -1,5 +1,5 @@
-handsel_test(cost SOURCES ${CMAKE_CURRENT_LIST_DIR}/cost/cost_test.cpp ${CMAKE_CURRENT_LIST_DIR}/cost/cost_layers_test.cpp LINK handsel_cost LABEL unit)
-handsel_test(cost_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/cost_property_test.cpp LINK handsel_cost LABEL unit)
+handsel_test(cost GROUP common SOURCES ${CMAKE_CURRENT_LIST_DIR}/cost/cost_test.cpp ${CMAKE_CURRENT_LIST_DIR}/cost/cost_layers_test.cpp LINK handsel_cost LABEL unit)
+handsel_test(cost_property GROUP common SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/cost_property_test.cpp LINK handsel_cost LABEL unit)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  target_compile_definitions(test_cost_property PRIVATE HANDSEL_SIMD_UNITS)
+  target_compile_definitions(tests_common PRIVATE HANDSEL_SIMD_UNITS)
 endif()

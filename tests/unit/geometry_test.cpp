@@ -10,7 +10,7 @@
 #include "common/geometry/shape.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::geometry_test {
 namespace {
 
 using test::message_of;
@@ -184,4 +184,4 @@ TEST(Segments, nearest_points_match_a_fine_search) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::geometry_test

@@ -1,5 +1,5 @@
 set(manipulation_planner_tests ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner)
-handsel_test(manipulation_planner
+handsel_test(manipulation_planner GROUP manipulation_planner
   SOURCES
     ${manipulation_planner_tests}/manipulation_planner_test.cpp
     ${manipulation_planner_tests}/offer_detector_test.cpp

@@ -1,1 +1,1 @@
-handsel_test(ros2_lane SOURCES ${CMAKE_CURRENT_LIST_DIR}/ros2_lane_test.cpp LINK handsel_ros2_lane LABEL unit)
+handsel_test(ros2_lane GROUP bridge SOURCES ${CMAKE_CURRENT_LIST_DIR}/ros2_lane_test.cpp LINK handsel_ros2_lane LABEL unit)

@@ -11,7 +11,7 @@
 #include "components/ros2_lane/node.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::ros2_lane {
+namespace handsel::ros2_lane::ros2_lane_test {
 namespace {
 
 using testing::HasSubstr;
@@ -475,4 +475,4 @@ TEST_F(Executor, refuses_with_the_reason) {
 }
 
 }  // namespace
-}  // namespace handsel::ros2_lane
+}  // namespace handsel::ros2_lane::ros2_lane_test

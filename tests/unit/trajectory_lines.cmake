@@ -1,1 +1,1 @@
-handsel_test(trajectory_lines SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory/trajectory_lines_test.cpp LINK handsel_batch handsel_wire LABEL unit)
+handsel_test(trajectory_lines GROUP common SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory/trajectory_lines_test.cpp LINK handsel_batch handsel_wire LABEL unit)

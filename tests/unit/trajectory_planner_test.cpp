@@ -18,7 +18,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::trajectory_planner {
+namespace handsel::trajectory_planner::trajectory_planner_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,7 +32,7 @@ TrajectoryRequest request_over(const std::vector<Vector3>& nodes) {
   return request;
 }
 
-class Planning : public ::testing::Test {
+class MotionPlanning : public ::testing::Test {
  protected:
   Result run(const TrajectoryRequest& request) {
     return plan(robot_, world_, cost_, around_, request, {});
@@ -49,7 +49,7 @@ class Planning : public ::testing::Test {
   TrajectoryRequest bent_{request_over({{-0.6, 0.2, 0}, {0.2, 0.8, 0.1}, {0.3, 0.9, 1.2}})};
 };
 
-TEST_F(Planning, smooths_the_corners_inside_the_guard_limits) {
+TEST_F(MotionPlanning, smooths_the_corners_inside_the_guard_limits) {
   const Result result = run(bent_);
   ASSERT_TRUE(result.reply.solved) << result.reply.reason;
   EXPECT_EQ(result.reply.id, bent_.id);
@@ -60,7 +60,7 @@ TEST_F(Planning, smooths_the_corners_inside_the_guard_limits) {
   EXPECT_GT(result.checks, 0u);
 }
 
-TEST_F(Planning, keeps_the_stop_where_every_transition_collides) {
+TEST_F(MotionPlanning, keeps_the_stop_where_every_transition_collides) {
   Scene scene;
   scene.boxes.push_back({"wall", make_pose({0, 0, 0}), {3, 3, 3}, false});
   world_.set_scene(scene);
@@ -72,7 +72,7 @@ TEST_F(Planning, keeps_the_stop_where_every_transition_collides) {
   EXPECT_NEAR(result.reply.trajectory.duration(), result.reply.duration_ptp, 1e-9);
 }
 
-TEST_F(Planning, is_slower_near_people_and_when_asked) {
+TEST_F(MotionPlanning, is_slower_near_people_and_when_asked) {
   const Result alone = run(bent_);
   TrajectoryRequest slow = bent_;
   slow.speed_scale = 0.5;
@@ -88,7 +88,7 @@ double velocity_share(const RobotModel& robot, const MotionState3& state) {
   return (state.velocity.cwiseAbs().array() / robot.comfort_limits().velocity.array()).maxCoeff();
 }
 
-TEST_F(Planning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhere) {
+TEST_F(MotionPlanning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhere) {
   const TrajectoryRequest sweep = request_over({{-1.5, 0, 0}, {1.5, 0, 0}});
   const std::vector<Vector3> places = {{1.7, 0.2, 0}, {0.9, 1.5, 0}, {0.9, -1.5, 0}};
   std::vector<double> slowest;  // shoulder angle where it is
@@ -133,7 +133,7 @@ TEST_F(Planning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhe
   EXPECT_LT(slowest[2], -0.5);
 }
 
-TEST_F(Planning, velocity_acceleration_and_jerk_fall_with_the_cost_to_people) {
+TEST_F(MotionPlanning, velocity_acceleration_and_jerk_fall_with_the_cost_to_people) {
   const TrajectoryRequest sweep = request_over({{-0.8, 0, 0}, {0.8, 0, 0}});
   struct Measured {
     double cost, velocity, acceleration, jerk, duration;
@@ -161,7 +161,7 @@ TEST_F(Planning, velocity_acceleration_and_jerk_fall_with_the_cost_to_people) {
   }
 }
 
-TEST_F(Planning, who_comes_nearer_or_does_not_look_makes_it_slower) {
+TEST_F(MotionPlanning, who_comes_nearer_or_does_not_look_makes_it_slower) {
   HumanState people = test::person_at({1.9, 0.2, 0});
   Person& anna = people.people.front();
   anna.gaze_known = true;
@@ -188,7 +188,7 @@ TEST_F(Planning, who_comes_nearer_or_does_not_look_makes_it_slower) {
   EXPECT_LT(factor().first, seen - 0.05);
 }
 
-TEST_F(Planning, says_what_is_wrong_with_a_request) {
+TEST_F(MotionPlanning, says_what_is_wrong_with_a_request) {
   TrajectoryRequest bad = bent_;
   bad.group = "tail";
   EXPECT_THAT(run(bad).reply.reason, HasSubstr("tail"));
@@ -461,4 +461,4 @@ TEST(TrajectoryPlannerNode, lowers_each_limit_near_people_as_its_settings_say) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_planner
+}  // namespace handsel::trajectory_planner::trajectory_planner_test

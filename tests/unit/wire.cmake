@@ -1,1 +1,1 @@
-handsel_test(wire SOURCES ${CMAKE_CURRENT_LIST_DIR}/bus/wire_test.cpp LINK handsel_bus nlohmann_json::nlohmann_json LABEL unit)
+handsel_test(wire GROUP common SOURCES ${CMAKE_CURRENT_LIST_DIR}/bus/wire_test.cpp LINK handsel_bus nlohmann_json::nlohmann_json LABEL unit)

@@ -15,6 +15,11 @@ namespace handsel::test {
 
 struct RecordedHandover;
 
+/// Distance of the middle of a held object in front of the hand, as in the simulator [m].
+constexpr double kHeldInFront = 0.08;
+/// How much farther outward an offer is than where the object was kept, at least [m].
+constexpr double kMinOutward = 0.07;
+
 /// What is before the people. World frame.
 struct ActStage {
   Vector3 p_robot{Vector3::Zero()};    ///< base of the robot [m]

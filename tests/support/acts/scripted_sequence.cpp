@@ -10,8 +10,6 @@
 namespace handsel::test {
 namespace {
 
-constexpr double kInFront = 0.08;     // of the hand: the middle of what it holds [m]
-constexpr double kMinOutward = 0.07;  // of an offer, farther out than where the object is kept [m]
 constexpr double kUsual =
     0.13;  // level distance of a kept object from the shoulder, over the stature
 constexpr double kSpace = 0.55;        // before the robot's hand, where people may hesitate [m]
@@ -169,7 +167,7 @@ class Scripted final : public ActedSequence {
   /// Toward the robot's hand, with some space before the hand.
   Vector3 offered() {
     Vector3 out = held_out(std::clamp(direction_to(stage_.p_hand), -0.6, 0.6) + draw_.about(0.1));
-    const Vector3 p_hand = in_body(stage_.p_hand), ahead(kInFront, 0, 0);
+    const Vector3 p_hand = in_body(stage_.p_hand), ahead(kHeldInFront, 0, 0);
     const double space = draw_.within(0.30, 0.42);
     for (int i = 0; i < 60 && (out + ahead - p_hand).norm() < space; ++i)
       out.head<2>() -= 0.01 * level(out - shoulder_).normalized().head<2>();
@@ -254,7 +252,7 @@ class Scripted final : public ActedSequence {
     const Vector3 top = in_body(Vector3(counter_.centre.x() + draw_.about(0.03),
                                         counter_.centre.y() + draw_.about(0.03),
                                         kCounterTop + stage_.object->height_above_support + 0.002));
-    const Vector3 hand = top - Vector3(kInFront, 0, 0);
+    const Vector3 hand = top - Vector3(kHeldInFront, 0, 0);
     add(Act::puts_down, hand + Vector3(0, 0, 0.12)).gaze = Gaze::object;
     add(Act::puts_down, hand).gaze = Gaze::object;
     rest(Act::puts_down, draw_.within(0.2, 0.5), Gaze::object);
@@ -384,7 +382,7 @@ class Scripted final : public ActedSequence {
   double duration_{}, clock_{}, begun_{}, ben_begun_{};
   bool has_ben_{};
   Carrier carrier_{Carrier::anna};
-  Pose T_hand_object_{make_pose({kInFront, 0, 0})};
+  Pose T_hand_object_{make_pose({kHeldInFront, 0, 0})};
   Pose object_{Pose::Identity()};
 };
 

@@ -8,9 +8,6 @@
 namespace handsel::test {
 namespace {
 
-constexpr double kInFront = 0.08;     // of the hand, as in the simulator [m]
-constexpr double kMinOutward = 0.07;  // of a clear offer, farther out than the object was kept [m]
-
 class Simulated final : public ActedSequence {
  public:
   Simulated(const ActStage& stage, std::uint64_t seed)
@@ -52,7 +49,7 @@ class Simulated final : public ActedSequence {
       walks_ ? model_->leave() : model_->refuse();
     }
     model_->step(dt, view_);
-    view_.T_world_object = model_->hand().T_world_body * Eigen::Translation3d(kInFront, 0, 0);
+    view_.T_world_object = model_->hand().T_world_body * Eigen::Translation3d(kHeldInFront, 0, 0);
     if (model_->phase() == sim::PersonPhase::keeping && !is_out_) kept_ = outward();
     if (model_->is_offering()) is_out_ = true, out_ = outward();
   }

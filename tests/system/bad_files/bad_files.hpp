@@ -33,6 +33,8 @@ void add_lines(BadFiles& table);
 /// `text` with the first `from` replaced; ends the test program when there is none, so that a row
 /// never is good by mistake.
 std::string with(std::string text, const std::string& from, const std::string& to);
+/// Returns `text`, `times` times in succession.
+std::string repeated(const std::string& text, int times);
 /// The content of a file of the source tree.
 std::string source_file(const std::string& path);
 

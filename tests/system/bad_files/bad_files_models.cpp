@@ -35,12 +35,6 @@ std::string joint(const std::string& name, const std::string& parent, const std:
          "\"/><child link=\"" + child + "\"/></joint>\n";
 }
 
-std::string repeated(const std::string& text, int times) {
-  std::string out;
-  for (int i = 0; i < times; ++i) out += text;
-  return out;
-}
-
 void add_urdfs(BadFiles& table) {
   const auto urdf = [&](const std::string& name, const std::string& content,
                         const std::string& says) {

@@ -4,12 +4,6 @@
 namespace handsel::test {
 namespace {
 
-std::string repeated(const std::string& text, int times) {
-  std::string out;
-  for (int i = 0; i < times; ++i) out += text;
-  return out;
-}
-
 void add_places(BadFiles& table) {
   const std::string good = source_file("sim/scenarios/give_mug.txtpb");
   const std::string run = "run --headless --domain {domain} --scenario {}";

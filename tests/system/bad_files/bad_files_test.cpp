@@ -41,6 +41,12 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text.replace(at, from.size(), to);
 }
 
+std::string repeated(const std::string& text, int times) {
+  std::string out;
+  for (int i = 0; i < times; ++i) out += text;
+  return out;
+}
+
 std::string source_file(const std::string& path) {
   std::ifstream in(fs::path(HANDSEL_SOURCE_DIR) / path, std::ios::binary);
   if (!in) {

@@ -9,7 +9,7 @@
 #include "deploy/handsel/eval/trial.hpp"
 #include "tests/support/processes/edited_settings.hpp"
 
-namespace handsel {
+namespace handsel::passing_test {
 namespace {
 
 /// Returns the trial of a seed; `settings`: folder, empty: as shipped.
@@ -40,4 +40,4 @@ TEST(Passing, people_cost_and_are_passed_farther_off_than_on_the_shortest_path) 
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::passing_test

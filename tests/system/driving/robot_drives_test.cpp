@@ -7,7 +7,7 @@
 
 #include "tests/support/processes/shell.hpp"
 
-namespace handsel::test {
+namespace handsel::test::robot_drives_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -62,4 +62,4 @@ TEST(Driving, a_lost_localisation_stops_the_robot_until_it_is_found) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::robot_drives_test

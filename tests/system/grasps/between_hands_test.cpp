@@ -8,7 +8,7 @@
 
 #include "tests/support/processes/shell.hpp"
 
-namespace handsel::test {
+namespace handsel::test::between_hands_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -30,4 +30,4 @@ TEST(BetweenHands, objects_come_to_the_goals_that_one_arm_does_not_reach) {
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::between_hands_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/processes/shell.hpp"
 
-namespace handsel::test {
+namespace handsel::test::carried_upright_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -30,4 +30,4 @@ TEST(CarriedUpright, a_full_mug_leans_over_no_farther_than_its_description_allow
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::carried_upright_test

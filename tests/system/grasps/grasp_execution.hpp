@@ -37,7 +37,7 @@ inline const ObjectModel* library(const std::string& name) {
   return &at->second;
 }
 
-struct Outcome {
+struct HoldOutcome {
   double knocked{};     ///< way of the object while the opened hand came [m]
   double lifted{};      ///< [m]
   std::string lost;     ///< during what; empty: held to the end
@@ -69,7 +69,7 @@ class Execution {
     command_.velocity = command_.acceleration = command_.effort = Vector::Zero(robot.dof());
   }
 
-  Outcome run(Handling handling = Handling::lift) {
+  HoldOutcome run(Handling handling = Handling::lift) {
     wait(0.2);
     const Pose start = world_.T_world_object("it");
     move_arm(grasp_.arm_joints, 1.5);
@@ -298,7 +298,7 @@ class Execution {
   RobotState state_;
   std::unique_ptr<trajectory_controller::HandExecutor> fingers_;
   MotionState3 fingers_out_;
-  Outcome out_;
+  HoldOutcome out_;
   std::string stage_;  // empty: not yet lifting
   Pose T_tool_object_{Pose::Identity()};
 };

@@ -9,7 +9,7 @@
 #include "tests/support/reference_data.hpp"
 #include "tests/system/grasps/grasp_execution.hpp"
 
-namespace handsel {
+namespace handsel::grasp_holds_test {
 namespace {
 
 using namespace grasp_planner;
@@ -54,8 +54,8 @@ class Grasping : public testing::Test {
                 "epsilon", "margin", "knocked", "lifted", "pressure", "slip", "turn", "rtf",
                 "outcome");
     grasps(model, count, [&](const Grasp& g, const Vector3& place, double yaw) {
-      const Outcome o = Execution(*robot_, model, place.x(), place.y(), yaw, g, settings_)
-                            .run(Handling::lift_tilt_shake);
+      const HoldOutcome o = Execution(*robot_, model, place.x(), place.y(), yaw, g, settings_)
+                                .run(Handling::lift_tilt_shake);
       ++tried;
       held += o.held();
       EXPECT_EQ(o.constraint, 0.0);
@@ -136,12 +136,14 @@ class Constraint : public Grasping {};
 TEST_F(Constraint, lifting_works_with_it_and_without_and_the_truth_says_which_of_them_carried) {
   grasps("box", 1, [&](const Grasp& g, const Vector3& place, double yaw) {
     settings_.constraint = true;
-    const Outcome helped = Execution(*robot_, "box", place.x(), place.y(), yaw, g, settings_).run();
+    const HoldOutcome helped =
+        Execution(*robot_, "box", place.x(), place.y(), yaw, g, settings_).run();
     settings_.constraint = false;
-    const Outcome alone = Execution(*robot_, "box", place.x(), place.y(), yaw, g, settings_).run();
+    const HoldOutcome alone =
+        Execution(*robot_, "box", place.x(), place.y(), yaw, g, settings_).run();
     std::printf("with the constraint: %s, it carried %.0f %% of the time; without: %s\n",
                 helped.hold.c_str(), 100 * helped.constraint, alone.hold.c_str());
-    for (const Outcome& o : {helped, alone}) {
+    for (const HoldOutcome& o : {helped, alone}) {
       EXPECT_EQ(o.lost, "");
       EXPECT_GT(o.lifted, 0.1);
     }
@@ -154,4 +156,4 @@ TEST_F(Constraint, lifting_works_with_it_and_without_and_the_truth_says_which_of
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::grasp_holds_test

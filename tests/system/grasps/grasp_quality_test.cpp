@@ -28,7 +28,7 @@
 #include "tests/support/motion_draw.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::grasp_quality_test {
 namespace {
 
 using namespace grasp_planner;
@@ -290,4 +290,4 @@ TEST(GraspQuality, separates_what_holds_from_what_falls) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::grasp_quality_test

@@ -9,7 +9,7 @@
 #include "deploy/handsel/offline/grasp_table.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel {
+namespace handsel::grasp_table_test {
 namespace {
 
 TEST(GraspTable, every_object_made_by_others_has_grasps_by_every_hand) {
@@ -42,4 +42,4 @@ TEST(GraspTable, every_object_made_by_others_has_grasps_by_every_hand) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::grasp_table_test

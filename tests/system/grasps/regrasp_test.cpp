@@ -7,7 +7,7 @@
 
 #include "tests/support/duo_stage.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::regrasp_test {
 namespace {
 
 const DuoStage& duo() {
@@ -329,4 +329,4 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::regrasp_test

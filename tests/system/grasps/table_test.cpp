@@ -21,7 +21,7 @@
 #include "components/trajectory_planner/node.hpp"
 #include "sim/node.hpp"
 
-namespace handsel {
+namespace handsel::table_test {
 namespace {
 
 class Table : public testing::Test {
@@ -92,4 +92,4 @@ TEST_F(Table, nobody_sends_what_others_must_reject) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::table_test

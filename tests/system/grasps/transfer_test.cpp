@@ -11,7 +11,7 @@
 #include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "tests/support/grasp_lists.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::transfer_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -218,4 +218,4 @@ TEST(Transfers, leave_the_person_room_and_a_comfortable_wrist) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::transfer_test

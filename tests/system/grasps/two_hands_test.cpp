@@ -16,7 +16,7 @@
 #include "tests/support/duo_stage.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::two_hands_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -183,4 +183,4 @@ TEST(TwoHands, one_hand_does_not_take_what_is_too_heavy_for_it) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::two_hands_test

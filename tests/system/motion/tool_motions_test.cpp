@@ -16,7 +16,7 @@
 #include "deploy/handsel/system/system.hpp"
 #include "tests/support/processes/edited_settings.hpp"
 
-namespace handsel {
+namespace handsel::tool_motions_test {
 namespace {
 
 /// A motion that the controller was given.
@@ -109,4 +109,4 @@ TEST(ToolMotions, the_hand_closes_at_the_object_alone_where_the_settings_say_so)
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::tool_motions_test

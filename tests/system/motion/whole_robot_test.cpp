@@ -19,7 +19,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/tool_motions.hpp"
 
-namespace handsel {
+namespace handsel::whole_robot_test {
 namespace {
 
 int motions_wanted() {
@@ -233,4 +233,4 @@ INSTANTIATE_TEST_SUITE_P(Robots, WholeRobotMotions, testing::Values("jido", "duo
                          [](const auto& robot) { return std::string(robot.param); });
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::whole_robot_test

@@ -12,7 +12,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::outside_tree_test {
 namespace {
 
 using testing::HasSubstr;
@@ -115,4 +115,4 @@ TEST_F(OutsideTheTree, a_replay_with_the_same_overlays_repeats_the_trial) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::outside_tree_test

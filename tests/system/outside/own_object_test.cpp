@@ -12,7 +12,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::own_object_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -103,7 +103,7 @@ TEST_F(OwnObject, is_given_by_the_running_processes) {
   folder.write("my.scenario", scenario_of("jar"));
   const test::Outcome run =
       test::shell("cd / && " + std::string(HANDSEL_COMMAND) +
-                  " run --headless --port 0 --domain 74 --json --path " + folder.path().string() +
+                  " run --headless --port 0 --domain 217 --json --path " + folder.path().string() +
                   " --scenario my.scenario --set spark.grip_force=2.5");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("1 value differs from the shipped settings, as spark.grip_force"));
@@ -181,4 +181,4 @@ TEST_F(OwnObject, that_cannot_be_is_refused_in_one_sentence) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::own_object_test

@@ -16,7 +16,7 @@
 #include "tests/support/processes/edited_settings.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::cost_gain_test {
 namespace {
 
 constexpr const char* kScenario = R"(name: "beside"
@@ -162,4 +162,4 @@ TEST(CostGain, leads_paths_where_people_find_them_better) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::cost_gain_test

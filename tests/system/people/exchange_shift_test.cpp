@@ -14,7 +14,7 @@
 #include "tests/support/processes/edited_settings.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::exchange_shift_test {
 namespace {
 
 constexpr const char* kScenario = R"(name: "exchange_shift" robot: "jido"
@@ -165,4 +165,4 @@ INSTANTIATE_TEST_SUITE_P(People, ExchangeShift,
                          testing::Values(HeldOut::on_the_way, HeldOut::while_waiting));
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::exchange_shift_test

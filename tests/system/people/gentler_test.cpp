@@ -13,7 +13,7 @@
 #include "deploy/handsel/system/system.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::gentler_test {
 namespace {
 
 /// Largest velocity, acceleration and jerk of a motion as ratios to the comfort limits.
@@ -90,4 +90,4 @@ TEST(Gentler, velocity_acceleration_and_jerk_fall_the_nearer_a_person_stands) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::gentler_test

@@ -15,7 +15,7 @@
 #include "deploy/handsel/system/system.hpp"
 #include "tests/support/processes/edited_settings.hpp"
 
-namespace handsel {
+namespace handsel::margin_law_test {
 namespace {
 
 // As in attention.txtpb: period [s], distance [m], speeds [m/s], age of the data [s].
@@ -70,4 +70,4 @@ TEST(MarginLaw, is_what_the_running_system_looks_by) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::margin_law_test

@@ -11,7 +11,7 @@
 #include "deploy/handsel/system/system.hpp"
 #include "tests/support/processes/edited_settings.hpp"
 
-namespace handsel {
+namespace handsel::recoil_test {
 namespace {
 
 constexpr int kFirstSeed = 30;
@@ -51,4 +51,4 @@ TEST(Recoil, keeps_a_person_who_steps_in_farther_away) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::recoil_test

@@ -14,7 +14,7 @@
 #include "tests/support/processes/shell.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::test {
+namespace handsel::test::several_robots_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -75,7 +75,7 @@ TEST(SeveralRobots, two_systems_with_names_work_in_one_domain_and_see_each_other
   const std::string across = (folder.path() / "across.txtpb").string(),
                     heard = (folder.path() / "heard").string();
   std::ofstream(across) << kAcross;
-  const std::string command = HANDSEL_COMMAND, domain = " --domain 117 ";
+  const std::string command = HANDSEL_COMMAND, domain = " --domain 216 ";
   const std::string left = domain + "--name left ", right = domain + "--name right ";
   const Outcome started =
       shell(command + " up --scenario " + across + left + "--port 0 >/dev/null 2>&1 & echo $!");
@@ -98,4 +98,4 @@ TEST(SeveralRobots, two_systems_with_names_work_in_one_domain_and_see_each_other
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::several_robots_test

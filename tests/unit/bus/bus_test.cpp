@@ -15,7 +15,7 @@
 #include "tests/unit/bus/bus_stage.hpp"
 #include "tests/unit/bus/voluntary_switches.hpp"
 
-namespace handsel {
+namespace handsel::bus_test {
 namespace {
 
 using test::DdsStage;
@@ -506,4 +506,4 @@ TEST(LocalNetwork, same_seed_same_history) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::bus_test

@@ -15,7 +15,7 @@
 #include "common/messages/robot.hpp"
 #include "tests/unit/bus/bus_stage.hpp"
 
-namespace handsel {
+namespace handsel::garbage_test {
 namespace {
 
 constexpr int kDatagrams = 10000;
@@ -112,4 +112,4 @@ TEST(Garbage, ten_thousand_datagrams_do_not_stop_a_bus_or_grow_it) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::garbage_test

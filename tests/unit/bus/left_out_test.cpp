@@ -14,7 +14,7 @@
 #include "common/wire/message_type.hpp"
 #include "tests/support/oracles/wire_leaves.hpp"
 
-namespace handsel {
+namespace handsel::left_out_test {
 namespace {
 
 template <class M>
@@ -192,4 +192,4 @@ TEST(LeftOut, ever_new_names_do_not_grow_the_list) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::left_out_test

@@ -8,7 +8,7 @@
 #include "common/messages/planning.hpp"
 #include "components/supervisor/goal_inbox.hpp"
 
-namespace handsel {
+namespace handsel::queues_test {
 namespace {
 
 using Queue = RequestQueue<PathReply>;
@@ -103,4 +103,4 @@ TEST(GoalInbox, a_goal_that_was_turned_away_may_come_again) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::queues_test

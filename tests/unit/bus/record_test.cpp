@@ -16,7 +16,7 @@
 #include "deploy/handsel/recording/replay.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::test {
+namespace handsel::test::record_test {
 namespace {
 
 using testing::HasSubstr;
@@ -267,4 +267,4 @@ TEST_F(Replayed, a_sample_that_breaks_its_bounds_is_refused_and_the_rest_comes) 
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::record_test

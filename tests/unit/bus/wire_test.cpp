@@ -17,7 +17,7 @@
 #include "tests/support/oracles/cdr_size.hpp"
 #include "tests/support/oracles/wire_leaves.hpp"
 
-namespace handsel {
+namespace handsel::wire_test {
 namespace {
 
 class EveryMessage : public testing::TestWithParam<std::size_t> {
@@ -339,4 +339,4 @@ TEST(Idl, every_field_and_enumerator_is_documented) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::wire_test

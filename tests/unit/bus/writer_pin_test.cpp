@@ -6,7 +6,7 @@
 
 #include "common/bus/writer_pin.hpp"
 
-namespace handsel {
+namespace handsel::writer_pin_test {
 namespace {
 
 const TopicRow& kSetPoints = TopicOf<JointCommand>::row;
@@ -189,4 +189,4 @@ TEST(WriterPin, at_most_one_living_writer_is_accepted_in_random_histories) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::writer_pin_test

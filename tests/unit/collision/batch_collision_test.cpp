@@ -15,7 +15,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel {
+namespace handsel::batch_collision_test {
 namespace {
 
 using test::person_at;
@@ -552,4 +552,4 @@ TEST_F(Lanes, a_line_is_clear_for_who_asks_for_any_unclear_state_exactly_when_al
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::batch_collision_test

@@ -7,7 +7,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::collision_checker {
+namespace handsel::collision_checker::collision_checker_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -263,4 +263,4 @@ TEST(Judge, answers_each_state_and_names_the_first_contact) {
 }
 
 }  // namespace
-}  // namespace handsel::collision_checker
+}  // namespace handsel::collision_checker::collision_checker_test

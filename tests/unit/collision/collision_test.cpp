@@ -6,7 +6,7 @@
 #include "common/collision/collision_shape.hpp"
 #include "common/collision/collision_world.hpp"
 
-namespace handsel {
+namespace handsel::collision_test {
 namespace {
 
 Pose at(double x, double y, double z) { return make_pose({x, y, z}); }
@@ -77,4 +77,4 @@ TEST(SegmentDistance, crossing_parallel_and_degenerate) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::collision_test

@@ -6,7 +6,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel {
+namespace handsel::collision_world_test {
 namespace {
 
 using test::person_at;
@@ -183,4 +183,4 @@ TEST_F(World, counts_its_checks) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::collision_world_test

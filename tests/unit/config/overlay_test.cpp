@@ -17,7 +17,7 @@
 #include "common/config/settings_text.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::overlay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,4 +156,4 @@ TEST_F(Overlay, values_that_disagree_are_refused_with_the_place_in_the_overlay) 
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::overlay_test

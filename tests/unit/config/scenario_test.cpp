@@ -10,7 +10,7 @@
 #include "common/base/errors.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::scenario_test {
 namespace {
 
 using test::message_of;
@@ -181,4 +181,4 @@ TEST(Draws, a_robot_or_object_that_is_not_there_is_missing_also_where_another_is
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::scenario_test

@@ -11,7 +11,7 @@
 #include "common/config/search_path.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::search_path_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ TEST(NearestNames, are_those_with_few_other_letters_or_the_same_begin) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::search_path_test

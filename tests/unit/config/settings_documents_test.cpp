@@ -12,7 +12,7 @@
 
 #include "tests/unit/config/settings_files.hpp"
 
-namespace handsel {
+namespace handsel::settings_documents_test {
 namespace {
 
 using test::Descriptor;
@@ -130,4 +130,4 @@ TEST(Settings, each_file_has_its_table_in_a_document) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::settings_documents_test

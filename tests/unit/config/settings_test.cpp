@@ -14,7 +14,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/unit/config/settings_files.hpp"
 
-namespace handsel {
+namespace handsel::settings_test {
 namespace {
 
 using google::protobuf::Message;
@@ -140,4 +140,4 @@ TEST(Settings, what_a_file_leaves_out_has_the_default_value) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::settings_test

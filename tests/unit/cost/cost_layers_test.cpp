@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace handsel {
+namespace handsel::cost_layers_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -106,4 +106,4 @@ TEST(CostLayers, there_is_an_end_to_what_it_keeps) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::cost_layers_test

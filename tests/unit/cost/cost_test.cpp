@@ -6,7 +6,7 @@
 #include "common/cost/person_frame.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace handsel {
+namespace handsel::cost_test {
 namespace {
 
 Person standing(const Vector3& feet, double yaw) {
@@ -107,4 +107,4 @@ TEST(SimplifiedDistance, to_cylinder_side_top_and_head) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::cost_test

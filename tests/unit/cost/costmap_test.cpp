@@ -5,7 +5,7 @@
 #include "common/cost/human_cost.hpp"
 #include "components/costmap/layers.hpp"
 
-namespace handsel::costmap {
+namespace handsel::costmap::costmap_test {
 namespace {
 
 Person standing(const Vector3& feet, double yaw) {
@@ -110,4 +110,4 @@ TEST(NearestPerson, is_the_nearest_or_nobody) {
 }
 
 }  // namespace
-}  // namespace handsel::costmap
+}  // namespace handsel::costmap::costmap_test

@@ -15,7 +15,7 @@
 #include "deploy/handsel/system/processes.hpp"
 #include "tests/support/processes/compose_file.hpp"
 
-namespace handsel::test {
+namespace handsel::test::compose_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST(ComposeFile, the_network_settings_let_every_topic_and_every_process_through
 }
 
 }  // namespace
-}  // namespace handsel::test
+}  // namespace handsel::test::compose_file_test

@@ -6,7 +6,7 @@
 #include "common/bus/bus.hpp"
 #include "common/model/human/human_body.hpp"
 
-namespace handsel {
+namespace handsel::criteria_test {
 namespace {
 
 /// A trial told by hand: the truth every 20 ms.
@@ -155,4 +155,4 @@ TEST_F(CriteriaTest, a_motion_that_is_slow_by_itself_has_not) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::criteria_test

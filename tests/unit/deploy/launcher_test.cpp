@@ -13,7 +13,7 @@
 
 #include "common/base/errors.hpp"
 
-namespace handsel {
+namespace handsel::launcher_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -204,4 +204,4 @@ TEST_F(LauncherTest, a_domain_held_by_another_user_is_held) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::launcher_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace handsel {
+namespace handsel::liveness_test {
 namespace {
 
 /// A process whose signs of life are set by hand.
@@ -160,4 +160,4 @@ TEST(Backoff, doubles_up_to_ten_seconds_and_forgets_after_a_stable_life) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::liveness_test

@@ -16,7 +16,7 @@
 #include "common/config/resources.hpp"
 #include "deploy/handsel/system/launcher_settings.hpp"
 
-namespace handsel {
+namespace handsel::process_watch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST(LauncherSettings, are_read_and_each_bad_value_is_refused_with_file_line_and
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::process_watch_test

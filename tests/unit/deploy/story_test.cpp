@@ -5,7 +5,7 @@
 
 #include "common/base/errors.hpp"
 
-namespace handsel {
+namespace handsel::story_test {
 namespace {
 
 using testing::ElementsAre;
@@ -85,4 +85,4 @@ TEST(Story, times_are_seconds_or_milliseconds) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::story_test

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace handsel {
+namespace handsel::study_test {
 namespace {
 
 using testing::HasSubstr;
@@ -106,4 +106,4 @@ TEST(Study, compares_what_has_the_same_seed_and_hands_it_on) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::study_test

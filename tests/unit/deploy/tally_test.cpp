@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace handsel {
+namespace handsel::tally_test {
 namespace {
 
 using testing::HasSubstr;
@@ -66,4 +66,4 @@ TEST(TrialTable, counts_trials_without_draws_and_lines_of_crashes) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::tally_test

@@ -7,7 +7,7 @@
 
 #include "common/model/object_model.hpp"
 
-namespace handsel {
+namespace handsel::placement_test {
 namespace {
 
 TriangleMesh box(const Vector3& size, const Vector3& at = Vector3::Zero()) {
@@ -113,4 +113,4 @@ TEST(Placements, the_mug_stands_upright) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::placement_test

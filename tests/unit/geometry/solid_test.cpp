@@ -7,7 +7,7 @@
 #include "common/geometry/solid/convex_hull.hpp"
 #include "common/geometry/solid/convex_parts.hpp"
 
-namespace handsel {
+namespace handsel::solid_test {
 namespace {
 
 /// A surface of revolution about z through points (radius, height), closed where the radius is 0.
@@ -94,4 +94,4 @@ TEST(ConvexParts, a_cup_is_cut_until_its_hollow_is_free) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::solid_test

@@ -11,7 +11,7 @@
 #include "components/grasp_planner/pair/carried_motion.hpp"
 #include "components/trajectory_planner/cartesian_motion.hpp"
 
-namespace handsel::trajectory_planner {
+namespace handsel::trajectory_planner::closed_chain_test {
 namespace {
 
 constexpr double kApart = 1e-3, kTurned = 0.2 * std::numbers::pi / 180;
@@ -173,4 +173,4 @@ TEST(CarriedMotion, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_planner
+}  // namespace handsel::trajectory_planner::closed_chain_test

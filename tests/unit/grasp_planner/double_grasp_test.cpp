@@ -13,7 +13,7 @@
 #include "components/grasp_planner/pair/double_grasp.hpp"
 #include "tests/support/grasp_lists.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::double_grasp_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -40,7 +40,7 @@ double hands_distance(const HandGeometry& a, const Pose& T_object_a, const Vecto
 
 HandSide side_of(const HandOnObject& h) { return {h.hand_geometry.get(), &h.list, {}}; }
 
-TEST(Hands, the_left_hand_is_the_mirror_image_of_the_right) {
+TEST(LeftHand, the_left_hand_is_the_mirror_image_of_the_right) {
   for (const auto& [right, left] :
        {std::pair("sah", "sah_left"), std::pair("human_right", "human_left")}) {
     const HandModel &r = hand_kit(right)->hand, &l = hand_kit(left)->hand;
@@ -237,4 +237,4 @@ TEST(DoubleGrasps, the_less_natural_arm_counts_and_grasps_out_of_reach_are_left_
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::double_grasp_test

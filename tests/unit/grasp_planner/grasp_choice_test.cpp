@@ -11,7 +11,7 @@
 #include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "components/grasp_planner/regrasp/grasp_cache.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_choice_test {
 namespace {
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
@@ -239,4 +239,4 @@ TEST_F(GraspChoice, a_damaged_or_foreign_list_is_not_used) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_choice_test

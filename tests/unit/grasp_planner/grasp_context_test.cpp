@@ -14,7 +14,7 @@
 #include "components/grasp_planner/choice/visibility.hpp"
 #include "tests/support/grasp_lists.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_context_test {
 namespace {
 
 constexpr double kTop = 0.72;
@@ -538,4 +538,4 @@ TEST(Platform, says_why_it_does_not_drive) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_context_test

@@ -10,7 +10,7 @@
 #include "components/grasp_planner/list/epsilon.hpp"
 #include "components/grasp_planner/list/grasp_list.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_hands_test {
 namespace {
 
 using testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST(Meshes,
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_hands_test

@@ -9,7 +9,7 @@
 #include "components/grasp_planner/list/epsilon.hpp"
 #include "components/grasp_planner/list/grasp_list.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_list_test {
 namespace {
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
@@ -307,4 +307,4 @@ TEST(FingerWorkspace, spheres_are_inside_and_the_finger_gets_everywhere_in_them)
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_list_test

@@ -10,7 +10,7 @@
 #include "common/bus/local_bus.hpp"
 #include "components/grasp_planner/node.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_node_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST_F(GraspNode, candidates_follow_the_object_until_it_is_in_a_hand) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_node_test

@@ -7,7 +7,7 @@
 
 #include "deploy/handsel/pictures/grasp_picture.hpp"
 
-namespace handsel {
+namespace handsel::grasp_picture_test {
 namespace {
 
 using namespace grasp_planner;
@@ -143,4 +143,4 @@ TEST_F(Figures, the_boxes_of_the_tree_hold_all_points_at_every_depth) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::grasp_picture_test

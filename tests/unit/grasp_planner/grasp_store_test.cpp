@@ -14,7 +14,7 @@
 #include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_store_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -150,7 +150,7 @@ TEST(GraspCache,
   EXPECT_EQ(again->list.grasps.size(), first->list.grasps.size());
 }
 
-TEST(GraspList, shared_among_listers_it_is_the_list_of_one) {
+TEST(GraspStore, shared_among_listers_it_is_the_list_of_one) {
   const auto hand_geometry =
       std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
@@ -173,4 +173,4 @@ TEST(GraspList, shared_among_listers_it_is_the_list_of_one) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_store_test

@@ -9,7 +9,7 @@
 #include "components/grasp_planner/object/surface.hpp"
 #include "components/grasp_planner/object/triangle_tree.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::grasp_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -253,4 +253,4 @@ TEST(TriangleTree, distance_to_a_cylinder_and_inside) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::grasp_test

@@ -9,7 +9,7 @@
 
 #include "components/grasp_planner/list/grasp_list.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel::grasp_planner::pinch_test {
 namespace {
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
@@ -184,4 +184,4 @@ TEST(Pinch, fingers_that_share_an_axis_carry_their_own_links) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel::grasp_planner::pinch_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::drive_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST(DriveWithoutPlatform, is_refused) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::drive_test

@@ -6,7 +6,7 @@
 
 #include "common/collision/collision_world.hpp"
 
-namespace handsel {
+namespace handsel::held_object_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST_F(Held, it_counts_for_the_distance_to_people) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::held_object_test

@@ -1,7 +1,7 @@
 #include "components/manipulation_planner/placing/place_search.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::manipulation_planner_test {
 namespace {
 
 using rig::Rig;
@@ -504,4 +504,4 @@ TEST(ManipulationPlanner, one_arm_alone_asks_no_other_hand) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::manipulation_planner_test

@@ -5,7 +5,7 @@
 #include "common/config/resources.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::offer_area_test {
 namespace {
 
 class OfferAreaTest : public testing::Test {
@@ -64,4 +64,4 @@ TEST_F(OfferAreaTest, beside_the_hand_at_rest_the_area_of_the_person_becomes_cle
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::offer_area_test

@@ -7,7 +7,7 @@
 
 #include "common/model/human/human_body.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::offer_detector_test {
 namespace {
 
 constexpr double kMaxSpeed = 0.06;
@@ -367,4 +367,4 @@ TEST_F(OfferDetectorTest, the_hand_at_the_object_is_engaged_without_an_offer) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::offer_detector_test

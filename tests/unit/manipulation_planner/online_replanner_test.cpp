@@ -3,7 +3,7 @@
 #include "components/manipulation_planner/parts.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::online_replanner_test {
 namespace {
 
 constexpr std::uint64_t kCommand = 7;
@@ -207,4 +207,4 @@ TEST_F(OnlineReplannerTest, a_path_that_is_ready_too_late_is_refused) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::online_replanner_test

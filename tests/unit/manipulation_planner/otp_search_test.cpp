@@ -10,7 +10,7 @@
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 #include "tests/unit/manipulation_planner/partner_grasps.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::otp_search_test {
 namespace {
 
 using rig::from_all_sides;
@@ -419,4 +419,4 @@ TEST_F(OtpSearchTest, arm_comfort_comes_from_the_map_of_that_person) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::otp_search_test

@@ -7,7 +7,7 @@
 #include "common/config/resources.hpp"
 #include "common/model/human/human_body.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::place_search_test {
 namespace {
 
 class Placing : public testing::Test {
@@ -212,4 +212,4 @@ TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::place_search_test

@@ -3,7 +3,7 @@
 
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::receive_test {
 namespace {
 
 using rig::Rig;
@@ -414,4 +414,4 @@ TEST(ManipulationPlanner, who_does_not_let_go_keeps_it) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::receive_test

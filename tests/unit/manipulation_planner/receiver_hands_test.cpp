@@ -4,7 +4,7 @@
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 #include "tests/unit/manipulation_planner/partner_grasps.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::receiver_hands_test {
 namespace {
 
 using rig::Rig;
@@ -97,4 +97,4 @@ TEST(ReceiverHands, of_two_grasps_the_one_that_leaves_the_person_a_grasp_is_take
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::receiver_hands_test

@@ -5,7 +5,7 @@
 #include "common/config/resources.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::retreat_planner_test {
 namespace {
 
 class RetreatPlannerTest : public testing::Test {
@@ -92,4 +92,4 @@ TEST_F(RetreatPlannerTest, the_range_within_which_people_are_near_is_a_setting) 
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::retreat_planner_test

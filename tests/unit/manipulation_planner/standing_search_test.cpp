@@ -8,7 +8,7 @@
 #include "components/manipulation_planner/driving/standing_search.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::standing_search_test {
 namespace {
 
 const std::string kMobile =
@@ -166,4 +166,4 @@ TEST_F(StandingPlaces, furniture_is_kept_free_and_what_is_out_of_reach_is_refuse
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::standing_search_test

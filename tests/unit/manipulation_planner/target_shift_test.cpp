@@ -7,7 +7,7 @@
 
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 
-namespace handsel::manipulation_planner {
+namespace handsel::manipulation_planner::target_shift_test {
 namespace {
 
 TimePoint at(double seconds) { return TimePoint(from_seconds(10.0 + seconds)); }
@@ -94,4 +94,4 @@ TEST_F(TargetShiftTest, small_shifts_and_a_bound_of_zero_change_nothing) {
 }
 
 }  // namespace
-}  // namespace handsel::manipulation_planner
+}  // namespace handsel::manipulation_planner::target_shift_test

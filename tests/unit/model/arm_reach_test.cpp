@@ -8,7 +8,7 @@
 #include "common/config/resources.hpp"
 #include "common/model/manipulator.hpp"
 
-namespace handsel {
+namespace handsel::arm_reach_test {
 namespace {
 
 constexpr unsigned kSeed = 20;
@@ -50,4 +50,4 @@ TEST(ArmReach, the_palm_gets_about_as_far_as_the_reach_says_and_no_farther) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::arm_reach_test

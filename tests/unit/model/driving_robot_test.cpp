@@ -10,7 +10,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel {
+namespace handsel::driving_robot_test {
 namespace {
 
 using test::message_of;
@@ -83,4 +83,4 @@ TEST(Extends, a_circle_and_a_missing_file_are_refused) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::driving_robot_test

@@ -8,7 +8,7 @@
 #include "common/model/human/holding_hand_average.hpp"
 #include "common/model/human/human_body.hpp"
 
-namespace handsel {
+namespace handsel::holding_hand_test {
 namespace {
 
 constexpr double kNoise = 0.01;  // of each coordinate [m]
@@ -121,4 +121,4 @@ TEST_F(HoldingHandTest, the_nearer_hand_holds) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::holding_hand_test

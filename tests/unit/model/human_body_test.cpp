@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace handsel {
+namespace handsel::human_body_test {
 namespace {
 
 Person person_at(const Vector3& feet, double yaw, double stature = 1.75) {
@@ -203,4 +203,4 @@ TEST(HoldingHand, its_capsule_ends_in_the_palm_and_the_other_stays_stretched) {
   EXPECT_EQ(with_fingers_bent(lacking, at(anna, "r_hand")).joints.size(), lacking.joints.size());
 }
 
-}  // namespace handsel
+}  // namespace handsel::human_body_test

@@ -14,7 +14,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel {
+namespace handsel::model_input_test {
 namespace {
 
 using test::message_of;
@@ -507,4 +507,4 @@ TEST(ForeignRobots, are_loaded_from_the_data_folder) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::model_input_test

@@ -8,7 +8,7 @@
 #include "common/model/object_model.hpp"
 #include "common/model/robot_model.hpp"
 
-namespace handsel {
+namespace handsel::model_test {
 namespace {
 
 const RobotModel& jido() {
@@ -291,4 +291,4 @@ TEST(ObjectModel, objects_are_closed_and_stand_on_their_lowest_point) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::model_test

@@ -8,7 +8,7 @@
 #include "common/config/resources.hpp"
 #include "common/geometry/segments.hpp"
 
-namespace handsel {
+namespace handsel::robot_capsules_test {
 namespace {
 
 double depth(const LinkCapsule& c, const Vector3& p) {
@@ -131,4 +131,4 @@ TEST(Separation, incomplete_bodies_still_count) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::robot_capsules_test

@@ -15,7 +15,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::cartesian_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST_F(Cartesian, the_same_seed_gives_the_same_path) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::cartesian_test

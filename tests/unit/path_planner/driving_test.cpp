@@ -12,7 +12,7 @@
 #include "components/path_planner/path_planner.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::driving_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -304,4 +304,4 @@ TEST_F(DrivingJido, a_request_on_the_bus_starts_where_the_robot_stands) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::driving_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace handsel {
+namespace handsel::landscape_test {
 namespace {
 
 TEST(Landscape, trees_follow_the_valleys_from_start_and_goal) {
@@ -27,4 +27,4 @@ TEST(Landscape, picture_is_a_png) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::landscape_test

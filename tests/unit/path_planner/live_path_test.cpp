@@ -11,7 +11,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/standing_person.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::live_path_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -172,4 +172,4 @@ TEST_F(LivePath, bad_input_has_its_reason) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::live_path_test

@@ -13,7 +13,7 @@
 #include "tests/support/oracles/sound_path.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::path_planner_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -248,4 +248,4 @@ TEST_F(Planning, beside_a_person_the_path_costs_less_than_the_shortest) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::path_planner_test

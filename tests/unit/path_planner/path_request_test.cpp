@@ -12,7 +12,7 @@
 #include "components/path_planner/node.hpp"
 #include "components/path_planner/request.hpp"
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::path_request_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -311,4 +311,4 @@ TEST_F(PathRequests, what_contradicts_itself_is_refused_with_its_reason) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::path_request_test

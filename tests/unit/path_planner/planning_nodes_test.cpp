@@ -15,7 +15,7 @@
 #include "tests/support/cost_layer.hpp"
 #include "tests/support/planar_arm.hpp"
 
-namespace handsel {
+namespace handsel::planning_nodes_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -482,4 +482,4 @@ TEST_F(Nodes, the_cost_map_follows_the_person_ten_times_a_second) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::planning_nodes_test

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace handsel::path_planner {
+namespace handsel::path_planner::pose_goals_test {
 namespace {
 
 class PoseGoalsOfJido : public ::testing::Test {
@@ -60,4 +60,4 @@ TEST_F(PoseGoalsOfJido, what_no_posture_reaches_is_said) {
 }
 
 }  // namespace
-}  // namespace handsel::path_planner
+}  // namespace handsel::path_planner::pose_goals_test

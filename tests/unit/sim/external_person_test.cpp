@@ -5,7 +5,7 @@
 #include "common/base/errors.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::external_person_test {
 namespace {
 
 using namespace test;
@@ -157,4 +157,4 @@ TEST(ExternalPerson, needs_a_source_of_its_own) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::external_person_test

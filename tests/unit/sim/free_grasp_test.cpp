@@ -7,7 +7,7 @@
 #include "common/model/object_surface.hpp"
 #include "sim/people/free_grasp.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::free_grasp_test {
 namespace {
 
 constexpr double kStature = 1.75;
@@ -169,4 +169,4 @@ TEST(HumanHand, a_closing_digit_is_continuous_and_keeps_its_length) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::free_grasp_test

@@ -4,7 +4,7 @@
 
 #include "sim/people/moving_offer.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::moving_offer_test {
 namespace {
 
 constexpr double kStep = 0.001;  // [s]
@@ -90,4 +90,4 @@ TEST(MovingOffer, begins_at_the_comfortable_place_where_no_start_is_in_reach) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::moving_offer_test

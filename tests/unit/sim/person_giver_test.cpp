@@ -3,7 +3,7 @@
 #include "common/model/object_surface.hpp"
 #include "tests/unit/sim/person_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::person_giver_test {
 namespace {
 
 using namespace test;
@@ -329,4 +329,4 @@ TEST(SimPerson, who_changes_their_mind_draws_it_back_once_and_offers_again) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::person_giver_test

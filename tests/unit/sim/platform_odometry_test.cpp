@@ -3,7 +3,7 @@
 
 #include "sim/robot/platform_odometry.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::platform_odometry_test {
 namespace {
 
 constexpr double kStep = 0.001;
@@ -88,4 +88,4 @@ TEST_F(Odometry, a_lost_platform_grows_older_until_it_is_found_again) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::platform_odometry_test

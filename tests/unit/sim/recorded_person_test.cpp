@@ -4,7 +4,7 @@
 
 #include "tests/unit/sim/person_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::recorded_person_test {
 namespace {
 
 using namespace test;
@@ -120,4 +120,4 @@ TEST(SimRecording, a_missing_folder_is_missing) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::recorded_person_test

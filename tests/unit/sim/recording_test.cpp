@@ -11,7 +11,7 @@
 #include "sim/people/recording.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::recording_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -234,4 +234,4 @@ TEST(BadRecordings, of_another_kind_or_missing) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::recording_test

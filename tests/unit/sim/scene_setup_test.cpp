@@ -9,7 +9,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::scene_setup_test {
 namespace {
 
 using namespace test;
@@ -108,4 +108,4 @@ TEST(Hold, the_grasp_constraint_helps_only_where_a_scenario_asks) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::scene_setup_test

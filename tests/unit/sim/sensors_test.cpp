@@ -5,7 +5,7 @@
 
 #include "tests/unit/sim/sim_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::sensors_test {
 namespace {
 
 using namespace test;
@@ -515,4 +515,4 @@ TEST(Sensors, settings_that_make_no_sense_are_refused_in_one_sentence) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::sensors_test

@@ -9,7 +9,7 @@
 #include "sim/oracle/taking_oracle.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::sim_oracle_test {
 namespace {
 
 using namespace test;
@@ -406,4 +406,4 @@ TEST(HandoverOracleTest, counts_what_goes_back_and_forth) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::sim_oracle_test

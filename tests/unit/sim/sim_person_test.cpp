@@ -4,7 +4,7 @@
 #include "common/model/object_surface.hpp"
 #include "tests/unit/sim/person_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::sim_person_test {
 namespace {
 
 using namespace test;
@@ -333,4 +333,4 @@ TEST(SimWorld, who_fetches_what_is_not_there_is_refused) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::sim_person_test

@@ -5,7 +5,7 @@
 #include "sim/robot/robot_grasp.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::sim_test {
 namespace {
 
 using namespace test;
@@ -477,4 +477,4 @@ TEST(SimPeople, a_giver_offers_before_the_nearer_hand_of_the_robot) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::sim_test

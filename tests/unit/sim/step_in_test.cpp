@@ -11,7 +11,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
-namespace handsel::sim {
+namespace handsel::sim::step_in_test {
 namespace {
 
 TEST(StepIn, walks_in_at_the_speed_stays_and_walks_back) {
@@ -93,4 +93,4 @@ TEST(StepIn, what_cannot_be_is_refused) {
 }
 
 }  // namespace
-}  // namespace handsel::sim
+}  // namespace handsel::sim::step_in_test

@@ -5,7 +5,7 @@
 #include "common/model/human/human_body.hpp"
 #include "components/spark/people/people_tracker.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::adopt_test {
 namespace {
 
 const Coverage kRoom{{-4, -4, -0.5}, {4, 4, 2.6}};
@@ -101,4 +101,4 @@ TEST(Adopt, who_was_lost_at_the_edge_is_confined_to_it_once_the_source_has_looke
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::adopt_test

@@ -10,7 +10,7 @@
 #include "components/spark/sources.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::calibration_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST(Days, between_dates) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::calibration_test

@@ -17,7 +17,7 @@
 #include "tests/support/recorded_handover.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::facts_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -352,4 +352,4 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::facts_test

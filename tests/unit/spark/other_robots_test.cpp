@@ -7,7 +7,7 @@
 #include "common/config/resources.hpp"
 #include "common/model/robot_volume.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::other_robots_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -107,4 +107,4 @@ TEST(RobotVolume, contains_the_links_and_moves_with_them) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::other_robots_test

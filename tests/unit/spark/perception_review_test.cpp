@@ -8,7 +8,7 @@
 #include "common/model/human/human_body.hpp"
 #include "deploy/handsel/doctor/perception_review.hpp"
 
-namespace handsel {
+namespace handsel::perception_review_test {
 namespace {
 
 using testing::HasSubstr;
@@ -210,4 +210,4 @@ TEST(PerceptionReview, names_what_is_malformed_and_what_objects_lack) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::perception_review_test

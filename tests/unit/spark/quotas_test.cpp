@@ -17,7 +17,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::quotas_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -314,4 +314,4 @@ TEST(Quotas, a_quota_out_of_range_is_refused_with_file_line_and_key) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::quotas_test

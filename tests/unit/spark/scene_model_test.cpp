@@ -10,7 +10,7 @@
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::scene_model_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -363,4 +363,4 @@ TEST(UnknownObjects, are_obstacles_of_their_shape_and_of_where_they_may_be) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::scene_model_test

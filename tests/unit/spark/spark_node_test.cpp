@@ -12,7 +12,7 @@
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel {
+namespace handsel::spark_node_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -180,4 +180,4 @@ TEST_F(SparkNode, news_of_things_come_at_once_and_refusals_are_told) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::spark_node_test

@@ -8,7 +8,7 @@
 #include "components/spark/people/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::spark_test {
 namespace {
 
 settings::SparkSettings settings() {
@@ -516,4 +516,4 @@ TEST(SceneModel, what_moves_is_taken_as_seen) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::spark_test

@@ -6,7 +6,7 @@
 #include "components/spark/capture_age.hpp"
 #include "components/spark/people/people_tracker.hpp"
 
-namespace handsel::spark {
+namespace handsel::spark::spark_views_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -201,4 +201,4 @@ TEST_F(Views, a_lost_person_is_not_seen_gone_by_a_source_that_is_not_live) {
 }
 
 }  // namespace
-}  // namespace handsel::spark
+}  // namespace handsel::spark::spark_views_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel {
+namespace handsel::kept_state_test {
 namespace {
 
 using supervisor::SafetyLatches;
@@ -73,4 +73,4 @@ TEST_F(Kept, a_part_without_a_supervisor_keeps_and_forgets_nothing) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::kept_state_test

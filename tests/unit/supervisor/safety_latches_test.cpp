@@ -13,7 +13,7 @@
 #include "components/supervisor/safety/state_store.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
-namespace handsel::supervisor {
+namespace handsel::supervisor::safety_latches_test {
 namespace {
 
 using testing::HasSubstr;
@@ -311,4 +311,4 @@ TEST_F(Store, a_write_that_fails_leaves_the_state_before_it) {
 }
 
 }  // namespace
-}  // namespace handsel::supervisor
+}  // namespace handsel::supervisor::safety_latches_test

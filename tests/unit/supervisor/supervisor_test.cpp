@@ -2,7 +2,7 @@
 
 #include "tests/support/task_rig.hpp"
 
-namespace handsel::supervisor {
+namespace handsel::supervisor::supervisor_test {
 namespace {
 
 TEST(Supervisor, gives_a_mug_in_three_actions_one_after_the_other) {
@@ -586,4 +586,4 @@ TEST(Permission, no_new_epoch_while_a_cause_stands) {
 }
 
 }  // namespace
-}  // namespace handsel::supervisor
+}  // namespace handsel::supervisor::supervisor_test

@@ -5,7 +5,7 @@
 #include "components/supervisor/task/task_planner.hpp"
 #include "tests/support/task_world.hpp"
 
-namespace handsel::supervisor {
+namespace handsel::supervisor::task_planner_test {
 namespace {
 
 const Domain& shipped() {
@@ -366,4 +366,4 @@ TEST(TaskDomain, facts_of_its_own_hold_from_an_action_on) {
 }
 
 }  // namespace
-}  // namespace handsel::supervisor
+}  // namespace handsel::supervisor::task_planner_test

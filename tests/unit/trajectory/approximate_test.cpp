@@ -11,7 +11,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "tests/support/reference_data.hpp"
 
-namespace handsel {
+namespace handsel::approximate_test {
 namespace {
 
 struct Samples {
@@ -211,4 +211,4 @@ TEST(Approximate, hand_of_a_real_handover) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::approximate_test

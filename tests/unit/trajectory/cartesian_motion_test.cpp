@@ -10,7 +10,7 @@
 #include "common/model/srs_arm.hpp"
 #include "common/trajectory/limits_check.hpp"
 
-namespace handsel::trajectory_planner {
+namespace handsel::trajectory_planner::cartesian_motion_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -283,4 +283,4 @@ TEST_F(CartesianWay, bad_requests_are_refused_with_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_planner
+}  // namespace handsel::trajectory_planner::cartesian_motion_test

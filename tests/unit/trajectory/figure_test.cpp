@@ -12,7 +12,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "common/trajectory/path/smooth.hpp"
 
-namespace handsel {
+namespace handsel::figure_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -218,4 +218,4 @@ TEST(Corner127, longer_transitions_save_more_and_keep_their_limits) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::figure_test

@@ -9,7 +9,7 @@
 #include "tests/support/motion_cases.hpp"
 #include "tests/support/oracles/slow_min_time.hpp"
 
-namespace handsel {
+namespace handsel::min_time_test {
 namespace {
 
 using test::Case;
@@ -155,4 +155,4 @@ TEST(MinTime, bad_input_has_a_reason) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::min_time_test

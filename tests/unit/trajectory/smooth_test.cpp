@@ -8,7 +8,7 @@
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/limits_check.hpp"
 
-namespace handsel {
+namespace handsel::smooth_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -353,4 +353,4 @@ TEST(Smooth, refuses_bad_nodes_and_limits) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::smooth_test

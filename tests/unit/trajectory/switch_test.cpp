@@ -14,7 +14,7 @@
 #include "tests/support/allocation_counter.hpp"
 #include "tests/support/motion_draw.hpp"
 
-namespace handsel {
+namespace handsel::switch_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -310,4 +310,4 @@ TEST(Switch, nothing_that_runs_in_a_cycle_allocates) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::switch_test

@@ -9,7 +9,7 @@
 #include "common/trajectory/stop.hpp"
 #include "tests/support/motion_draw.hpp"
 
-namespace handsel {
+namespace handsel::time_scaling_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -232,4 +232,4 @@ TEST(SetpointFilter, numbers_that_are_none_lead_to_rest) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::time_scaling_test

@@ -14,7 +14,7 @@
 #include "common/trajectory/path/smooth.hpp"
 #include "common/wire/message_type.hpp"
 
-namespace handsel {
+namespace handsel::trajectory_lines_test {
 namespace {
 
 using namespace command;
@@ -252,4 +252,4 @@ TEST(TrajectoryForms, json_and_wire_give_back_every_bit) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::trajectory_lines_test

@@ -13,7 +13,7 @@
 #include "tests/support/standing_person.hpp"
 #include "tests/support/tool_motions.hpp"
 
-namespace handsel::trajectory_planner {
+namespace handsel::trajectory_planner::trajectory_size_test {
 namespace {
 
 constexpr std::size_t kMost = 64 * 1024;
@@ -116,4 +116,4 @@ TEST(TrajectorySize, of_the_iiwa_is_below64k_b) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_planner
+}  // namespace handsel::trajectory_planner::trajectory_size_test

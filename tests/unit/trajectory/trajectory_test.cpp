@@ -11,7 +11,7 @@
 #include "common/trajectory/three_segment.hpp"
 #include "tests/support/motion_draw.hpp"
 
-namespace handsel {
+namespace handsel::trajectory_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -214,4 +214,4 @@ TEST(Limits, extremes_are_exact) {
 }
 
 }  // namespace
-}  // namespace handsel
+}  // namespace handsel::trajectory_test

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::contact_watch_test {
 namespace {
 
 constexpr double kPeriod = 0.002;  // [s]
@@ -90,4 +90,4 @@ TEST(ContactWatch, what_presses_already_at_the_start_is_found) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::contact_watch_test

@@ -11,7 +11,7 @@
 #include "components/trajectory_controller/supervise/stop_deadline.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_arm_test {
 namespace {
 
 constexpr double kPeriod = 0.001;
@@ -242,4 +242,4 @@ TEST_F(PartsTest, a_planned_stop_ends_at_rest_and_moves_no_farther_than_its_trav
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_arm_test

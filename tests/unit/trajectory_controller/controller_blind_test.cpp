@@ -8,7 +8,7 @@
 #include "tests/support/controller_expectations.hpp"
 #include "tests/support/processes/live_view.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_blind_test {
 namespace {
 
 using test::ControllerBench;
@@ -251,4 +251,4 @@ TEST(BlindController, never_crosses_the_edge) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_blind_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_contact_test {
 namespace {
 
 using test::ControllerBench;
@@ -217,4 +217,4 @@ TEST(Controller, in_an_exchange_too_a_contact_beyond_its_budget_stops_the_moving
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_contact_test

@@ -8,7 +8,7 @@
 #include "components/trajectory_controller/supervise/speed_limit.hpp"
 #include "components/trajectory_controller/supervise/tracking_monitor.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_inputs_test {
 namespace {
 
 TimePoint at(double seconds) { return TimePoint{from_seconds(seconds)}; }
@@ -186,4 +186,4 @@ TEST(TrackingMonitor, an_error_that_lasts_is_one_and_names_the_axis) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_inputs_test

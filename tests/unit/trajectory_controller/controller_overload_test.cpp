@@ -7,7 +7,7 @@
 #include "common/robot_side/robot_side.hpp"
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_overload_test {
 namespace {
 
 using test::ControllerBench;
@@ -276,4 +276,4 @@ TEST(Overload, a_closed_hand_that_a_person_shakes_follows_again) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_overload_test

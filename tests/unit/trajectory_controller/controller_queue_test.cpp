@@ -6,7 +6,7 @@
 
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_queue_test {
 namespace {
 
 using test::ControllerBench;
@@ -338,4 +338,4 @@ TEST(Controller, more_than_eight_do_not_wait) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_queue_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_silence_test {
 namespace {
 
 using test::ControllerBench;
@@ -133,4 +133,4 @@ TEST(Controller, sends_nothing_at_rest_while_no_robot_side_has_been_heard_for_lo
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_silence_test

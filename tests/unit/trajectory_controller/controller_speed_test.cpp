@@ -6,7 +6,7 @@
 
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_speed_test {
 namespace {
 
 using test::ControllerBench;
@@ -164,4 +164,4 @@ TEST(Controller, it_does_not_draw_back_without_permission_nor_where_that_is_swit
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_speed_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_test {
 namespace {
 
 using test::ControllerBench;
@@ -522,4 +522,4 @@ TEST(Controller, settings_out_of_range_are_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_test

@@ -5,7 +5,7 @@
 #include "components/trajectory_controller/controller.hpp"
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::controller_whole_robot_test {
 namespace {
 
 using test::ControllerBench;
@@ -138,4 +138,4 @@ TEST_F(WholeRobotTest, a_hold_interrupts_all_axes_and_the_trajectory_is_rejoined
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::controller_whole_robot_test

@@ -10,7 +10,7 @@
 #include "components/trajectory_controller/controller.hpp"
 #include "tests/support/processes/live_view.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::finger_limit_test {
 namespace {
 
 /// Jido at rest, opposite somebody who stands `distance` from its hand [m].
@@ -154,7 +154,7 @@ TEST(FingerLimit, the_arm_leaves_its_path_for_no_finger) {
 
 // What people allow depends on the arm's acceleration: an arm that gathered speed at once after
 // somebody stopped it would be stopped again.
-TEST(SpeedRise, after_a_person_has_stopped_the_arm_the_path_gathers_speed_slowly) {
+TEST(FingerLimit, after_a_person_has_stopped_the_arm_the_path_gathers_speed_slowly) {
   for (const double distance : {0.55, 0.6, 0.65}) {
     FingersBesideSomebody b(distance);
     ASSERT_EQ(b.draw_back(), "");
@@ -180,4 +180,4 @@ TEST(SpeedRise, after_a_person_has_stopped_the_arm_the_path_gathers_speed_slowly
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::finger_limit_test

@@ -6,7 +6,7 @@
 #include "components/trajectory_controller/head/gaze.hpp"
 #include "tests/support/controller_expectations.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::gaze_test {
 namespace {
 
 using test::ControllerBench;
@@ -63,4 +63,4 @@ TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::gaze_test

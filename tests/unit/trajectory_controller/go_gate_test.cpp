@@ -4,7 +4,7 @@
 
 #include "components/trajectory_controller/supervise/mode_machine.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::go_gate_test {
 namespace {
 
 Go go(std::uint64_t epoch, std::uint64_t revision, bool allowed = true) {
@@ -80,7 +80,7 @@ TEST(GoGate, says_who_is_waited_for) {
   EXPECT_TRUE(gate.awaits_person());
 }
 
-TEST(ModeMachine, moves_only_for_a_go_newer_than_the_first_one_heard) {
+TEST(GoGate, moves_only_for_a_go_newer_than_the_first_one_heard) {
   ModeMachine machine({});
   ModeInputs in;
   in.robot_age = in.human_age = in.forecast_age = in.attention_age = in.go_age = 0.001;
@@ -98,4 +98,4 @@ TEST(ModeMachine, moves_only_for_a_go_newer_than_the_first_one_heard) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::go_gate_test

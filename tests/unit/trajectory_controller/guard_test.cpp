@@ -5,7 +5,7 @@
 #include "common/trajectory/stop.hpp"
 #include "tests/support/small_robot.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::guard_test {
 namespace {
 
 class GuardTest : public testing::Test {
@@ -383,4 +383,4 @@ TEST_F(GuardTest, slow_approach_near_the_torso_is_allowed) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::guard_test

@@ -8,7 +8,7 @@
 
 #include "common/trajectory/edit.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::hand_executor_test {
 namespace {
 
 constexpr double kDt = 0.001;
@@ -532,4 +532,4 @@ TEST(ReleaseWatch, a_pull_from_before_the_offer_counts_where_the_load_was_felt_a
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::hand_executor_test

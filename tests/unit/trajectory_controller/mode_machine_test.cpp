@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <random>
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::mode_machine_test {
 namespace {
 
 ModeInputs well() {
@@ -161,4 +161,4 @@ TEST(ModeMachine, a_million_random_inputs_keep_the_rules) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::mode_machine_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::observed_space_test {
 namespace {
 
 SourceView view(const Vector3& low, const Vector3& high, double age = 0.05) {
@@ -85,4 +85,4 @@ TEST(ObservedSpace, agrees_with_points_for_random_boxes) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::observed_space_test

@@ -9,7 +9,7 @@
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/solve.hpp"
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::path_runner_test {
 namespace {
 
 constexpr double kPeriod = 0.001;  // [s]
@@ -45,4 +45,4 @@ TEST(PathRunner, a_path_rejoined_before_a_corner_does_not_cut_it) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::path_runner_test

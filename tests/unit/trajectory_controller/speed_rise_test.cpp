@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace handsel::trajectory_controller {
+namespace handsel::trajectory_controller::speed_rise_test {
 namespace {
 
 constexpr SpeedRiseSettings kSettings{
@@ -49,4 +49,4 @@ TEST(SpeedRise, what_lowered_the_factor_is_the_cause_while_it_rises) {
 }
 
 }  // namespace
-}  // namespace handsel::trajectory_controller
+}  // namespace handsel::trajectory_controller::speed_rise_test
