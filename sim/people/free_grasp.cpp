@@ -23,6 +23,8 @@ constexpr double kOffMiddleToGive = 0.45;        // same, of a person who gives
 constexpr double kMaxOffMiddleToGive = 0.10;     // max distance of such a place [m]
 constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
 constexpr int kGivingChoices = 200;              // usable places from which a giver chooses
+constexpr double kOtherPlace = 0.05;             // distance of a place that is another one [m]
+constexpr double kOtherSide = 0.7;               // same, cosine between the palms' normals
 constexpr int kApproachSteps = 4;                // poses tested before the grasp
 constexpr double kPalmOverlap = 0.003;           // flesh that gives way to the object [m]
 constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
@@ -119,6 +121,7 @@ bool FreeGraspSearch::advance() {
 
 /// Keeps a candidate that is usable and better than those before.
 void FreeGraspSearch::consider(const Candidate& candidate) {
+  if (is_avoided(candidate.T_world_hand)) return;
   const auto grasp = test(candidate);
   if (!grasp) return;
   ++usable_;
@@ -279,6 +282,15 @@ bool FreeGraspSearch::can_come(const Pose& T_world_hand) const {
     }
   }
   return true;
+}
+
+/// Returns whether a pose is a place that was held before in vain.
+bool FreeGraspSearch::is_avoided(const Pose& T_world_hand) const {
+  const Pose T = T_object_world_ * T_world_hand;
+  return std::any_of(query_.avoided.begin(), query_.avoided.end(), [&T](const Pose& before) {
+    return (T.translation() - before.translation()).norm() < kOtherPlace &&
+           T.linear().col(0).dot(before.linear().col(0)) > kOtherSide;
+  });
 }
 
 std::optional<FreeGrasp> find_free_grasp(const FreeGraspQuery& query, const HumanHand& shape,

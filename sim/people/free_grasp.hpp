@@ -46,6 +46,9 @@ struct FreeGraspQuery {
   const std::vector<HandPart>* robot{};   ///< parts of the robot, world; not null
   /// Point of the object that is left to a receiver, world [m]; nullopt: the person does not give.
   std::optional<Vector3> p_left;
+  /// Places held before in vain, poses of the hand in the frame of the object: the hand goes
+  /// elsewhere.
+  std::vector<Pose> avoided;
 };
 
 /// Searches the best place a part at a time, so that no step of the simulation takes long.
@@ -78,6 +81,7 @@ class FreeGraspSearch {
   double covered(const FreeGrasp& grasp) const;
   bool can_close(const Pose& T_world_hand, int digit, double closure) const;
   bool can_come(const Pose& T_world_hand) const;
+  bool is_avoided(const Pose& T_world_hand) const;
 
   FreeGraspQuery query_;
   std::vector<HandPart> robot_;

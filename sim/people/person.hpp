@@ -221,6 +221,7 @@ class PersonModel {
   FreeGraspQuery place_query(const ObjectModel&, const HumanArm&) const;
   std::optional<Vector3> choose_place_to_give(const ObjectModel&, const Eigen::Quaterniond& turn);
   void hold_to_give_back(const PersonView&);
+  void hold_otherwise(const PersonView&);
   bool gives_from_place() const;
   double lean_to_reach(const Vector3& p_hand) const;
   double lean_to_take(const PersonView&) const;
@@ -290,6 +291,7 @@ class PersonModel {
   std::optional<MovingOffer> moving_;             // motion of the offer; nullopt: not begun
   Vector3 p_hand_object_{Vector3::Zero()};        // the moved object in the hand frame [m]
   std::optional<Vector3> p_hand_object_to_give_;  // as p_hand_object_to_give()
+  std::vector<Pose> held_in_vain_;                // hand in the frame of the object offered
   TakingHand taking_;                             // place of the hand on an object that is taken
   std::optional<HandConfiguration> hand_configuration_;  // of the handover hand; nullopt: a fist
   // Orientation of the handover hand before a reach.

@@ -143,11 +143,13 @@ void PersonModel::offer(double dt, const PersonView& view) {
   const bool is_hand_near =
       view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kWithdrawDistance;
   if (is_hand_near || phase_time() < duration_) ignored_time_ = 0;
-  if ((ignored_time_ += dt) > kMaxIgnoredTime) {  // repeats the offer nearer to the robot's hand
+  // Repeats an ignored offer, by another hold and nearer to the robot's hand.
+  if ((ignored_time_ += dt) > kMaxIgnoredTime) {
     ignored_time_ = 0;
     settings_.moving = {};
     from_ = hand_target_;
     home_ = feet_;
+    hold_otherwise(view);
     const Vector3 step =
         kStepNearerLength *
         (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();

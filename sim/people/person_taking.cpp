@@ -69,6 +69,7 @@ std::optional<Vector3> PersonModel::choose_place_to_give(const ObjectModel& obje
   query.T_world_object = make_pose(comfortable_reach(body_, side_), facing() * turn);
   const Vector3 outward = side_ == Side::left ? left() : Vector3(-left());
   query.preferred = (kOutwardWeight * outward - kBackWeight * forward()).normalized();
+  query.avoided = held_in_vain_;
   // The end toward the robot, of an upright object the upper end.
   const Vector3 away = forward() + Vector3::UnitZ();
   double max_away = -std::numeric_limits<double>::infinity();
@@ -94,11 +95,22 @@ std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
 /// Chooses anew how a partner holds what the robot asks for, while the robot's hand is far.
 void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_.reset();
+  held_in_vain_.clear();
   const bool is_far = view.object != nullptr && !view.held_by_robot &&
                       (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
   if (settings_.kind != PersonKind::partner || !taking_.has_place() || !is_far) return;
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
+}
+
+/// Holds what the robot has not taken otherwise than before; keeps the hold where the hand has no
+/// other place.
+void PersonModel::hold_otherwise(const PersonView& view) {
+  if (!gives_from_place() || view.object == nullptr) return;
+  held_in_vain_.push_back(taking_.goal(Pose::Identity()));
+  const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
+  const auto p_hand_object = choose_place_to_give(*view.object, turn);
+  if (p_hand_object) p_hand_object_to_give_ = p_hand_object;
 }
 
 void PersonModel::choose_place(const PersonView& view) {

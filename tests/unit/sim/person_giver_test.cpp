@@ -201,41 +201,80 @@ TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
   }
 }
 
-TEST(SimPerson, partner_holds_anew_what_the_robot_asks_for_and_leaves_room_at_its_upper_end) {
-  PersonSettings settings = giver();
-  settings.feet = Vector3(1.35, 0, 0);
-  settings.kind = PersonKind::partner;
-  PersonModel person(settings);
-  PersonView view = offer({0.95, 0.05, 1.05});
-  person.announce(Announcement::offers);
-  step_until(person, view, PersonPhase::pulling, 6);
-  ASSERT_EQ(person.phase(), PersonPhase::pulling);
-  EXPECT_TRUE(person.hand_configuration()) << "taken with the digits";
-  Pose T_hand_object = person.hand().T_world_body.inverse() * view.T_world_object;
-  const auto held = [&] {
-    view.robot_hand = {0.3, 0.5, 1.0};
-    view.T_world_object = person.hand().T_world_body * T_hand_object;
-    view.p_hand_object = T_hand_object.translation();
-    view.held_by_robot = view.held_firmly = false;
-    return view;
-  };
-  for (int i = 0; i < 4000; ++i) person.step(0.001, held());
-  ASSERT_EQ(person.phase(), PersonPhase::keeping);
-  EXPECT_TRUE(person.hand_configuration());
-  EXPECT_FALSE(person.p_hand_object_to_give());
-  person.announce(Announcement::asks);
-  for (int i = 0; i < 4000; ++i) {
-    person.step(0.001, held());
-    if (person.p_hand_object_to_give())
-      T_hand_object.translation() = *person.p_hand_object_to_give();
+/// A partner who has taken the mug from the robot, whose hand is far then.
+class PartnerWithMug {
+ public:
+  PartnerWithMug() : view_(offer({0.95, 0.05, 1.05})), person_(settings()) {
+    person_.announce(Announcement::offers);
+    step_until(person_, view_, PersonPhase::pulling, 6);
+    T_hand_object_ = person_.hand().T_world_body.inverse() * view_.T_world_object;
+    view_.robot_hand = {0.3, 0.5, 1.0};
+    view_.held_by_robot = view_.held_firmly = false;
   }
-  ASSERT_EQ(person.phase(), PersonPhase::offering);
-  ASSERT_TRUE(person.p_hand_object_to_give());
-  EXPECT_TRUE(person.hand_configuration());
-  // The mug is 0.1 m high; the hand leaves its upper end free.
-  const double hand_above_middle =
-      person.hand().T_world_body.translation().z() - (held().T_world_object * view.object->com).z();
-  EXPECT_LT(hand_above_middle, 0.02);
+  /// The object follows the hand, and where the person wants it in the hand.
+  void live(double duration) {
+    for (int i = 0; i < 1000 * duration; ++i) {
+      view_.T_world_object = person_.hand().T_world_body * T_hand_object_;
+      view_.p_hand_object = T_hand_object_.translation();
+      person_.step(0.001, view_);
+      if (person_.p_hand_object_to_give())
+        T_hand_object_.translation() = *person_.p_hand_object_to_give();
+    }
+  }
+  PersonModel& person() { return person_; }
+  double hand_above_middle() const {
+    const Vector3 p_object =
+        person_.hand().T_world_body * T_hand_object_ * Vector3(view_.object->com);
+    return person_.hand().T_world_body.translation().z() - p_object.z();
+  }
+  /// Pose of the palm in the frame of the object.
+  Pose T_object_palm() const {
+    Pose T_world_palm = person_.hand().T_world_body;
+    T_world_palm.linear() = person_.hand_configuration()->R_world_hand.toRotationMatrix();
+    return (person_.hand().T_world_body * T_hand_object_).inverse() * T_world_palm;
+  }
+
+ private:
+  static PersonSettings settings() {
+    PersonSettings out = giver();
+    out.feet = Vector3(1.35, 0, 0);
+    out.kind = PersonKind::partner;
+    return out;
+  }
+  PersonView view_;
+  PersonModel person_;
+  Pose T_hand_object_{Pose::Identity()};
+};
+
+TEST(SimPerson, partner_holds_anew_what_the_robot_asks_for_and_leaves_room_at_its_upper_end) {
+  PartnerWithMug partner;
+  ASSERT_EQ(partner.person().phase(), PersonPhase::pulling);
+  EXPECT_TRUE(partner.person().hand_configuration()) << "taken with the digits";
+  partner.live(4);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::keeping);
+  EXPECT_TRUE(partner.person().hand_configuration());
+  EXPECT_FALSE(partner.person().p_hand_object_to_give());
+  partner.person().announce(Announcement::asks);
+  partner.live(4);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::offering);
+  ASSERT_TRUE(partner.person().p_hand_object_to_give());
+  EXPECT_TRUE(partner.person().hand_configuration());
+  EXPECT_LT(partner.hand_above_middle(), 0.02) << "of a mug 0.1 m high";
+}
+
+TEST(SimPerson, partner_whose_offer_is_not_taken_holds_it_otherwise) {
+  PartnerWithMug partner;
+  partner.live(4);
+  partner.person().announce(Announcement::asks);
+  partner.live(6);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::offering);
+  const Pose first = partner.T_object_palm();
+  partner.live(12);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::offering);
+  const Pose second = partner.T_object_palm();
+  const double moved = (second.translation() - first.translation()).norm();
+  const double cosine = second.linear().col(0).dot(first.linear().col(0));
+  EXPECT_TRUE(moved > 0.05 || cosine < 0.7) << moved << " m, " << cosine;
 }
 
 TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
