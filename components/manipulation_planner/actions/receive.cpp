@@ -80,12 +80,22 @@ double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& gr
   return lack;
 }
 
+/// Grasps of what is offered, by one arm.
+struct OfferGrasps {
+  GraspList list;
+  /// Of these, the ones that do not slip, whose hand is clear of the giver's digits however the
+  /// giver's hand is turned, and by which the same hand can put the object down, if any can.
+  std::vector<Grasp> sure;
+  bool serves{};  ///< the object can be put down by some of them, or perhaps by the other hand
+};
+
 /// Sorts grasps: those that hold first, of these the arm's shortest motion first, since a giver
 /// does not wait long, unless the grasp is weak, the hand may touch the giver's digits, the arm
 /// would come near to the giver's body, or the object cannot be put down by that grasp. Leaves the
-/// best. Returns false where the object can be put down by none.
-Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
-                          std::vector<Grasp>& grasps) {
+/// best.
+Routine<OfferGrasps> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
+                                 GraspList list) {
+  std::vector<Grasp>& grasps = list.grasps;
   const DestinationLimits limits{grasps.size(), parts.settings.receive_places};
   const ServingGrasps later = co_await find_destinations(parts, offer.object, onto, grasps, limits);
   for (const auto& [grasp, destination] : later.at) parts.destinations.add(destination);
@@ -109,7 +119,13 @@ Routine<bool> rank_grasps(Parts& parts, const Offer& offer, const std::string& o
   grasps.clear();
   for (auto& [rank, grasp] : ranked) grasps.push_back(std::move(grasp));
   grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps));
-  co_return !later.outcome.good || !later.at.empty();
+  OfferGrasps found{{}, {}, !later.outcome.good || !later.at.empty()};
+  std::copy_if(grasps.begin(), grasps.end(), std::back_inserter(found.sure), [&](const Grasp& g) {
+    return g.margin >= parts.settings.min_sure_margin && clear.count(g.id) > 0 &&
+           (later.at.empty() || parts.destinations.has(g.id));
+  });
+  found.list = std::move(list);
+  co_return found;
 }
 
 /// A grasp by one of the arms: the place of the arm among its manipulators and the id of the grasp.
@@ -154,12 +170,6 @@ Routine<bool> another_arm_places(Parts& parts, const std::string& object, const 
   co_return false;
 }
 
-/// Grasps of what is offered, by one arm.
-struct OfferGrasps {
-  GraspList list;
-  bool serves{};  ///< the object can be put down by some of them, or perhaps by the other hand
-};
-
 /// Asks for grasps by one arm after the other, those first that reach the surface too, until the
 /// object can be put down by some; uses that arm, else the first one that has grasps, whose hand
 /// can pass the object on.
@@ -183,7 +193,7 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
     else
       found.list.outcome = used;
     const bool has_grasps = found.list.outcome.good && !found.list.grasps.empty();
-    if (has_grasps) found.serves = co_await rank_grasps(parts, offer, onto, found.list.grasps);
+    if (has_grasps) found = co_await rank_grasps(parts, offer, onto, std::move(found.list));
     if (found.serves) co_return found;
     if (first_arm.empty() || (has_grasps && first.list.grasps.empty())) {
       first = std::move(found);
@@ -213,9 +223,10 @@ Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vecto
   co_return why;
 }
 
-Outcome cannot_put_down(const Offer& offer) {
-  return Outcome::failure("no grasp of " + offer.object + " as " + offer.giver +
-                          " holds it serves for putting it down");
+Outcome none_is_sure(const Offer& offer, const OfferGrasps& found) {
+  return Outcome::failure("no grasp of " + offer.object + " as " + offer.giver + " holds it " +
+                          (found.serves ? "is sure to hold and to be clear of the hand"
+                                        : "serves for putting it down"));
 }
 
 Outcome nothing_offered(const std::string& wanted, const std::string& giver, double timeout) {
@@ -237,26 +248,28 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
     std::optional<Offer> offer = co_await await_offer(parts, giver, deadline);
     if (!offer) break;
+    if (!patient_until)
+      patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
     parts.offers.accept(*offer);
     parts.offers.set_hand_at_offer(false);
     parts.action.object = offer->object;
     parts.action.human = offer->giver;
     const Vector3 p_asked = parts.now.object(offer->object)->T_world_object.translation();
     parts.action.exchange_point = p_asked;
-    const auto [list, serves] = co_await choose_arm_and_grasps(parts, *offer, onto, p_asked);
-    if (!list.outcome.good || list.grasps.empty()) {
-      last = co_await await_other_offer(parts, *offer, p_asked, list.outcome, last);
+    const OfferGrasps found = co_await choose_arm_and_grasps(parts, *offer, onto, p_asked);
+    if (!found.list.outcome.good || found.list.grasps.empty()) {
+      last = co_await await_other_offer(parts, *offer, p_asked, found.list.outcome, last);
       continue;
     }
-    if (!serves && !patient_until)
-      patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
-    if (!serves && parts.now.time() < *patient_until) {
-      last = co_await await_other_offer(parts, *offer, p_asked, cannot_put_down(*offer), last);
+    const bool is_patient = parts.now.time() < *patient_until;
+    if (is_patient && (!found.serves || found.sure.empty())) {
+      last = co_await await_other_offer(parts, *offer, p_asked, none_is_sure(*offer, found), last);
       continue;
     }
     ++attempt;
     const TakeAttempt first{*offer, {}, attempt};
-    last = co_await try_grasps(parts, first, list.grasps, failed, last);
+    const std::vector<Grasp>& grasps = is_patient ? found.sure : found.list.grasps;
+    last = co_await try_grasps(parts, first, grasps, failed, last);
     if (last.good) co_return last;
     // Who has withdrawn it offers again where the hand leaves space; and from farther back other
     // paths lead to what is still offered.

@@ -21,11 +21,12 @@ inline settings::ManipulationPlannerSettings settings() {
 // otherwise, every trajectory reaches its end.
 class Rig {
  public:
-  explicit Rig(const std::string& description = "jido")
+  explicit Rig(const std::string& description = "jido",
+               const settings::ManipulationPlannerSettings& chosen = settings())
       : robot(std::make_shared<RobotModel>(RobotModel::load(robot_description(description)))),
         mug(ObjectModel::load(object_description("mug"))),
         planner(
-            settings(), robot,
+            chosen, robot,
             [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
     q = robot->rest_configuration();
     scene.robot_known = true;

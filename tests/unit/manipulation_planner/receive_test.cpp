@@ -79,6 +79,29 @@ TEST(ManipulationPlanner, what_is_taken_can_be_put_down_where_that_is_possible_a
   }
 }
 
+TEST(ManipulationPlanner, for_a_while_no_grasp_is_used_by_which_it_cannot_be_put_down) {
+  for (const bool is_patient : {true, false}) {
+    settings::ManipulationPlannerSettings chosen = rig::settings();
+    chosen.place_detour = 0;
+    if (!is_patient) chosen.place_patience = 0;
+    Rig rig("jido", chosen);
+    rig.hold_out();
+    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
+    rig.grasped_as_it_stands = true;
+    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
+    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
+    rig.q =
+        RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
+    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, true};
+    rig.start(ActionKind::receive);
+    rig.run_until("reaching the object");
+    rig.cycle();
+    const bool from_above =
+        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+    EXPECT_EQ(from_above, is_patient) << "the hand below it is nearer";
+  }
+}
+
 TEST(ManipulationPlanner, what_nobody_offers_is_not_taken) {
   Rig rig;
   rig.scene.objects[0].holder = Holder::human;
