@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 #include <CLI/CLI.hpp>
 
@@ -34,13 +35,21 @@ std::atomic<bool> asked_to_end{false};
 std::atomic<int> late_exit_code{0};
 
 /// Ends the process with `code` when it has not ended by itself within `kLongestEnd`: the transport
-/// waits without limit for a network that has gone away. Signals no longer stop the bus.
+/// waits without limit for a network that has gone away. Signals no longer stop the bus. Only the
+/// first call has an effect.
 void require_end(int code) {
+  static std::atomic<bool> required{false};
+  if (required.exchange(true)) return;
   stopped_by_signal = nullptr;
   late_exit_code = code;
   signal(SIGALRM, [](int) { _exit(late_exit_code); });
   ualarm(kLongestEnd, 0);
 }
+
+/// Requires the end of the process when a scope ends, also by an exception.
+struct EndRequired {
+  ~EndRequired() { require_end(std::uncaught_exceptions() > 0 ? 1 : 0); }
+};
 
 void on_signal(int) {
   asked_to_end = true;
@@ -136,6 +145,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain))
                                 : std::filesystem::path(state);
   DdsBus bus(settings);
+  const EndRequired end_required;  // before the bus ends
   stopped_by_signal = &bus;
   if (!asked_to_end && !standby && bus.has_twin(kTwinWait)) {
     const ConfigError refusal("domain " + std::to_string(settings.domain) + " already has a " +
@@ -143,10 +153,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
     require_end(2);
     return complain(component, refusal, 2);
   }
-  if (asked_to_end) {
-    require_end(0);
-    return 0;
-  }
+  if (asked_to_end) return 0;
   {
     const std::shared_ptr<void> node = make_node(bus, context);
     bus.set_ready();

@@ -59,7 +59,7 @@ class Probe {
     bool ended = false;
     for (int k = 0; k < 1000 && !ended; ++k) {
       usleep(10'000);
-      ended = waitpid(child_, &status, WNOHANG) != 0;
+      ended = waitpid(child_, &status, WNOHANG) == child_;
     }
     if (!ended) {
       ::kill(child_, SIGKILL);
