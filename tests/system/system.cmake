@@ -71,12 +71,12 @@ set_tests_properties(place_reached PROPERTIES TIMEOUT 1800)
 handsel_test(latches GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/latches_test.cpp LINK handsel_command LABEL fault)
 target_compile_definitions(tests_live PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(tests_live product)
-set_tests_properties(latches PROPERTIES TIMEOUT 300)
+set_tests_properties(latches PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
 
 # Sources of people that fall silent, freeze, repeat nobody, are late or look elsewhere: each once every time, eight times for all.
 handsel_test(blind GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/blind_test.cpp LINK handsel_command LABEL fault)
 add_dependencies(tests_live product)
-set_tests_properties(blind PROPERTIES TIMEOUT 300)
+set_tests_properties(blind PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
 handsel_test_again(blind_forty OF blind)
 set_tests_properties(blind_forty PROPERTIES LABELS full RUN_SERIAL TRUE TIMEOUT 1800 ENVIRONMENT HANDSEL_RUNS=8)
 
@@ -88,7 +88,7 @@ set_tests_properties(exchanges PROPERTIES RUN_SERIAL TRUE TIMEOUT 14400)
 handsel_test(supervised_life GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/supervised_life_test.cpp LINK handsel_command LABEL system)
 target_compile_definitions(tests_live PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(tests_live product)
-set_tests_properties(supervised_life PROPERTIES TIMEOUT 240)
+set_tests_properties(supervised_life PROPERTIES RUN_SERIAL TRUE TIMEOUT 240)
 
 handsel_test(eval GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/eval_test.cpp LINK nlohmann_json::nlohmann_json GTest::gmock LABEL system)
 target_compile_definitions(tests_live PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")

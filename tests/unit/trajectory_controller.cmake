@@ -22,9 +22,9 @@ handsel_test(stop_proof GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST
 handsel_test_again(stop_proof_million OF stop_proof)
 set_tests_properties(stop_proof_million PROPERTIES LABELS full TIMEOUT 3600 ENVIRONMENT HANDSEL_PROOF_MOTIONS=1000000)
 set_tests_properties(controller_stories separation_stories PROPERTIES TIMEOUT 300)
-add_test(NAME controller_stories_millions COMMAND test_controller_stories)
+handsel_test_again(controller_stories_millions OF controller_stories FILTER "ControllerStories.every_set_point*")
 set_tests_properties(controller_stories_millions PROPERTIES LABELS full TIMEOUT 900
-  ENVIRONMENT "HANDSEL_STORY_STEPS=4000000;GTEST_FILTER=ControllerStories.every_set_point*")
+  ENVIRONMENT HANDSEL_STORY_STEPS=4000000)
 handsel_test_again(separation_stories_thousand OF separation_stories)
 set_tests_properties(separation_stories_thousand PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_SEPARATION_RUNS=1000)
 handsel_test(realtime GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/../system/realtime_test.cpp LABEL system)

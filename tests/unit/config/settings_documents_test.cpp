@@ -32,7 +32,7 @@ std::string content_of(const std::filesystem::path& file) {
 void expect_content(const std::filesystem::path& file, const std::string& content) {
   if (std::getenv("HANDSEL_WRITE_SETTINGS")) std::ofstream(file, std::ios::binary) << content;
   EXPECT_EQ(content_of(file), content)
-      << file << "; HANDSEL_WRITE_SETTINGS=1 test_config writes it";
+      << file << "; HANDSEL_WRITE_SETTINGS=1 ctest -R config writes it";
 }
 
 /// A phrase in a cell of a table.
