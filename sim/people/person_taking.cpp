@@ -106,11 +106,16 @@ void PersonModel::hold_to_give_back(const PersonView& view) {
 /// Holds what the robot has not taken otherwise than before; keeps the hold where the hand has no
 /// other place.
 void PersonModel::hold_otherwise(const PersonView& view) {
-  if (!gives_from_place() || view.object == nullptr) return;
+  const bool is_far =
+      view.object != nullptr && (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
+  if (!gives_from_place() || !is_far) return;
   held_in_vain_.push_back(taking_.goal(Pose::Identity()));
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   const auto p_hand_object = choose_place_to_give(*view.object, turn);
-  if (p_hand_object) p_hand_object_to_give_ = p_hand_object;
+  if (p_hand_object)
+    p_hand_object_to_give_ = p_hand_object;
+  else
+    held_in_vain_.clear();
 }
 
 void PersonModel::choose_place(const PersonView& view) {

@@ -98,15 +98,17 @@ Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
   co_return clear.outcome;
 }
 
-Routine<std::set<std::uint64_t>> clear_of_turned_hand(Parts& parts, const Offer& offer,
+Routine<std::optional<GraspIds>> clear_of_turned_hand(Parts& parts, const Offer& offer,
                                                       const std::vector<Grasp>& grasps) {
   const double turn = parts.settings.digits_turn;
   std::vector<double> turns{0.0};
   if (turn > 0) turns = {-turn, -turn / 2, 0.0, turn / 2, turn};
   const HumanState around = people_with_digits(parts, offer, turns);
   const ClearGrasps clear = co_await select_clear(parts, around, offer.object, grasps);
-  std::set<std::uint64_t> ids;
-  for (const Grasp& grasp : clear.grasps) ids.insert(grasp.id);
+  std::optional<GraspIds> ids;
+  if (!clear.outcome.good) co_return ids;
+  ids.emplace();
+  for (const Grasp& grasp : clear.grasps) ids->insert(grasp.id);
   co_return ids;
 }
 

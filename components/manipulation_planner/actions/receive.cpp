@@ -83,10 +83,11 @@ double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& gr
 /// Grasps of what is offered, by one arm.
 struct OfferGrasps {
   GraspList list;
-  /// Of these, the ones that do not slip, whose hand is clear of the giver's digits however the
-  /// giver's hand is turned, and by which the same hand can put the object down, if any can.
+  /// Of these, the ones that do not slip, whose hand is clear of the giver's turned hand, and by
+  /// which the same hand can put the object down, if it can by any.
   std::vector<Grasp> sure;
   bool serves{};  ///< the object can be put down by some of them, or perhaps by the other hand
+  Destinations destinations;  ///< where it can be put down
 };
 
 /// Sorts grasps: those that hold first, of these the arm's shortest motion first, since a giver
@@ -102,12 +103,13 @@ Routine<OfferGrasps> rank_grasps(Parts& parts, const Offer& offer, const std::st
   if (later.at.empty() && !later.objections.empty())
     parts.refuse("place", "no grasp of " + offer.object +
                               " as it is held serves for putting it down: " + later.objections);
-  const std::set<std::uint64_t> clear = co_await clear_of_turned_hand(parts, offer, grasps);
+  const std::optional<GraspIds> clear = co_await clear_of_turned_hand(parts, offer, grasps);
+  const auto is_clear = [&clear](const Grasp& g) { return !clear || clear->count(g.id) > 0; };
   std::vector<std::pair<std::pair<bool, double>, Grasp>> ranked;
   for (Grasp& g : grasps) {
     const double penalty = parts.settings.weak_grip_detour * std::max(0.0, -g.margin) +
                            parts.settings.giver_detour * lacking_clearance(parts, offer, g) +
-                           (clear.count(g.id) > 0 ? 0.0 : parts.settings.digits_detour) +
+                           (is_clear(g) ? 0.0 : parts.settings.digits_detour) +
                            (parts.destinations.has(g.id) ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
     const bool may_slip = g.margin < parts.settings.min_sure_margin;
@@ -118,18 +120,30 @@ Routine<OfferGrasps> rank_grasps(Parts& parts, const Offer& offer, const std::st
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   grasps.clear();
   for (auto& [rank, grasp] : ranked) grasps.push_back(std::move(grasp));
-  grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps));
-  OfferGrasps found{{}, {}, !later.outcome.good || !later.at.empty()};
+  OfferGrasps found;
+  const bool has_surface = !later.at.empty() || !later.objections.empty();
+  found.serves = !later.outcome.good || !later.at.empty() || !has_surface;
   std::copy_if(grasps.begin(), grasps.end(), std::back_inserter(found.sure), [&](const Grasp& g) {
-    return g.margin >= parts.settings.min_sure_margin && clear.count(g.id) > 0 &&
+    return g.margin >= parts.settings.min_sure_margin && is_clear(g) &&
            (later.at.empty() || parts.destinations.has(g.id));
   });
+  for (std::vector<Grasp>* some : {&grasps, &found.sure})
+    some->resize(std::min<std::size_t>(some->size(), parts.settings.max_grasps));
   found.list = std::move(list);
+  found.destinations = parts.destinations;
   co_return found;
 }
 
 /// A grasp by one of the arms: the place of the arm among its manipulators and the id of the grasp.
 using GraspOfArm = std::pair<std::size_t, std::uint64_t>;
+
+/// Returns whether all grasps of the arm in use have failed.
+bool have_failed(const Parts& parts, const std::vector<Grasp>& grasps,
+                 const std::set<GraspOfArm>& failed) {
+  return std::all_of(grasps.begin(), grasps.end(), [&](const Grasp& g) {
+    return failed.count({parts.arm.index(), g.id}) > 0;
+  });
+}
 
 /// Tries grasps until one takes the object or the offer ends. `failed`: grasps that did not.
 Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first,
@@ -137,10 +151,7 @@ Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first,
                             Outcome last) {
   TakeAttempt attempt = first;
   const std::size_t arm = parts.arm.index();
-  const bool all_failed = std::all_of(grasps.begin(), grasps.end(), [&](const Grasp& g) {
-    return failed.count({arm, g.id}) > 0;
-  });
-  if (all_failed) failed.clear();
+  if (have_failed(parts, grasps, failed)) failed.clear();
   for (const Grasp& grasp : grasps) {
     if (failed.count({arm, grasp.id}) > 0) continue;
     attempt.chosen = grasp;
@@ -170,13 +181,22 @@ Routine<bool> another_arm_places(Parts& parts, const std::string& object, const 
   co_return false;
 }
 
-/// Asks for grasps by one arm after the other, those first that reach the surface too, until the
-/// object can be put down by some; uses that arm, else the first one that has grasps, whose hand
+/// How well the grasps of an arm suit.
+enum class Suitability : std::uint8_t { none, reach, serve, sure };
+
+Suitability suitability(const OfferGrasps& found) {
+  if (!found.list.outcome.good || found.list.grasps.empty()) return Suitability::none;
+  if (!found.serves) return Suitability::reach;
+  return found.sure.empty() ? Suitability::serve : Suitability::sure;
+}
+
+/// Asks for grasps by one arm after the other, those first that reach the surface too, until some
+/// are sure; uses the arm whose grasps suit best: the hand of one that cannot put the object down
 /// can pass the object on.
 Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
                                            const std::string& onto, const Vector3& p_object) {
-  OfferGrasps first;
-  std::string first_arm;
+  OfferGrasps best;
+  std::string best_arm;
   const SceneBox* seen = parts.now.surface(onto);
   const std::optional<SceneBox> surface =
       seen != nullptr ? std::optional<SceneBox>(*seen) : std::nullopt;
@@ -192,18 +212,19 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
       found.list = co_await ask_clear_grasps(parts, offer);
     else
       found.list.outcome = used;
-    const bool has_grasps = found.list.outcome.good && !found.list.grasps.empty();
+    const bool has_grasps = suitability(found) != Suitability::none;
     if (has_grasps) found = co_await rank_grasps(parts, offer, onto, std::move(found.list));
-    if (found.serves) co_return found;
-    if (first_arm.empty() || (has_grasps && first.list.grasps.empty())) {
-      first = std::move(found);
-      first_arm = arm;
+    if (suitability(found) == Suitability::sure) co_return found;
+    if (best_arm.empty() || suitability(found) > suitability(best)) {
+      best = std::move(found);
+      best_arm = arm;
     }
   }
-  if (first_arm != arms.back()) co_await use_arm(parts, first_arm);
-  if (surface && !first.list.grasps.empty())
-    first.serves = co_await another_arm_places(parts, offer.object, *surface);
-  co_return first;
+  if (best_arm != arms.back()) co_await use_arm(parts, best_arm);
+  parts.destinations = best.destinations;
+  if (surface && suitability(best) == Suitability::reach)
+    best.serves = co_await another_arm_places(parts, offer.object, *surface);
+  co_return best;
 }
 
 /// Waits for another offer after no grasp of this one is reachable: the giver often offers
@@ -224,9 +245,10 @@ Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vecto
 }
 
 Outcome none_is_sure(const Offer& offer, const OfferGrasps& found) {
-  return Outcome::failure("no grasp of " + offer.object + " as " + offer.giver + " holds it " +
-                          (found.serves ? "is sure to hold and to be clear of the hand"
-                                        : "serves for putting it down"));
+  return Outcome::failure(
+      "no grasp of " + offer.object + " as " + offer.giver + " holds it " +
+      (found.serves ? "is sure to hold, clear of the hand, and serves for putting it down"
+                    : "serves for putting it down"));
 }
 
 Outcome nothing_offered(const std::string& wanted, const std::string& giver, double timeout) {
@@ -248,8 +270,10 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
     std::optional<Offer> offer = co_await await_offer(parts, giver, deadline);
     if (!offer) break;
-    if (!patient_until)
+    if (!patient_until) {
       patient_until = parts.now.time() + from_seconds(parts.settings.place_patience);
+      deadline = *patient_until + from_seconds(timeout);
+    }
     parts.offers.accept(*offer);
     parts.offers.set_hand_at_offer(false);
     parts.action.object = offer->object;
@@ -261,7 +285,8 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
       last = co_await await_other_offer(parts, *offer, p_asked, found.list.outcome, last);
       continue;
     }
-    const bool is_patient = parts.now.time() < *patient_until;
+    const bool all_sure_failed = !found.sure.empty() && have_failed(parts, found.sure, failed);
+    const bool is_patient = parts.now.time() < *patient_until && !all_sure_failed;
     if (is_patient && (!found.serves || found.sure.empty())) {
       last = co_await await_other_offer(parts, *offer, p_asked, none_is_sure(*offer, found), last);
       continue;

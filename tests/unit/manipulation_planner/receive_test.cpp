@@ -1,4 +1,6 @@
 // Receiving: what is held out is taken, what is drawn back is not gone after.
+#include <algorithm>
+#include <memory>
 #include <numbers>
 
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
@@ -55,51 +57,70 @@ Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
   return grasp;
 }
 
+/// An offer of two grasps: from below, which is nearer and by which nothing can be put on a table,
+/// and from above.
+struct TwoGrasps {
+  double margin_below{1.0}, margin_above{1.0};  ///< of the forces of the grip [N]
+  bool has_table{false};
+  settings::ManipulationPlannerSettings settings{rig::settings()};
+};
+
+/// Returns a rig that begins to receive what is offered in this way.
+std::unique_ptr<Rig> receiving(const TwoGrasps& two) {
+  auto made = std::make_unique<Rig>("jido", two.settings);
+  Rig& rig = *made;
+  rig.hold_out();
+  rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
+  rig.grasped_as_it_stands = true;
+  rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
+  rig.grasps[0].margin = two.margin_below;
+  rig.grasps[1].margin = two.margin_above;
+  const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
+  rig.q = RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
+  rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, two.has_table};
+  rig.start(ActionKind::receive);
+  return made;
+}
+
+/// Returns whether the hand that reaches the object is above.
+bool reaches_from_above(Rig& rig) {
+  rig.run_until("reaching the object");
+  rig.cycle();
+  EXPECT_EQ(phase_text(rig.planner.status()), "reaching the object") << rig.planner.status().reason;
+  return rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+}
+
+bool takes_from_above(const TwoGrasps& two) { return reaches_from_above(*receiving(two)); }
+
 TEST(ManipulationPlanner, what_is_taken_can_be_put_down_where_that_is_possible_at_all) {
   for (const bool somewhere : {true, false}) {
-    Rig rig;
-    rig.hold_out();
-    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
-    rig.grasped_as_it_stands = true;
-    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
-    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
-    rig.q =
-        RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
-    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, somewhere};
-    rig.start(ActionKind::receive);
-    rig.run_until("reaching the object");
-    rig.cycle();
-    ASSERT_EQ(phase_text(rig.planner.status()), "reaching the object")
-        << rig.planner.status().reason;
-    const bool from_above =
-        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
-    EXPECT_EQ(from_above, somewhere) << "the hand below it is nearer, and cannot put it on a table";
-    rig.run(30);
-    EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+    TwoGrasps two;
+    two.has_table = somewhere;
+    two.settings.place_patience = 0;
+    const std::unique_ptr<Rig> rig = receiving(two);
+    EXPECT_EQ(reaches_from_above(*rig), somewhere)
+        << "the hand below it is nearer, and cannot put it on a table";
+    rig->run(30);
+    EXPECT_EQ(rig->planner.status().state, ActionState::succeeded) << rig->planner.status().reason;
   }
 }
 
 TEST(ManipulationPlanner, for_a_while_no_grasp_is_used_by_which_it_cannot_be_put_down) {
-  for (const bool is_patient : {true, false}) {
-    settings::ManipulationPlannerSettings chosen = rig::settings();
-    chosen.place_detour = 0;
-    if (!is_patient) chosen.place_patience = 0;
-    Rig rig("jido", chosen);
-    rig.hold_out();
-    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
-    rig.grasped_as_it_stands = true;
-    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
-    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
-    rig.q =
-        RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
-    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, true};
-    rig.start(ActionKind::receive);
-    rig.run_until("reaching the object");
-    rig.cycle();
-    const bool from_above =
-        rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
-    EXPECT_EQ(from_above, is_patient) << "the hand below it is nearer";
-  }
+  TwoGrasps two;
+  two.has_table = true;
+  two.settings.place_detour = 0;
+  EXPECT_TRUE(takes_from_above(two));
+  two.settings.place_patience = 0;
+  EXPECT_FALSE(takes_from_above(two)) << "the hand below it is nearer";
+}
+
+TEST(ManipulationPlanner, a_grip_that_may_slip_is_used_only_after_a_while) {
+  const double slips = rig::settings().min_sure_margin - 0.01;
+  const std::unique_ptr<Rig> rig = receiving({.margin_below = slips, .margin_above = slips});
+  rig->run(0.9 * rig::settings().place_patience);
+  EXPECT_EQ(std::count(rig->phases.begin(), rig->phases.end(), "approach"), 0);
+  EXPECT_FALSE(rig->planner.status().refusals.empty());
+  EXPECT_FALSE(reaches_from_above(*rig)) << "the hand below it is nearer";
 }
 
 TEST(ManipulationPlanner, what_nobody_offers_is_not_taken) {
@@ -392,36 +413,24 @@ TEST(ManipulationPlanner, what_the_giver_leaves_in_the_hand_on_a_surface_is_lift
     }
 }
 
-/// Returns whether the robot takes an object by the farther of two grasps, from above. `below`,
-/// `above`: margins of the grip forces of both [N].
-bool takes_from_above(double below, double above) {
-  Rig rig;
-  rig.hold_out();
-  rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
-  rig.grasped_as_it_stands = true;
-  rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
-  const Vector &q_below = rig.grasps[0].approach_joints, &q_above = rig.grasps[1].approach_joints;
-  rig.grasps[0].margin = below;
-  rig.grasps[1].margin = above;
-  rig.q = RobotModel::with(rig.q, rig.robot->require_group("arm"),
-                           q_below + 0.35 * (q_above - q_below));
-  rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, false};
-  rig.start(ActionKind::receive);
-  rig.run_until("reaching the object");
-  rig.cycle();
-  return rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
-}
-
 TEST(ManipulationPlanner, a_grip_that_bears_the_load_is_worth_a_longer_motion) {
-  EXPECT_FALSE(takes_from_above(1.0, 1.0)) << "the hand below it is nearer";
-  EXPECT_TRUE(takes_from_above(-3.0, 1.0));
+  TwoGrasps two;
+  two.settings.place_patience = 0;
+  EXPECT_FALSE(takes_from_above(two)) << "the hand below it is nearer";
+  two.margin_below = -3.0;
+  EXPECT_TRUE(takes_from_above(two));
 }
 
 TEST(ManipulationPlanner, a_grip_that_may_slip_is_tried_last) {
-  const double least = rig::settings().min_sure_margin, sure = least + 0.01, slips = least - 0.01;
-  EXPECT_FALSE(takes_from_above(sure, sure)) << "the hand below it is nearer";
-  EXPECT_TRUE(takes_from_above(slips, sure));
-  EXPECT_FALSE(takes_from_above(slips, slips));
+  TwoGrasps two;
+  two.settings.place_patience = 0;
+  const double least = two.settings.min_sure_margin, slips = least - 0.01;
+  two.margin_below = two.margin_above = least + 0.01;
+  EXPECT_FALSE(takes_from_above(two)) << "the hand below it is nearer";
+  two.margin_below = slips;
+  EXPECT_TRUE(takes_from_above(two));
+  two.margin_above = slips;
+  EXPECT_FALSE(takes_from_above(two));
 }
 
 TEST(ManipulationPlanner, who_does_not_let_go_keeps_it) {
