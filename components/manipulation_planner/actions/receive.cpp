@@ -83,8 +83,8 @@ double lacking_clearance(const Parts& parts, const Offer& offer, const Grasp& gr
 /// Grasps of what is offered, by one arm.
 struct OfferGrasps {
   GraspList list;
-  /// Of these, the ones that do not slip, whose hand is clear of the giver's turned hand, and by
-  /// which the same hand can put the object down, if it can by any.
+  /// Of these, the ones that do not slip and by which the same hand can put the object down, if it
+  /// can by any.
   std::vector<Grasp> sure;
   bool serves{};  ///< the object can be put down by some of them, or perhaps by the other hand
   Destinations destinations;  ///< where it can be put down
@@ -124,7 +124,7 @@ Routine<OfferGrasps> rank_grasps(Parts& parts, const Offer& offer, const std::st
   const bool has_surface = !later.at.empty() || !later.objections.empty();
   found.serves = !later.outcome.good || !later.at.empty() || !has_surface;
   std::copy_if(grasps.begin(), grasps.end(), std::back_inserter(found.sure), [&](const Grasp& g) {
-    return g.margin >= parts.settings.min_sure_margin && is_clear(g) &&
+    return g.margin >= parts.settings.min_sure_margin &&
            (later.at.empty() || parts.destinations.has(g.id));
   });
   for (std::vector<Grasp>* some : {&grasps, &found.sure})
@@ -245,10 +245,9 @@ Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vecto
 }
 
 Outcome none_is_sure(const Offer& offer, const OfferGrasps& found) {
-  return Outcome::failure(
-      "no grasp of " + offer.object + " as " + offer.giver + " holds it " +
-      (found.serves ? "is sure to hold, clear of the hand, and serves for putting it down"
-                    : "serves for putting it down"));
+  return Outcome::failure("no grasp of " + offer.object + " as " + offer.giver + " holds it " +
+                          (found.serves ? "is sure to hold and serves for putting it down"
+                                        : "serves for putting it down"));
 }
 
 Outcome nothing_offered(const std::string& wanted, const std::string& giver, double timeout) {
