@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,16 +56,12 @@ class Probe {
   /// Returns the exit code, or the negative signal that ended the process; a process that does not
   /// end by itself is killed.
   int wait() {
+    const int end = static_cast<int>(syscall(SYS_pidfd_open, child_, 0));
+    pollfd ended{.fd = end, .events = POLLIN, .revents = 0};
+    if (poll(&ended, 1, 10'000) != 1) ::kill(child_, SIGKILL);
+    close(end);
     int status = 0;
-    bool ended = false;
-    for (int k = 0; k < 1000 && !ended; ++k) {
-      usleep(10'000);
-      ended = waitpid(child_, &status, WNOHANG) == child_;
-    }
-    if (!ended) {
-      ::kill(child_, SIGKILL);
-      waitpid(child_, &status, 0);
-    }
+    waitpid(child_, &status, 0);
     child_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }

@@ -58,6 +58,7 @@ class OnHosts : public testing::Test {
     setenv("HANDSEL_WEB_PORT", "8765", 1);
   }
   void TearDown() override {
+    if (HasFailure()) note("timeline:\n" + timeline_);
     for (const auto& [host, one] : running_)
       one->send(SIGTERM);  // all at once; each is waited for as it goes
   }
@@ -66,6 +67,12 @@ class OnHosts : public testing::Test {
     std::fflush(stdout);  // before another process inherits it
   }
 
+  /// Keeps what happens, to be printed after a failure.
+  void keep_timeline(Session& session) {
+    session.observer().on_event([this](const TimelineEvent& event) {
+      timeline_ += seconds(event.at.time_since_epoch()) + "  " + event.text + "\n";
+    });
+  }
   void start(const std::string& host, std::vector<std::string> command) {
     command[0] = kPrograms / command[0];
     running_[host] = std::make_unique<Background>(hosts_->on(host, command));
@@ -74,6 +81,7 @@ class OnHosts : public testing::Test {
     return running_.at(host)->said() + running_.at(host)->printed();
   }
 
+  std::string timeline_;
   std::unique_ptr<Hosts> hosts_;
   std::map<std::string, std::unique_ptr<Background>> running_;  // ended before the hosts are
 };
@@ -94,6 +102,7 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
 
   // Perception is not there: nothing moves, and it is said who is missing.
   Session session(kDomain);
+  keep_timeline(session);
   const Snapshot& now = session.snapshot();
   ASSERT_TRUE(session.wait(from_seconds(15), [&] {
     return now.health.size() == services.size() - 1;
