@@ -137,8 +137,10 @@ class Reader {
   void read_object(const config::ObjectPlacement& object) {
     StartObject o{object.id(), object.model(), library_(object.model()), pose_of(object.pose())};
     if (o.model == nullptr)
-      fail("object " + object.id() + " is of model " + object.model() +
-           ", which is not under objects/");
+      fail(
+          "object " + object.id() + " has the unknown model \"" + object.model() +
+          "\"; a model is named without folder and ending, as \"mug\", and searched in the folders "
+          "of --path and HANDSEL_PATH, the working directory and objects/");
     o.T_world_object.translation() += Vector3(jitter(object.jitter()), jitter(object.jitter()), 0);
     if (object.turn() > 0)
       o.T_world_object.linear() =

@@ -388,7 +388,11 @@ TEST(SimScenario, what_is_wrong_is_named) {
   };
   config::Scenario s = mug_in_hand();
   s.mutable_objects(0)->set_model("unicorn");
-  EXPECT_EQ(sentence(s), "scenario s: object mug is of model unicorn, which is not under objects/");
+  EXPECT_EQ(
+      sentence(s),
+      "scenario s: object mug has the unknown model \"unicorn\"; a model is named without "
+      "folder and ending, as \"mug\", and searched in the folders of --path and HANDSEL_PATH, "
+      "the working directory and objects/");
   s = mug_in_hand();
   s.mutable_objects(0)->set_on("cloud");
   EXPECT_EQ(sentence(s), "scenario s: object mug stands on cloud, which is no box of the scenario");
