@@ -124,7 +124,11 @@ std::string HandExecutor::accept(const HandCommand& command) {
     return {};
   }
   release_.disarm();
-  release_.forget_load();
+  // A hand that grips again, e.g. after a stop while it opened, holds what it held before; of that
+  // the load is known, and a person who pulls already is felt.
+  const bool grips_again = command.action == HandAction::grasp &&
+                           (state_ == HandState::refused || state_ == HandState::grasped);
+  if (command.action != HandAction::release && !grips_again) release_.forget_load();
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final = fingers_.inside(i, command.position[static_cast<Eigen::Index>(i)]);
   const bool holds = state_ == HandState::grasped;

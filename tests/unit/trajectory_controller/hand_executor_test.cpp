@@ -435,6 +435,33 @@ TEST_F(HandTest, a_stop_before_the_pull_leaves_the_offer_in_force) {
   EXPECT_EQ(hand_.state(), HandState::released);
 }
 
+TEST_F(HandTest, who_still_pulls_when_an_interrupted_hand_grips_again_is_felt) {
+  person_distance_ = 2.0;
+  ASSERT_NO_FATAL_FAILURE(grasp_object());
+  run(1.0);
+  person_distance_ = 0.1;
+  command(HandAction::release_on_pull, 0.0);
+  run(1.0);
+  force_ += Vector3(8.0, 0, 2.0);
+  run(0.7);
+  ASSERT_EQ(hand_.state(), HandState::moving);
+  stop_and_rejoin();
+  command(HandAction::release, 0.0);
+  run(0.05);
+  stop_and_rejoin();
+  ASSERT_EQ(hand_.state(), HandState::refused);
+  command(HandAction::grasp, 0.7);
+  run(2.5);
+  ASSERT_EQ(hand_.state(), HandState::grasped);
+  for (int offers = 0; offers < 2; ++offers) {
+    command(HandAction::grasp, 0.7);  // as after an offer that was not taken
+    run(0.5);
+  }
+  command(HandAction::release_on_pull, 0.0);
+  run(2.5);
+  EXPECT_EQ(hand_.state(), HandState::released) << "by the pull that has not changed";
+}
+
 TEST_F(HandTest, an_opening_that_a_stop_interrupts_is_reported_and_presses_no_more) {
   ASSERT_NO_FATAL_FAILURE(pull_for(0.7));
   ASSERT_EQ(hand_.state(), HandState::moving);
