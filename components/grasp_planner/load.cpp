@@ -78,8 +78,16 @@ std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem:
 
 RegraspSettings regrasp_settings(const settings::GraspPlannerSettings& text) {
   RegraspSettings s;
-  s.lift = text.lift;
+  s.max_of_each = text.regrasp_grasps;
+  s.clearance = text.regrasp_clearance;
+  s.slack = text.regrasp_slack;
   s.stand_off = text.stand_off;
+  s.lift = text.lift;
+  s.max_turn = text.max_approach_turn;
+  s.handover_tries = static_cast<int>(text.regrasp_poses);
+  s.max_steps_tried = text.regrasp_steps;
+  s.min_apart = text.both_apart;
+  s.max_pairs_tried = text.both_pairs;
   s.grip = list_settings(text, 1).grip;
   return s;
 }
@@ -108,38 +116,6 @@ GraspListSettings list_settings(const settings::GraspPlannerSettings& t, std::ui
   s.sturdy_margin = t.sturdy_margin;
   s.min_margin = t.min_margin;
   s.seed = seed;
-  return s;
-}
-
-ChoiceSettings choice_settings(const settings::GraspPlannerSettings& t) {
-  ChoiceSettings s;
-  s.stand_off = t.stand_off;
-  s.approach_clearance = t.approach_clearance;
-  s.lift = t.lift;
-  s.support_gap = t.support_gap;
-  s.reach_budget = t.reach_budget;
-  s.rank_quality = t.rank_quality;
-  s.rank_configuration = t.rank_configuration;
-  s.rank_contacts = t.rank_contacts;
-  s.rank_room = t.rank_room;
-  s.rank_handover = t.rank_handover;
-  s.rank_partner = t.rank_partner;
-  s.rank_transfer = t.rank_transfer;
-  s.rank_sturdy = t.rank_sturdy;
-  s.sturdy_margin = t.sturdy_margin;
-  s.rank_visible = t.rank_visible;
-  s.rank_tilt = t.rank_tilt;
-  s.rank_away = t.rank_away;
-  s.rank_stands = t.rank_stands;
-  s.off_fingers = t.off_fingers;
-  s.off_digits = t.off_digits;
-  s.min_margin_held = t.min_margin_held;
-  s.min_grasps_held = t.min_grasps_held;
-  s.off_giver = t.off_giver;
-  s.rank_drive = t.rank_drive;
-  s.platform_room = t.platform_room;
-  s.furniture_room = t.furniture_room;
-  s.platform_reaches = t.platform_reaches;
   return s;
 }
 

@@ -15,8 +15,6 @@ namespace handsel::grasp_planner {
 /// Returns the settings of the grasp lists. `seed`: of
 /// the contact points and samples.
 GraspListSettings list_settings(const settings::GraspPlannerSettings& text, std::uint64_t seed);
-/// Returns the settings of the choice.
-ChoiceSettings choice_settings(const settings::GraspPlannerSettings& text);
 /// Returns the settings of the regrasp planner.
 RegraspSettings regrasp_settings(const settings::GraspPlannerSettings& text);
 

@@ -24,8 +24,8 @@ Node::Node(Bus& bus, const NodeContext& context)
       candidates_(settings_.candidates_time) {
   const auto platform = mobile(*robot_, context.description);
   for (const ArmGrasps& arm : arms_)
-    choosers_.push_back(std::make_shared<const GraspChooser>(
-        robot_, arm.hand_geometry, objects_, choice_settings(settings_), arm.arm.name, platform));
+    choosers_.push_back(std::make_shared<const GraspChooser>(robot_, arm.hand_geometry, objects_,
+                                                             settings_, arm.arm.name, platform));
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
     scene_ = scene;
     lists_.prepare(scene);

@@ -149,7 +149,7 @@ std::string Choice::why_none(const GraspList& list) const {
 
 GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot,
                            std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
-                           const ChoiceSettings& settings, const std::string& arm,
+                           const settings::GraspPlannerSettings& settings, const std::string& arm,
                            std::shared_ptr<const RobotModel> mobile)
     : robot_(std::move(robot)),
       mobile_(std::move(mobile)),

@@ -10,45 +10,12 @@
 #include <string>
 
 #include "common/collision/collision_world.hpp"
+#include "common/config/settings/grasp_planner.hpp"
 #include "common/model/manipulator.hpp"
 #include "components/grasp_planner/list/grasp_list.hpp"
 #include "components/grasp_planner/pair/transfer.hpp"
 
 namespace handsel::grasp_planner {
-
-struct ChoiceSettings {
-  double stand_off{0.09};            ///< length of the straight approach [m]
-  double approach_clearance{0.003};  ///< kept between the opened hand and the object on it [m]
-  double lift{0.12};                 ///< the arm must be able to go this far straight up [m]
-  double support_gap{0.004};         ///< kept between hand and support [m]
-  std::uint32_t reach_budget{400};   ///< inverse kinematics of the arm tried at most
-  double rank_quality{1.0};          ///< weights of the order of the reply
-  double rank_configuration{0.4};    ///< nearness to the rest configuration of the arm
-  double rank_contacts{0.2};         ///< fraction of the fingers in contact
-  double rank_room{0.3};             ///< surface left free; when a person is to take the object
-  double rank_partner{0.3};  ///< the person's best grasp beside it; then too, as the next two
-  /// The arm can offer the object upright, the hand behind it, the person's wrist at ease.
-  double rank_handover{0.3};
-  double rank_transfer{1.0};  ///< a place was found where the person can take it so
-  double rank_tilt{1.0};      ///< taken off for each radian the object must be tilted there
-  /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last.
-  double rank_sturdy{1.0};
-  double sturdy_margin{2.0};       ///< [N]
-  double rank_away{0.6};           ///< the hand stays on the robot's side of what a person holds
-  double rank_stands{1.0};         ///< from a person's hand: it can be put down in this grasp
-  double off_fingers{0.01};        ///< kept between the robot and the hands of the giver [m]
-  double min_margin_held{-3.0};    ///< min margin of weaker grasps from a person's hand [N]
-  std::size_t min_grasps_held{8};  ///< number of grasps below which weaker ones are added
-  double off_digits{0.02};         ///< same, the digits assumed around the object [m]
-  /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
-  /// it only creep [m].
-  double off_giver{0.12};
-  double rank_visible{0.2};     ///< Grasp::visible; when a person is to take the object
-  double rank_drive{0.2};       ///< taken off for each metre the platform has to drive
-  double platform_room{0.5};    ///< kept between robot and people where the platform drives to [m]
-  double furniture_room{0.05};  ///< level, kept to furniture there [m]
-  std::uint32_t platform_reaches{500};  ///< inverse kinematics tried for places of the platform
-};
 
 /// Why a listed grasp does not serve now.
 enum class ChoiceReason : std::uint8_t {
@@ -149,7 +116,7 @@ class GraspChooser {
   /// gives it. `mobile`: the robot on its platform (on_platform), or nullptr.
   GraspChooser(std::shared_ptr<const RobotModel> robot,
                std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
-               const ChoiceSettings& settings, const std::string& arm = "arm",
+               const settings::GraspPlannerSettings& settings, const std::string& arm = "arm",
                std::shared_ptr<const RobotModel> mobile = nullptr);
 
   /// Chooses the grasps that serve now; deterministic for equal inputs. Where no grasp serves from
@@ -166,7 +133,7 @@ class GraspChooser {
   std::shared_ptr<const RobotModel> robot_, mobile_;
   std::shared_ptr<const HandGeometry> hand_geometry_;
   ObjectLibrary library_;
-  ChoiceSettings settings_;
+  settings::GraspPlannerSettings settings_;
   Manipulator manipulator_;  // the arm that takes the object
   // unit, hand frame: directions to back off from a grasp, the straightest first
   std::vector<Vector3> retreats_;

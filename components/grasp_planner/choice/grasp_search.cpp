@@ -15,15 +15,9 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kLargestApproach = 0.9;  // [rad] an arm axis moves less on the straight approach
-constexpr double kLargestLift = 1.4;      // [rad] and on the lift
-constexpr double kMotionStep = 0.04;      // [rad] between two states judged on either
-constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
-constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
+constexpr double kMotionStep = 0.04;  // [rad] between two states judged on either
 constexpr int kExchangeHeadings = 8;
-constexpr double kNearerToHeld = 0.02;  // [m] what somebody holds out is waited before nearer: who
-                                        // sees the hand keep away offers anew
-constexpr int kTransferReaches = 16;    // inverse kinematics tried for the places of one grasp
+constexpr int kTransferReaches = 16;  // inverse kinematics tried for the places of one grasp
 
 std::size_t touching(const Grasp& g) {
   std::set<std::uint32_t> fingers;
@@ -155,8 +149,8 @@ void GraspChooser::Search::plan_handover() {
   to_robot.z() = 0;
   if (to_robot.norm() < 0.3) return;
   to_robot.normalize();
-  place += kExchangeAhead * to_robot;
-  place.z() = shoulder->position.z() - kExchangeBelow;
+  place += settings().handover_ahead * to_robot;
+  place.z() = shoulder->position.z() - settings().handover_below;
   handover_point = HandoverPoint{place, -to_robot};
 }
 
@@ -275,7 +269,7 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
 }
 
 double GraspChooser::Search::stand_off() const {
-  return settings().stand_off - (holder.empty() ? 0.0 : kNearerToHeld);
+  return settings().stand_off - (holder.empty() ? 0.0 : settings().held_nearer);
 }
 
 // Where the straight way in begins; T_open must be that of the grasp.
@@ -293,7 +287,7 @@ std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& g
     Pose T = T_world_hand;
     T.translate(Vector3(stand_off() * direction));
     const auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
-    if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > kLargestApproach) continue;
+    if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > settings().max_approach_turn) continue;
     if (approach_free(site, *q, grasp_q, g)) return q;
   }
   return std::nullopt;
@@ -305,7 +299,7 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
   T_lifted.translation().z() += settings().lift;
   const auto lifted =
       reach(T_lifted, RobotModel::with(inputs.request.start, *self.manipulator_.arm, grasp_q), 0);
-  return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift &&
+  return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= settings().max_lift_turn &&
          free(start.world, *lifted, g.hand_joints);
 }
 
@@ -378,7 +372,7 @@ ChoiceReason GraspChooser::Search::put_down(const Grasp& g, PuttingDown& down) {
   T_above.translation().z() += settings().lift;
   const auto above =
       reach(T_above, RobotModel::with(inputs.request.start, *self.manipulator_.arm, *at), 0);
-  if (!above || (*above - *at).cwiseAbs().maxCoeff() > kLargestLift)
+  if (!above || (*above - *at).cwiseAbs().maxCoeff() > settings().max_lift_turn)
     return ChoiceReason::goal_lowering;
   const Vector from = whole(*above, g.hand_joints), to = whole(*at, g.hand_joints);
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));

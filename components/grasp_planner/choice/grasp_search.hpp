@@ -61,7 +61,7 @@ struct GraspChooser::Search {
   };
 
   const RobotModel& robot() const { return *self.robot_; }
-  const ChoiceSettings& settings() const { return self.settings_; }
+  const settings::GraspPlannerSettings& settings() const { return self.settings_; }
   void plan_handover();
   HandoverPlace handover(const Grasp& g, const Vector& arm_q);
   double visible(const Grasp& g, const Pose& T_world_object);

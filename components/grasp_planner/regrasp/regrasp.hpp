@@ -60,6 +60,7 @@ struct RegraspSettings {
   double slack{0.005};
   double stand_off{0.09};  ///< of a hand before it comes and after it went [m]
   double lift{0.08};  ///< what is picked up or put down must be able to go this far straight up [m]
+  double max_turn{0.9};     ///< max motion of an arm axis on a straight path [rad]
   int handover_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
   /// The search ends when so many picks, passes and places were checked.
   std::uint64_t max_steps_tried{3000};

@@ -11,7 +11,6 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kLargestApproach = 0.9;     // [rad] an arm axis moves less on a straight path
 constexpr double kMotionStep = 0.04;         // [rad]
 constexpr double kRetreatClearance = 0.005;  // [m] between an opened hand and the object
 
@@ -99,7 +98,7 @@ std::optional<Vector> StepCheck::straight(int arm, std::size_t i, const Pose& T_
   Pose T = T_world_object * grasp(arm, i).T_object_hand;
   T.translate(Vector3(settings_.stand_off * direction));
   const auto off = reach(arm, T, q, 0);
-  if (!off || (*off - arm_q).cwiseAbs().maxCoeff() > kLargestApproach) return std::nullopt;
+  if (!off || (*off - arm_q).cwiseAbs().maxCoeff() > settings_.max_turn) return std::nullopt;
   const Vector opened = grasp(arm, i).pregrasp_joints, from = with(q, arm, *off, opened),
                to = with(q, arm, arm_q, opened);
   if (!world_.check_motion(from, to, kMotionStep).free) return std::nullopt;
@@ -136,7 +135,7 @@ CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_ob
   Pose T_lifted = T_world_hand;
   T_lifted.translation().z() += settings_.lift;
   const auto lifted = reach(arm, T_lifted, step.q, 0);
-  if (!lifted || (*lifted - *arm_q).cwiseAbs().maxCoeff() > kLargestApproach ||
+  if (!lifted || (*lifted - *arm_q).cwiseAbs().maxCoeff() > settings_.max_turn ||
       !world_.is_free(with(rest, arm, *lifted, g.hand_joints)))
     return {{}, "the arm could not lift it straight up"};
   if (auto off = stand_off(arm, i, T_world_object, opened, *arm_q)) {

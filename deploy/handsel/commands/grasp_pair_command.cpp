@@ -144,7 +144,7 @@ int transfer(const TransferOptions& o) {
   request.for_human = "person";
   request.start = stage.robot->rest_configuration();
   request.max_grasps = o.number;
-  ChoiceSettings weights;
+  settings::GraspPlannerSettings weights;
   weights.rank_transfer = 3;  // the person before all
   const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), weights);
   start = Clock::now();

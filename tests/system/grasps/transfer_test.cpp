@@ -19,8 +19,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 struct Stage {
   std::shared_ptr<const RobotModel> robot = std::make_shared<const RobotModel>(
       RobotModel::load(deploy_folder() / "robots/jido/jido.txtpb"));
-  static ChoiceSettings person_first() {
-    ChoiceSettings s;
+  static settings::GraspPlannerSettings person_first() {
+    settings::GraspPlannerSettings s;
     s.rank_transfer = 3;
     return s;
   }

@@ -67,7 +67,7 @@ HumanState anna(double x, double y) {
 }
 
 Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& people = {},
-              const ChoiceSettings& settings = {}) {
+              const settings::GraspPlannerSettings& settings = {}) {
   const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, "arm",
                              robot().mobile);
   return chooser.choose({r, mug().list, *mug().object, scene, people});
@@ -292,9 +292,9 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
     const Choice none = choose(r, scene, anna(1.35, 0.3));
     for (const Grasp& g : none.grasps) EXPECT_GE(g.visible, 1);
   }
-  ChoiceSettings sight;
+  settings::GraspPlannerSettings sight;
   sight.rank_visible = 10;
-  ChoiceSettings blind;
+  settings::GraspPlannerSettings blind;
   blind.rank_visible = 0;
   r.min_visible = 0;
   r.for_human = "anna";
@@ -326,13 +326,13 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
   const Choice c = choose(request(), scene, people);
   ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
   HumanState around = people;
-  around.people.front().inflation = ChoiceSettings{}.off_giver - 0.001;
+  around.people.front().inflation = settings::GraspPlannerSettings{}.off_giver - 0.001;
   CollisionWorld body(*robot().model, library);
   body.set_scene(scene);
   body.set_people(around, PeopleParts::without_forearms_and_hands);
   around.people.front() =
       with_fingers_bent(around.people.front(), scene.objects[0].T_world_object.translation());
-  around.people.front().inflation = ChoiceSettings{}.off_fingers - 0.001;
+  around.people.front().inflation = settings::GraspPlannerSettings{}.off_fingers - 0.001;
   CollisionWorld all(*robot().model, library);
   all.set_scene(scene);
   all.set_people(around);
@@ -341,7 +341,7 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
     EXPECT_TRUE(body.check_people(posture(g.arm_joints, g.pregrasp_joints)).free) << g.id;
     EXPECT_TRUE(all.check_people(posture(g.arm_joints, g.hand_joints)).free) << g.id;
   }
-  ChoiceSettings far;
+  settings::GraspPlannerSettings far;
   far.off_giver = 0.6;
   const Choice none = choose(request(), scene, people, far);
   EXPECT_TRUE(none.grasps.empty());
@@ -370,7 +370,7 @@ TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
       SceneObject ball;
       ball.id = "ball" + std::to_string(with_digits.objects.size());
       ball.T_world_object = T_world_object * Eigen::Translation3d(p);
-      const double radius = part.radius + ChoiceSettings{}.off_digits - 0.001;
+      const double radius = part.radius + settings::GraspPlannerSettings{}.off_digits - 0.001;
       ball.primitive = {PrimitiveKind::sphere, Vector3::Constant(2 * radius)};
       with_digits.objects.push_back(ball);
     }
@@ -429,7 +429,7 @@ TEST(HeldOut, weaker_grasps_serve_from_a_hand_only_and_where_few_others_do) {
   GraspList list = mug().list;
   list.min_margin = 1000;  // no grasp holds firmly
   const auto serving = [&](const Scene& scene, double min_margin, std::size_t min_grasps) {
-    ChoiceSettings settings;
+    settings::GraspPlannerSettings settings;
     settings.min_margin_held = min_margin;
     settings.min_grasps_held = min_grasps;
     const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, "arm");
@@ -444,7 +444,7 @@ TEST(HeldOut, weaker_grasps_serve_from_a_hand_only_and_where_few_others_do) {
 TEST(HeldOut, a_failed_choice_names_what_the_hand_would_touch) {
   HumanState people;
   const Scene scene = held_out(people);
-  ChoiceSettings settings;
+  settings::GraspPlannerSettings settings;
   settings.off_digits = settings.off_fingers = 0.4;
   settings.off_giver = 0.5;
   const Choice none = choose(request(), scene, people, settings);
@@ -457,7 +457,7 @@ TEST(HeldOut, a_failed_choice_names_what_the_hand_would_touch) {
 TEST(HeldOut, grasps_that_touch_who_holds_it_cost_no_inverse_kinematics) {
   HumanState people;
   const Scene scene = held_out(people);
-  ChoiceSettings settings;
+  settings::GraspPlannerSettings settings;
   settings.rank_away = -1;  // what is on the side of who holds it comes first
   settings.rank_stands = 0;
   settings.reach_budget = 60;
