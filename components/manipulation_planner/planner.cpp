@@ -7,11 +7,7 @@
 #include "components/manipulation_planner/handover/time_to_handover.hpp"
 
 namespace handsel::manipulation_planner {
-namespace {
-
-constexpr double kSceneTimeout = 10.0;  // for the first scene and report of the controller [s]
-
-}  // namespace
+namespace {}  // namespace
 
 ManipulationPlanner::ManipulationPlanner(const settings::ManipulationPlannerSettings& settings,
                                          std::shared_ptr<const RobotModel> robot,
@@ -153,7 +149,7 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
     return now.scene().robot_known && now.execution() &&
            now.set_point().size() == parts_.arm.robot().dof();
   };
-  const bool known = co_await parts_.waiting.until(is_known, kSceneTimeout);
+  const bool known = co_await parts_.waiting.until(is_known, parts_.settings.scene_timeout);
   if (!known) co_return Outcome::failure("no scene or no controller state has come");
   Outcome outcome = co_await find_hand(goal);
   if (!outcome.good) co_return outcome;

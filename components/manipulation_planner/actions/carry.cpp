@@ -14,7 +14,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMaxTilt = 0.05;     // of what is carried, as planned [rad]
 constexpr double kSamePlace = 0.004;  // what moved less is where it was planned to be taken [m]
 constexpr double kMassRatio = 0.5;    // of the object's mass that each hand bears
 constexpr std::size_t kSteps = 3;     // of a plan: two grasps and the place
@@ -166,7 +165,7 @@ Routine<Outcome> move_together(Parts& parts, const std::string& object, const st
       robot.link_pose(start, parts.arm.palm()).inverse() * robot.link_pose(start, other->palm);
   request.upright = true;
   request.upright_axis = T_tool_object.linear() * Vector3::UnitZ();
-  request.max_tilt = kMaxTilt;
+  request.max_tilt = parts.settings.two_hand_max_tilt;
   const bool answered = co_await timing.ask(request);
   if (!answered) co_return Outcome::no_answer("trajectory");
   if (!timing.reply()->solved)

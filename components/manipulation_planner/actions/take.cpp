@@ -10,10 +10,6 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kOfferCheckPeriod = 0.02;  // [s]
-constexpr double kNear = 0.5;       // to giver or object: the arm retreats straight first [m]
-constexpr double kMaxDetour = 1.3;  // length of a path over that of the straight one
-constexpr double kDetourPerAttempt = 1.0;  // length that each attempt adds [rad, sum of max norms]
-constexpr std::uint32_t kMaxDirectAttempts = 2;  // after which a path may have any length
 
 /// How far an attempt has come.
 enum class Progress : std::uint8_t {
@@ -46,7 +42,8 @@ bool is_put_into_hand(const Parts& parts, const TakeAttempt& take) {
 bool is_near_object(const Parts& parts, const std::string& object) {
   const SceneObject* seen = parts.now.object(object);
   const Vector3 p_hand = parts.arm.T_world_tool().translation();
-  return seen != nullptr && (seen->T_world_object.translation() - p_hand).norm() < kNear;
+  return seen != nullptr &&
+         (seen->T_world_object.translation() - p_hand).norm() < parts.settings.beside_range;
 }
 
 /// Returns whether an object is where it was before the hand came: the hand had pushed it.
@@ -76,9 +73,10 @@ MotionSpec approach_to(const Parts& parts, const TakeAttempt& take, const Grasp&
   approach.object = ObjectTarget{object, parts.now.object(object)->T_world_object.translation(),
                                  parts.settings.approach_slack, grasp};
   approach.timeout = parts.settings.take_approach_timeout;
-  if (take.attempt > kMaxDirectAttempts) return approach;
+  if (take.attempt > parts.settings.direct_attempts) return approach;
   const double straight = (grasp.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
-  approach.max_length = kMaxDetour * straight + take.attempt * kDetourPerAttempt;
+  approach.max_length =
+      parts.settings.max_detour * straight + take.attempt * parts.settings.detour_per_attempt;
   return approach;
 }
 
@@ -143,7 +141,9 @@ Routine<Outcome> retreat_from_offer(Parts& parts, const Offer& offer) {
   const SceneObject* held = parts.now.object(offer.object);
   const Vector3 p_hand = parts.arm.T_world_tool().translation();
   const Person* giver = parts.now.person(offer.giver);
-  const auto is_far = [&p_hand](const Vector3& p) { return (p - p_hand).norm() > kNear; };
+  const auto is_far = [&](const Vector3& p) {
+    return (p - p_hand).norm() > parts.settings.beside_range;
+  };
   const auto is_joint_far = [&is_far](const BodyJoint& joint) { return is_far(joint.position); };
   const bool is_clear =
       giver == nullptr || std::all_of(giver->joints.begin(), giver->joints.end(), is_joint_far);

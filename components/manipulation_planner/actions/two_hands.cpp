@@ -10,12 +10,9 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kBestReach = 0.7;          // of a place from a shoulder [m]
-constexpr double kEdge = 0.08;              // kept free at the edge of a surface [m]
-constexpr double kMinEdgeDistance = 0.01;   // of any part of the object [m]
-constexpr double kGrid = 0.02;              // between places that are tried [m]
-constexpr double kMinGap = 0.2;             // to other things [m]
-constexpr std::size_t kMaxPlacesOfTwo = 4;  // on a surface
+constexpr double kMinEdgeDistance = 0.01;                    // of any part of the object [m]
+constexpr double kGrid = 0.02;                               // between places that are tried [m]
+constexpr std::size_t kMaxPlacesOfTwo = 4;                   // on a surface
 constexpr double kReleaseRetreatRatios[] = {1.0, 0.8, 0.6};  // of the planned retreat
 
 /// Returns the shoulders of all arms in the world.
@@ -36,13 +33,15 @@ std::vector<Vector3> shoulders_of(const Parts& parts) {
 class SurfacePlaces {
  public:
   SurfacePlaces(const Scene& scene, const SceneBox& box, const SceneObject& seen,
-                const Eigen::AlignedBox3d& extent)
+                const Eigen::AlignedBox3d& extent,
+                const settings::ManipulationPlannerSettings& settings)
       : scene_(scene), box_(box), seen_(seen), extent_(extent) {
     const Pose& now = seen.T_world_object;
     const double yaw = std::atan2(now.linear()(1, 0), now.linear()(0, 0));
     turn_ = Eigen::AngleAxisd(yaw, Vector3::UnitZ());
     if (!extent.isEmpty()) half_ = 0.5 * extent.sizes();
-    gap_ = kMinGap + std::max(0.0, half_.head<2>().maxCoeff() - kEdge);
+    gap_ =
+        settings.two_hand_gap + std::max(0.0, half_.head<2>().maxCoeff() - settings.two_hand_edge);
   }
   const Eigen::Quaterniond& turn() const { return turn_; }
   /// Returns whether the object fits there, away from the edge and from other things.
@@ -123,14 +122,15 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
   if (box == scene.boxes.end() || !box->supports) return {};
   const ObjectModel& model = *parts.now.model_of(seen.id);
   const std::vector<Vector3> shoulders = shoulders_of(parts);
-  const SurfacePlaces surface(scene, *box, seen, object_extent(&model, seen.primitive));
+  const settings::ManipulationPlannerSettings& settings = parts.settings;
+  const SurfacePlaces surface(scene, *box, seen, object_extent(&model, seen.primitive), settings);
   struct Place {
     Vector3 at;
     double off;
   };
   std::vector<Place> all;
-  const double x_end = std::max(0.0, box->size.x() / 2 - kEdge),
-               y_end = std::max(0.0, box->size.y() / 2 - kEdge);
+  const double x_end = std::max(0.0, box->size.x() / 2 - settings.two_hand_edge),
+               y_end = std::max(0.0, box->size.y() / 2 - settings.two_hand_edge);
   const bool both = goal.kind == ActionKind::carry;
   for (double x = -x_end; x <= x_end + 1e-9; x += kGrid) {
     for (double y = -y_end; y <= y_end + 1e-9; y += kGrid) {
@@ -139,7 +139,7 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
       // Neither folded nor stretched does an arm move well.
       double nearest = 1e9, farthest = 0;
       for (const Vector3& shoulder : shoulders) {
-        const double off = std::abs((at - shoulder).norm() - kBestReach);
+        const double off = std::abs((at - shoulder).norm() - settings.two_hand_reach);
         nearest = std::min(nearest, off);
         farthest = std::max(farthest, off);
       }
@@ -151,7 +151,7 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
   std::vector<Pose> out;
   for (const Place& p : all) {
     const auto is_near = [&](const Pose& o) {
-      return (o.translation() - p.at).head<2>().norm() < kMinGap / 2;
+      return (o.translation() - p.at).head<2>().norm() < settings.two_hand_gap / 2;
     };
     if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= kMaxPlacesOfTwo) continue;
     out.push_back(make_pose(p.at + model.height_above_support * Vector3::UnitZ(), surface.turn()));

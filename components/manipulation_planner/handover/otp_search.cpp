@@ -14,9 +14,7 @@ namespace {
 constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
 constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
-constexpr int kHeadings = 24;          // of the object at each place
-constexpr double kMinDistance = 0.05;  // between alternatives [m]
-constexpr double kNoPartner = 2;       // strain that counts where no grasp of the person fits
+constexpr int kHeadings = 24;  // of the object at each place
 
 struct Candidate {
   Pose T_world_object;
@@ -141,7 +139,8 @@ class OtpCosts {
   /// Cost of how the person has to hold wrist and arm.
   double of_partner(const std::optional<PartnerPose>& partner) const {
     if (!has_partners()) return 0;
-    return settings_.w_wrist * (partner ? partner->strain + partner->hand_cost : kNoPartner);
+    return settings_.w_wrist *
+           (partner ? partner->strain + partner->hand_cost : settings_.no_partner_strain);
   }
 
  private:
@@ -275,7 +274,7 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
       break;
     const auto is_near = [&](const OtpPose& pose) {
       return (pose.T_world_object.translation() - candidate.T_world_object.translation()).norm() <
-             kMinDistance;
+             settings.otp_apart;
     };
     if (std::any_of(out.poses.begin(), out.poses.end(), is_near)) continue;
     if (out.poses.size() >= settings.exchange_goals || out.tried >= settings.handover_tries) break;

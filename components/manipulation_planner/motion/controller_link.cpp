@@ -6,7 +6,6 @@ namespace {
 constexpr int kMaxTries = 5;          // to send a trajectory command
 constexpr double kTryPeriod = 0.3;    // between tries [s]
 constexpr double kStopPeriod = 0.1;   // between stops of a dropped motion [s]
-constexpr double kRestTimeout = 1.0;  // for the arm to be at rest after its motion [s]
 constexpr double kMaxDuration = 600;  // of a motion whose end is awaited [s]
 
 }  // namespace
@@ -80,7 +79,7 @@ Routine<Outcome> ControllerLink::end_of(std::uint64_t command) {
   if (motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + reason());
   if (motion != MotionState::finished)
     co_return Outcome::failure("stopped on the path: " + reason());
-  co_await waiting_.until([this] { return arm_.at_rest(); }, kRestTimeout);
+  co_await waiting_.until([this] { return arm_.at_rest(); }, settings_.rest_timeout);
   co_return Outcome{};
 }
 

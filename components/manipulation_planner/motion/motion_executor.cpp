@@ -12,9 +12,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSameGoal = 1e-6;        // [rad]
-constexpr double kMaxDuration = 600;      // a motion this long has been forgotten by everybody [s]
-constexpr double kMaxRetreatRatio = 1.5;  // of the retreat distance, from people
+constexpr double kSameGoal = 1e-6;    // [rad]
+constexpr double kMaxDuration = 600;  // a motion this long has been forgotten by everybody [s]
 constexpr double kYieldRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
 
 constexpr double kTiltNoise = 0.01;  // the start of a path may be tilted by this more [rad]
@@ -271,8 +270,8 @@ static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& 
   const double distance = parts.settings.retreat_distance;
   const Pose& T_world_base = parts.now.T_world_base();
   const HumanState& people = parts.now.people();
-  std::vector<Vector> goals =
-      parts.retreat.steps_away(start, T_world_base, people, kMaxRetreatRatio * distance);
+  std::vector<Vector> goals = parts.retreat.steps_away(start, T_world_base, people,
+                                                       parts.settings.max_retreat_ratio * distance);
   std::reverse(goals.begin(), goals.end());
   for (const double ratio : kYieldRatios) {
     for (const Vector3& direction : retreat_directions_from(parts, touched)) {

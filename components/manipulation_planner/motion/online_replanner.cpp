@@ -11,10 +11,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinLead =
-    0.04;  // a command is with the controller this long before it is due [s]
-constexpr double kRetimedReach =
-    0.3;  // the same path at another speed is joined within this, max norm [rad]
 constexpr double kReachStep = 0.1;      // or within this more, as often as braking needs it [rad]
 constexpr double kReturnTimeout = 1.0;  // for the controller to report the old command again [s]
 constexpr double kSameTime = 1e-6;      // [s]
@@ -173,8 +169,8 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   const SwitchPlanner planner = switch_planner(motion);
   Switched along;
   along.trajectory = reply.trajectory;
-  for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach;
-       reach += kReachStep) {
+  for (double reach = parts_.settings.live_same_path;
+       !point.at_rest && reach <= parts_.settings.live_reach; reach += kReachStep) {
     candidate->max_reach = reach;
     along = planner.join(point.from, reply.trajectory, *candidate);
     if (along.ok() && !turns_back(along, reply.trajectory)) break;
@@ -201,7 +197,7 @@ bool OnlineReplanner::is_at_rest(const MotionSpec& motion) const {
 bool OnlineReplanner::is_too_late(const MotionSpec& motion, const SwitchPoint& point) const {
   const double time = parts_.now.active().time;
   return point.at_rest ? !is_at_rest(motion) || time > point.time + kSameTime
-                       : time + kMinLead > point.time;
+                       : time + parts_.settings.live_lead > point.time;
 }
 
 /// Switches to the candidate if it is free of collision, worth the switch and in time. `next`: its

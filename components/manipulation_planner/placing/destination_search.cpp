@@ -27,29 +27,30 @@ struct PlacingJob {
   PlacingMotion motion;
   double margin;  // preferred
   Vector q;
-  ArmReach reach;          // of the arm that is to reach the places well
-  std::size_t max_places;  // of a surface that are tried first
+  PlacingSettings placing;  // with the reach of the arm that is to reach the places well
+  std::size_t max_places;   // of a surface that are tried first
 };
 
+/// Returns the settings for places that the arm in use is to reach well.
+PlacingSettings placing_for(const Parts& parts) {
+  PlacingSettings placing = placing_settings(parts.settings);
+  placing.reach = arm_reach(parts.arm.robot(), &parts.arm.group(), parts.arm.palm());
+  return placing;
+}
+
 PlacingJob placing_job(Parts& parts) {
-  return {parts.arm.shared_robot(),
-          parts.worker.world(parts.arm.robot(), parts.now.objects()),
-          parts.now.objects(),
-          parts.now.scene(),
-          parts.now.people(),
-          parts.arm.group(),
-          parts.arm.fingers(),
-          {.from_above = parts.settings.lift_height},
-          parts.settings.place_margin,
-          parts.arm.configuration(),
-          arm_reach(parts.arm.robot(), &parts.arm.group(), parts.arm.palm()),
-          parts.settings.surface_places};
+  return {parts.arm.shared_robot(),    parts.worker.world(parts.arm.robot(), parts.now.objects()),
+          parts.now.objects(),         parts.now.scene(),
+          parts.now.people(),          parts.arm.group(),
+          parts.arm.fingers(),         {.from_above = parts.settings.lift_height},
+          parts.settings.place_margin, parts.arm.configuration(),
+          placing_for(parts),          parts.settings.surface_places};
 }
 
 /// Searches for places that an arm of this name reaches well, from now on.
 void search_for(const Parts& parts, const std::string& arm, PlacingJob& job) {
   for (const Manipulator& m : parts.arm.manipulators())
-    if (m.name == arm) job.reach = arm_reach(parts.arm.robot(), m.arm, m.palm);
+    if (m.name == arm) job.placing.reach = arm_reach(parts.arm.robot(), m.arm, m.palm);
 }
 
 void set_world(const PlacingJob& job) {
@@ -60,8 +61,7 @@ void set_world(const PlacingJob& job) {
 
 std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
                             const std::string& object, const Pose& T_now, std::size_t max_places,
-                            PlacingSettings placing = {}) {
-  placing.reach = job.reach;
+                            const PlacingSettings& placing) {
   const PlacingScene in{*job.robot, job.scene, job.people, job.objects};
   return free_places(in, object, surface, T_now, max_places, placing);
 }
@@ -71,21 +71,21 @@ std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
 std::vector<Pose> best_places_on(const PlacingJob& job, const SceneBox& surface,
                                  const std::string& object, const Pose& T_now,
                                  std::size_t max_places) {
-  std::vector<Pose> places = places_on(job, surface, object, T_now, max_places);
-  PlacingSettings crowded;
-  crowded.beside = PlacingSettings{}.min_beside;
+  std::vector<Pose> places = places_on(job, surface, object, T_now, max_places, job.placing);
+  PlacingSettings crowded = job.placing;
+  crowded.gap = job.placing.min_gap;
   if (places.empty()) places = places_on(job, surface, object, T_now, max_places, crowded);
   return places;
 }
 
 /// Returns every free place of the surface; where one was chosen, the object is turned as there and
-/// at that height, and the nearest places come first. `beside`: distance to other things [m].
+/// at that height, and the nearest places come first. `gap`: distance to other things [m].
 std::vector<Pose> all_places_on(const PlacingJob& job, const SceneBox& surface,
                                 const std::string& object, const Pose& T_now,
-                                const std::optional<Destination>& chosen, double beside) {
-  PlacingSettings every;
+                                const std::optional<Destination>& chosen, double gap) {
+  PlacingSettings every = job.placing;
   every.apart = 0;
-  every.beside = beside;
+  every.gap = gap;
   std::vector<Pose> places = places_on(job, surface, object, T_now, kMaxAllPlaces, every);
   if (!chosen) return places;
   const auto distance = [&](const Pose& T) {
@@ -154,10 +154,8 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
     }
     // Held upside down or from below, the object can only be laid on another side.
     for (std::size_t s = 0; s < surfaces.size() && found->at.empty() && model != nullptr; ++s)
-      search(
-          in,
-          {object, surfaces[s].id, lying_places(upright[s], *model, PlacingSettings{}.min_tipping)},
-          0.0, grasps, limits, *found);
+      search(in, {object, surfaces[s].id, lying_places(upright[s], *model, in.placing.min_tipping)},
+             0.0, grasps, limits, *found);
   };
   found->outcome = co_await parts.worker.run(job);
   co_return *found;
@@ -211,15 +209,15 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
     };
     // What has slipped in the hand may fit only beside the chosen place, or a little higher.
     if (stand(places)) return;
-    places = all_places_on(in, box, held.object, T_now, chosen, PlacingSettings{}.beside);
+    places = all_places_on(in, box, held.object, T_now, chosen, in.placing.gap);
     if (stand(places)) return;
-    places = all_places_on(in, box, held.object, T_now, chosen, PlacingSettings{}.min_beside);
+    places = all_places_on(in, box, held.object, T_now, chosen, in.placing.min_gap);
     if (stand(places)) return;
     for (Pose& T : places) T.translation().z() += place_drop;
     if (stand(places)) return;
     // Taken from where the object lay, the hand may be below the object when that stands.
     Putting lying(*in.world, *in.robot, in.arm, in.scene.T_world_base,
-                  lying_places(coarse, *model, PlacingSettings{}.min_tipping), in.motion);
+                  lying_places(coarse, *model, in.placing.min_tipping), in.motion);
     found->configurations = lying.anywhere(in.q, opened, held, kMaxConfigurations);
     found->is_lying = !found->configurations.empty();
   };

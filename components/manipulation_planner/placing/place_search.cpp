@@ -12,8 +12,6 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kRoomy = 0.20;      // farther from other things is no better [m]
-constexpr double kPersonNear = 0.8;  // from a person is no worse [m]
 constexpr double kUpright = 0.9998;  // cosine of the tilt up to which an object stands upright
 // Of the object from how the arm would turn it by itself [half turns].
 constexpr double kTurns[] = {0,     0.25,   -0.25, 0.5,    -0.5, 1,     0.125, -0.125,
@@ -27,6 +25,11 @@ double footprint(const ObjectModel* model, const Primitive& primitive) {
 }
 
 }  // namespace
+
+PlacingSettings placing_settings(const settings::ManipulationPlannerSettings& s) {
+  return {s.place_gap,  s.place_min_gap, s.place_max_gap, s.place_far_person,  s.place_edge,
+          s.place_grid, s.place_apart,   s.place_reach,   s.place_min_tipping, {}};
+}
 
 std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
                               const SceneBox& surface, const Pose& T_world_object,
@@ -59,15 +62,15 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
     for (int iy = -ny; iy <= ny && room.y() >= 0; ++iy) {
       const Vector3 p =
           surface.T_world_box * Vector3(ix * settings.grid, iy * settings.grid,
-                                        top + model->height_above_support + settings.above);
-      double nearest = kRoomy, person = kPersonNear;
+                                        top + model->height_above_support + kAbovePlace);
+      double nearest = settings.max_gap, person = settings.far_person;
       bool taken = false;
       for (const SceneObject& other : scene.objects) {
         if (other.id == object || std::abs(other.T_world_object.translation().z() - p.z()) > 0.5)
           continue;
         const double gap = (other.T_world_object.translation() - p).head<2>().norm() - radius -
                            footprint(library(other.model), other.primitive);
-        taken = taken || gap < settings.beside;
+        taken = taken || gap < settings.gap;
         nearest = std::min(nearest, gap);
       }
       for (const SceneBox& box : scene.boxes) {
@@ -88,7 +91,8 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
                Eigen::Quaterniond(Eigen::AngleAxisd(
                    std::atan2(T_world_object.linear()(1, 0), T_world_object.linear()(0, 0)) + turn,
                    Vector3::UnitZ()))),
-           std::abs(away - settings.at_reach) + (kRoomy - nearest) + 0.5 * (kPersonNear - person)});
+           std::abs(away - settings.best_reach) + (settings.max_gap - nearest) +
+               0.5 * (settings.far_person - person)});
     }
   }
   std::stable_sort(places.begin(), places.end(),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/collision/collision_world.hpp"
+#include "common/config/settings/manipulation_planner.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/arm_reach.hpp"
 #include "common/model/object_model.hpp"
@@ -18,16 +19,20 @@ namespace handsel::manipulation_planner {
 inline constexpr double kAbovePlace = 0.004;
 
 struct PlacingSettings {
-  double beside{0.05};              ///< left free around it, for the hand [m]
-  double min_beside{0.01};          ///< the same where no place has `beside`: the hand may fit [m]
-  double edge{0.03};                ///< of the surface that is kept free [m]
-  double grid{0.04};                ///< places are tried so far apart [m]
-  double apart{0.12};               ///< those that are given are at least so far apart [m]
-  double at_reach{0.6};             ///< fraction of the arm's reach at which it works best
-  double above{kAbovePlace};        ///< lowered to this above the surface [m]
-  double min_tipping{0.2};          ///< tilt that an object laid on its side must withstand [rad]
+  double gap{};                     ///< min distance from other things, for the hand [m]
+  double min_gap{};                 ///< the same where no place has `gap`: the hand may fit [m]
+  double max_gap{};                 ///< distance from other things beyond which none is better [m]
+  double far_person{};              ///< distance from a person beyond which none is better [m]
+  double edge{};                    ///< width at the edge of the surface that remains free [m]
+  double grid{};                    ///< distance between places that are tried [m]
+  double apart{};                   ///< min distance between places that are returned [m]
+  double best_reach{};              ///< fraction of the arm's reach at which the arm works best
+  double min_tipping{};             ///< tilt that an object laid on its side must withstand [rad]
   std::optional<ArmReach> reach{};  ///< of the arm that puts it down; left out: of the group "arm"
 };
+
+/// Returns the part of the settings that concerns places; `reach` is left out.
+PlacingSettings placing_settings(const settings::ManipulationPlannerSettings& s);
 
 /// How the hand moves at a place [m].
 struct PlacingMotion {
@@ -49,7 +54,7 @@ struct PlacingScene {
 /// `T_world_object`.
 std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
                               const SceneBox& surface, const Pose& T_world_object,
-                              std::size_t max_places, const PlacingSettings& settings = {});
+                              std::size_t max_places, const PlacingSettings& settings);
 
 /// Poses at which an object rests on a surface.
 struct RestingPlaces {

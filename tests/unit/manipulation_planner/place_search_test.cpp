@@ -20,7 +20,7 @@ class Placing : public testing::Test {
   std::vector<Pose> places(std::size_t max_places = 50) const {
     const PlacingScene in{robot_, scene_, people_, library_};
     return free_places(in, "mug", scene_.boxes.front(), scene_.objects.front().T_world_object,
-                       max_places);
+                       max_places, placing_settings({}));
   }
 
   /// Returns the scene and the people as they are now.
@@ -190,7 +190,7 @@ TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
       << "the hand would be below the mug, in the table";
 
   Putting lying(world, robot_, arm, scene_.T_world_base,
-                lying_places(places(), mug_, PlacingSettings{}.min_tipping), {0.1});
+                lying_places(places(), mug_, placing_settings({}).min_tipping), {0.1});
   const std::vector<PlacingConfiguration> found = lying.anywhere(q, q, held, 5);
   ASSERT_FALSE(found.empty()) << lying.objections();
   for (const PlacingConfiguration& posture : found) {
