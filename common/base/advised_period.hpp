@@ -1,4 +1,4 @@
-// How often a piece of work is done: as attention advises, within limits of its own.
+// Period of a piece of work: as attention advises, within its own limits.
 #pragma once
 
 #include <algorithm>

@@ -20,7 +20,7 @@ namespace handsel {
 /// Circumstances of a sample's arrival.
 struct Receipt {
   TimePoint arrival{};  ///< receiver's monotonic clock
-  Duration age{};  ///< age at arrival: stamp offset - least offset seen from that writer (>= 0)
+  Duration age{};       ///< age at arrival: stamp offset - min offset seen from that writer (>= 0)
   std::uint64_t writer{};  ///< distinguishes writers (handle), stable while the writer lives
 };
 
@@ -54,7 +54,7 @@ struct TimerStatus {
   std::uint64_t cycles{};       ///< calls so far
   std::uint64_t late_cycles{};  ///< calls that began more than one period after they were due
   std::uint64_t skipped{};      ///< ticks left out because a later one was already due
-  Duration worst{};             ///< largest lateness so far
+  Duration worst{};             ///< max lateness so far
 };
 
 /// Request to long work to stop as soon as possible. Each query is also a sign of life of the job.
@@ -150,7 +150,7 @@ class Bus {
   virtual const SubscriptionStatus& subscribe_any(
       const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
       const SubscribeOptions& options) = 0;
-  /// As lag(); the smallest age when the component subscribed more than once.
+  /// As lag(); the min age if the component subscribed more than once.
   virtual Duration lag_any(const MessageType& type) const = 0;
 
   /// Calls `on_tick` periodically in the component's time, without drift and with the time of the

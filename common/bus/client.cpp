@@ -32,8 +32,8 @@ const TopicRow* row_of(const char* topic) {
   return row;
 }
 
-/// Of the installed tree this library lies in; the folder may be missing when the library was not
-/// installed.
+/// Returns the DDS folder of the installed tree that contains this library; the folder may be
+/// missing if the library was not installed.
 std::filesystem::path dds_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&handsel_participant), &info) == 0 || !info.dli_fname)
@@ -43,7 +43,7 @@ std::filesystem::path dds_folder() {
          "share/handsel/dds";
 }
 
-dds_entity_t told(dds_entity_t entity, const char* what, const char* topic) {
+dds_entity_t checked(dds_entity_t entity, const char* what, const char* topic) {
   if (entity < 0)
     std::fprintf(stderr, "handsel: no %s of %s: %s\n", what, topic, dds_strretcode(-entity));
   return entity;
@@ -58,12 +58,12 @@ dds_entity_t endpoint(dds_entity_t participant, const char* topic, Qos (*qos)(co
   if (!row) return DDS_RETCODE_BAD_PARAMETER;
   const Qos of_topic = topic_qos(*row);
   const dds_entity_t entity =
-      told(dds_create_topic(participant, kClientTopics[row - kTopics].descriptor, row->topic,
-                            of_topic.get(), nullptr),
-           "topic", row->topic);
+      checked(dds_create_topic(participant, kClientTopics[row - kTopics].descriptor, row->topic,
+                               of_topic.get(), nullptr),
+              "topic", row->topic);
   if (entity < 0) return entity;
   const Qos of_end = qos(*row);
-  return told(make(participant, entity, of_end.get(), nullptr), what, row->topic);
+  return checked(make(participant, entity, of_end.get(), nullptr), what, row->topic);
 }
 
 }  // namespace
@@ -96,8 +96,8 @@ dds_entity_t handsel_participant(const char* component) {
     const Qos qos(dds_create_qos(), &dds_delete_qos);
     dds_qset_entity_name(qos.get(), component);
     const int domain = default_domain();
-    return told(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr),
-                "participant", ("domain " + std::to_string(domain)).c_str());
+    return checked(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr),
+                   "participant", ("domain " + std::to_string(domain)).c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "handsel: %s\n", error.what());
     return DDS_RETCODE_BAD_PARAMETER;

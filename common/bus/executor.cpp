@@ -18,11 +18,11 @@
 namespace handsel {
 namespace {
 constexpr Duration kJobSilence = std::chrono::seconds(2);
-// A process that the simulator waits for is less behind: the simulator grants two periods of 10 ms
-// ahead.
-constexpr Duration kLongestBurst = std::chrono::milliseconds(40);
-// Simulated time: timers are served at multiples of this period. Each tick computes with the
-// instant at which the tick was due, so only the processor time for waking up becomes less.
+// Max delay up to which all granted ticks are served. A process that the simulator waits for is
+// less late, as the simulator grants only two periods of 10 ms ahead.
+constexpr Duration kMaxBurst = std::chrono::milliseconds(40);
+// Simulated time: timers are served at multiples of this period. Each tick computes with its due
+// time, so the period only reduces the number of wake-ups.
 constexpr Duration kServingPeriod = std::chrono::milliseconds(2);
 
 timespec to_timespec(Duration d) {
@@ -40,7 +40,7 @@ TimePoint monotonic_now() {
 struct Executor::Timer {
   Duration period{};  // 0: once
   TimePoint due{};
-  bool real{};  // on the monotonic clock
+  bool real{};  // runs on the monotonic clock
   std::function<void(TimePoint)> on_tick;
   TimerStatus status;
 };
@@ -100,7 +100,7 @@ bool Executor::grant(const TimeGrant& grant) {
   const TimePoint after = clock_.at(wall);
   if (after >= before) return true;
   for (const auto& timer :
-       timers_)  // the first grant: time goes back, what is to be waited for stays
+       timers_)  // at the first grant time goes back; remaining waiting times are unchanged
     if (!timer->real) timer->due -= before - after;
   last_ = after;
   return true;
@@ -138,7 +138,8 @@ Executor::Timers::iterator Executor::next_due(TimePoint wall, TimePoint time) {
   return next;
 }
 
-/// With granted time at the instant of the timer that is served next: its time must not be over.
+/// Runs a requested drain; in granted time at the due time of the next timer, so that time does not
+/// pass that timer.
 void Executor::serve_reminder() {
   if (!drain_ || !reminded_.exchange(false, std::memory_order_acq_rel)) return;
   const TimePoint wall = monotonic_now(), time = clock_.at(wall);
@@ -154,7 +155,7 @@ void Executor::serve_timers() {
   const bool paced = clock_.paced();
   const TimePoint time = clock_.at(wall);
   if (paced && !clock_.paced())
-    return wake();  // what has come meanwhile is heard before time continues
+    return wake();  // samples received meanwhile are processed before time continues
   while (true) {
     const auto next = next_due(wall, time);
     if (next == timers_.end()) return;
@@ -164,14 +165,14 @@ void Executor::serve_timers() {
   }
 }
 
-/// With granted time every tick is made up for, at the instant it was due at. After a jump of time,
-/// when the simulator has not waited for this process, only the newest tick is served: what the
-/// older ones would have done is no longer of use.
+/// Serves a timer. In granted time every missed tick is served at its due time. After a jump of
+/// time, when the simulator did not wait for this process, only the latest tick is served: the
+/// older ones are obsolete.
 void Executor::serve(Timer& timer, TimePoint time) {
   const bool granted = clock_.paced() && !timer.real;
   const TimePoint present = timer.real ? monotonic_now() : granted ? time : this->now();
   const Duration late = present - timer.due;
-  const bool made_up = granted && late < kLongestBurst;
+  const bool made_up = granted && late < kMaxBurst;
   const std::int64_t skipped =
       made_up || timer.period == Duration::zero() ? 0 : late / timer.period;
   if (granted) due_ = last_ = std::max(last_, timer.due + timer.period * skipped);
@@ -264,7 +265,7 @@ void Executor::work_loop() {
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
-  // Jobs run at normal priority on any processor, however the executor does.
+  // Jobs run at normal priority on any processor, independent of the executor's settings.
   const sched_param normal{};
   sched_setscheduler(0, SCHED_OTHER, &normal);
   sched_setaffinity(0, sizeof processors_, &processors_);

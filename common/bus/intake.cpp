@@ -7,7 +7,7 @@
 namespace handsel {
 namespace {
 constexpr double kClockDrift = 1e-3;
-constexpr std::size_t kMostWriters = 64, kMostKeys = 64;
+constexpr std::size_t kMaxTrackedWriters = 64, kMaxKeys = 64;
 
 std::string second_writer_sentence(const std::string& name, const std::string& topics) {
   return "second_writer: " + name + " writes " + topics + " too; its samples are refused";
@@ -21,7 +21,7 @@ Duration AgeEstimator::update(Stamp stamp, TimePoint arrival, std::string_view k
   auto last = last_.find(key);
   const bool first = last == last_.end();
   if (first) {
-    if (last_.size() >= kMostKeys) last_.clear();
+    if (last_.size() >= kMaxKeys) last_.clear();
     last = last_.emplace(key, Last{}).first;
   }
   if (!seen_) {
@@ -54,21 +54,21 @@ void Intake::deliver(const void* wire, std::uint64_t writer, TimePoint arrival) 
   if (!type_.from_wire(wire, message_.get(), why, left_out)) {
     ++status_.rejected;
     status_.last_rejection = why;
-    if (logged_.size() < kMostWriters && logged_.insert(writer).second)
+    if (logged_.size() < kMaxTrackedWriters && logged_.insert(writer).second)
       log_("rejected a sample: " + why);
     return;
   }
   if (left_out.count > 0) {
     status_.left_out += left_out.count;
     status_.last_left_out = left_out.why;
-    if (logged_.size() < kMostWriters && logged_.insert(writer).second)
+    if (logged_.size() < kMaxTrackedWriters && logged_.insert(writer).second)
       log_("left out of a sample: " + left_out.why);
   }
   if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ &&
       arrival - status_.last_arrival > deadline_)
     ++status_.deadline_misses;
   silence_counted_ = false;
-  if (ages_.size() >= kMostWriters && !ages_.contains(writer)) ages_.clear();
+  if (ages_.size() >= kMaxTrackedWriters && !ages_.contains(writer)) ages_.clear();
   Receipt receipt;
   receipt.arrival = arrival;
   receipt.age = ages_[writer].update(type_.stamp(wire), arrival, type_.key(wire));

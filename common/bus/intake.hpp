@@ -18,7 +18,7 @@ namespace handsel {
 
 struct TopicHealth;
 
-/// Age of a writer's samples at arrival: stamp offset over the least offset seen. The least offset
+/// Age of a writer's samples at arrival: stamp offset over the min offset seen. The min offset
 /// may drift by 1e-3, so that clocks that are slewed apart do not make samples look old; a writer's
 /// clock that steps back continues with the age it had. Instances of a keyed topic share the
 /// writer's clock but not their latency: an older stamp is a step of the clock only within one

@@ -5,7 +5,7 @@
 namespace handsel {
 namespace {
 constexpr std::size_t kMaxCounts = 32;  // bound of ComponentHealth.left_out
-constexpr std::size_t kMaxNames = 24;   // the others are for subscriptions
+constexpr std::size_t kMaxNames = 24;   // max names, the rest is for subscriptions
 constexpr const char* kOther = "other";
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace handsel {
 namespace {
 
 constexpr Stamp kVirtualEpoch =
-    1'700'000'000'000'000'000;  // where the virtual system clock starts [ns]
+    1'700'000'000'000'000'000;  // start of the virtual system clock [ns]
 constexpr Duration kLocalHealthPeriod = std::chrono::milliseconds(100);
 
 class LocalPublisher final : public AnyPublisher {
@@ -52,10 +52,10 @@ LocalBus::LocalBus(LocalNetwork::Impl& network, std::string component)
 }
 
 Duration LocalBus::lag_any(const MessageType& type) const {
-  Duration least = Duration::max();
+  Duration min_age = Duration::max();
   for (const auto& s : subscriptions_)
-    if (&s->intake.type() == &type) least = std::min(least, s->intake.status().age(net_.now));
-  return least;
+    if (&s->intake.type() == &type) min_age = std::min(min_age, s->intake.status().age(net_.now));
+  return min_age;
 }
 
 const TimerStatus& LocalBus::every(Duration period, std::function<void(TimePoint)> on_tick) {

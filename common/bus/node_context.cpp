@@ -14,8 +14,8 @@ namespace {
 
 using Models = std::map<std::string, ObjectModel>;
 
-/// Adds the objects of the search path outside resource_root(). A broken one is left out: what else
-/// lies in a working directory prevents nothing, and a scenario that names the object is refused.
+/// Adds the objects of the search path outside resource_root(). Invalid ones are skipped, so that
+/// unrelated files prevent nothing; a scenario that names such an object is refused.
 void add_objects_of_user(Models& models) {
   const std::string root = (resource_root() / "").string();
   for (const std::filesystem::path& file : all_files(FileKind::object)) {

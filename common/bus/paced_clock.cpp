@@ -6,9 +6,9 @@ namespace handsel {
 namespace {
 
 constexpr Duration kSilence = std::chrono::seconds(1);
-constexpr Duration kLook = std::chrono::milliseconds(20);  // while time stands still
+constexpr Duration kCheckInterval = std::chrono::milliseconds(20);  // while time is at rest
 constexpr Duration kStale =
-    std::chrono::milliseconds(50);  // the simulator repeats a grant more often
+    std::chrono::milliseconds(50);  // the simulator repeats grants more often
 
 }  // namespace
 
@@ -33,8 +33,8 @@ bool PacedClock::grant(const TimeGrant& grant, TimePoint wall) {
 
 TimePoint PacedClock::at(TimePoint wall) {
   if (paced_) {
-    // Time in which this component got no processor is not the simulator's silence.
-    silence_ += std::clamp(wall - listened_, Duration::zero(), 2 * kLook);
+    // Time without a processor for this component is not silence of the simulator.
+    silence_ += std::clamp(wall - listened_, Duration::zero(), 2 * kCheckInterval);
     listened_ = std::max(listened_, wall);
     if (silence_ > kSilence) {
       paced_ = false;
@@ -46,8 +46,8 @@ TimePoint PacedClock::at(TimePoint wall) {
   return last_;
 }
 
-/// While time stood still it was where the grant before had ended, not where the machine's clock
-/// less all that was waited would be.
+/// Returns the time of a past instant: while time was at rest, the end of the previous grant, which
+/// is not the machine's clock minus the time waited.
 TimePoint PacedClock::past(TimePoint wall) const {
   return std::min(std::max(unbounded(wall), std::min(wall - waited_before_, until_before_)), last_);
 }
@@ -56,7 +56,7 @@ bool PacedClock::stale(TimePoint wall) const { return paced_ && unbounded(wall) 
 
 TimePoint PacedClock::look_at(TimePoint instant, TimePoint wall) const {
   const TimePoint there = instant + waited_;
-  return paced_ && instant > until_ ? wall + kLook : there;
+  return paced_ && instant > until_ ? wall + kCheckInterval : there;
 }
 
 }  // namespace handsel

@@ -26,27 +26,27 @@ namespace {
 constexpr Duration kTwinWait = std::chrono::milliseconds(400);
 
 constexpr Duration kJobsEnd = std::chrono::milliseconds(600);
-constexpr useconds_t kLongestEnd = 950'000;  // [us] from the decision to end
+constexpr useconds_t kMaxEndTime = 950'000;  // max time from the decision to end until the end [us]
 
 std::atomic<DdsBus*> stopped_by_signal{nullptr};
 std::atomic<bool> asked_to_end{false};
 
-/// The code with which a process ends that has not ended in time.
+/// Exit code of a process that does not end in time.
 std::atomic<int> late_exit_code{0};
 
-/// Ends the process with `code` when it has not ended by itself within `kLongestEnd`: the transport
-/// waits without limit for a network that has gone away. Signals no longer stop the bus. Only the
-/// first call has an effect.
+/// Ends the process with `code` if it does not end by itself within `kMaxEndTime`: the transport
+/// waits without limit for a network that has vanished. From now on signals do not stop the bus.
+/// Only the first call has an effect.
 void require_end(int code) {
   static std::atomic<bool> required{false};
   if (required.exchange(true)) return;
   stopped_by_signal = nullptr;
   late_exit_code = code;
   signal(SIGALRM, [](int) { _exit(late_exit_code); });
-  ualarm(kLongestEnd, 0);
+  ualarm(kMaxEndTime, 0);
 }
 
-/// Requires the end of the process when a scope ends, also by an exception.
+/// Requires the end of the process when a scope ends, also after an exception.
 struct EndRequired {
   ~EndRequired() { require_end(std::uncaught_exceptions() > 0 ? 1 : 0); }
 };
@@ -61,11 +61,11 @@ int complain(const char* component, const std::exception& error, int code) {
   return code;
 }
 
-/// Where names are searched and which settings are taken.
+/// Folders to search for names, and settings to use.
 struct FileOptions {
   std::vector<std::string> config;   ///< folders and files of --config
-  std::vector<std::string> folders;  ///< of --path
-  Overlays overlays;                 ///< of --set
+  std::vector<std::string> folders;  ///< folders of --path
+  Overlays overlays;                 ///< values of --set
 };
 
 void add_file_options(CLI::App& app, FileOptions& files) {
@@ -86,7 +86,7 @@ void add_file_options(CLI::App& app, FileOptions& files) {
       ->take_all();
 }
 
-/// Applies the options; returns the folder of the settings, empty: the shipped one.
+/// Applies the options; returns the folder of the settings, empty for the shipped one.
 std::string use_files(FileOptions files) {
   std::string folder;
   search_first(files.folders);
@@ -141,11 +141,11 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   const std::string folder = use_files(std::move(files));
   NodeContext context = load_context(robot, scenario, folder, seed);
   context.sim_time = sim_time;
-  settings.sim_time = sim_time && settings.component != "sim";  // which is the one that gives it
+  settings.sim_time = sim_time && settings.component != "sim";  // the simulator itself grants time
   context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain))
                                 : std::filesystem::path(state);
   DdsBus bus(settings);
-  const EndRequired end_required;  // before the bus ends
+  const EndRequired end_required;  // declared first, so that it covers the end of the bus
   stopped_by_signal = &bus;
   if (!asked_to_end && !standby && bus.has_twin(kTwinWait)) {
     const ConfigError refusal("domain " + std::to_string(settings.domain) + " already has a " +

@@ -8,14 +8,15 @@ namespace handsel {
 namespace {
 
 constexpr std::size_t kMaxPinnedWriters =
-    64;  // of a topic; the samples of further ones are refused, unnamed
-/// Shorter silences of a process on another host do not show that it has ended: leases below 0.3 s
-/// give false alarms.
+    64;  // max writers known of a topic; samples of further ones are refused and not named
+/// Min silence after which a process on another host may have ended: shorter leases give false
+/// alarms.
 constexpr Duration kUnobservedSilence = std::chrono::milliseconds(300);
-/// Asking whether a process lives costs 10 us; a second writer may ask with every sample.
+/// Min interval of checks whether a process lives: a check costs 10 us, and a second writer may
+/// require one with every sample.
 constexpr Duration kCheckPeriod = std::chrono::milliseconds(5);
 
-/// Calls with each word of a list separated by spaces until one satisfies `found`.
+/// Calls a function with each word of a list separated by spaces until one satisfies `found`.
 template <class Found>
 bool any_word(std::string_view list, Found found) {
   while (!list.empty()) {
@@ -26,7 +27,7 @@ bool any_word(std::string_view list, Found found) {
   return false;
 }
 
-/// A writer of greater precedence takes the pin from one of lesser precedence.
+/// Returns the precedence of a writer; a writer of greater precedence takes over the pin.
 int precedence_of(const TopicRow& row, const std::string& components) {
   if (&row != &TopicOf<TrajectoryCommand>::row) return 0;
   return any_word(components, [](std::string_view word) { return word == "ros2_lane"; }) ? 1 : 0;
@@ -61,8 +62,8 @@ void WriterPin::watch(TimePoint now) {
   if (!second_.empty()) name_second();
 }
 
-/// Pins the living eligible writer of greatest precedence that appeared first, the pinned one
-/// excepted; without such a writer the topic has no pinned one.
+/// Pins the living eligible writer of greatest precedence that appeared first, except the pinned
+/// one; without such a writer the topic has no pinned one.
 void WriterPin::pin_next(TimePoint now) {
   const std::uint64_t before = std::exchange(pinned_, 0);
   const Known* best = nullptr;

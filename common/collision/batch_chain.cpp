@@ -6,7 +6,7 @@
 namespace handsel {
 namespace {
 
-/// A rotation whose z is the axis.
+/// Returns a rotation whose z axis is the given axis.
 Eigen::Matrix3d along_z(const Vector3& axis) {
   return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix();
 }

@@ -15,7 +15,7 @@ struct BatchChain {
   std::vector<int> dof_of_row, row_of_dof;  ///< rows of the positions; -1: does not move
   std::vector<detail::SimdJoint> joints;    ///< of body i + 1; body 0 is the root
   std::vector<Pose> T_parent_joint;         ///< a joint, in its parent's body
-  std::vector<double> slide;                ///< largest distance a joint slides; 0 if it turns [m]
+  std::vector<double> slide;                ///< max distance a joint slides; 0 if it turns [m]
   std::vector<int> body_of_link;            ///< 0: rigid with the root
   std::vector<Pose> T_body_link;            ///< of each link in its body
 

@@ -10,9 +10,8 @@
 namespace handsel {
 namespace {
 
-constexpr double kRoundingShare =
-    2e-5;  // of the robot's reach: what single precision may put a sphere wrong [m/m]
-constexpr int kRowsFrom = 4;  // solids from which on they are also looked at side by side
+constexpr double kRoundingRatio = 2e-5;  // max position error of a sphere / robot reach [m/m]
+constexpr int kRowsFrom = 4;             // min number of solids that are also checked side by side
 constexpr double kMaxTurn = BatchChain::kMaxTurn;
 
 bool primitive(const Shape& shape) { return !std::holds_alternative<MeshPtr>(shape); }
@@ -39,7 +38,7 @@ int BatchWorld::add_tree(const SphereCover& cover, const Pose& T_body_shape, int
   return first;
 }
 
-/// A sphere around trees; their roots move behind it.
+/// Adds a sphere that encloses trees; their roots become its children.
 int BatchWorld::add_root(const std::vector<int>& roots, int body) {
   if (roots.size() == 1) return roots[0];
   const int root = static_cast<int>(nodes_.size());
@@ -53,14 +52,14 @@ int BatchWorld::add_root(const std::vector<int>& roots, int body) {
   for (int i : roots) center += at(i) / static_cast<float>(roots.size());
   const auto farthest = [&] {
     int best = roots[0];
-    float most = -1;
+    float max_distance = -1;
     for (int i : roots)
       if (const float d = (at(i) - center).norm() + nodes_[static_cast<std::size_t>(i)].radius;
-          d > most) {
-        most = d;
+          d > max_distance) {
+        max_distance = d;
         best = i;
       }
-    radius = most;
+    radius = max_distance;
     return best;
   };
   for (int k = 1; k <= 32; ++k) center += (at(farthest()) - center) / static_cast<float>(k + 1);
@@ -146,8 +145,8 @@ void BatchWorld::make_pairs(const std::vector<Body>& bodies,
   }
 }
 
-/// Upper bounds of how far sphere centres can be from the axes above them, whatever the
-/// configuration.
+/// Computes upper bounds of the distance of sphere centres from the axes above them, over all
+/// configurations.
 void BatchWorld::find_reach() {
   const std::size_t n = chain_.joints.size();
   std::vector<double> across(n + 1, 0.0), norm(n + 1, 0.0), largest(n + 1, 0.0);
@@ -161,7 +160,7 @@ void BatchWorld::find_reach() {
   reach_.assign((n + 1) * n, 0.0f);
   total_reach_ = 0;
   for (std::size_t b = 1; b <= n; ++b) {
-    double bound = norm[b];  // of the centres from the origin of the frame reached
+    double bound = norm[b];  // of the centres from the origin of the current frame
     reach_[b * n + b - 1] =
         static_cast<float>(1.0001 * (chain_.joints[b - 1].slides ? 1.0 : across[b]));
     for (std::size_t at = b; at > 0;) {
@@ -178,10 +177,10 @@ void BatchWorld::find_reach() {
     }
     total_reach_ = std::max(total_reach_, bound + largest[b]);
   }
-  rounding_ = kRoundingShare * std::max(1.0, total_reach_);
+  rounding_ = kRoundingRatio * std::max(1.0, total_reach_);
 }
 
-/// False when it is out of the robot's reach.
+/// Adds a solid; returns false if it is outside the robot's reach.
 bool BatchWorld::add_solid(const Shape& shape, const Pose& T_root_shape) {
   Vector3 half = Vector3::Zero();
   double radius = 0, cylinder = 0;
@@ -197,8 +196,8 @@ bool BatchWorld::add_solid(const Shape& shape, const Pose& T_root_shape) {
     half.z() = 0.5 * round.length;
     cylinder = round.radius;
   }
-  // Only what is within reach of the root counts; a large thing is cut there so that its numbers
-  // are no larger than the robot's.
+  // Only the part within reach of the root matters; large solids are clipped to it, so that their
+  // coordinates do not exceed the robot's.
   const Vector3 root = T_root_shape.inverse().translation();
   const double reach = total_reach_ + radius + 0.01;
   Vector3 low, high;
@@ -238,7 +237,7 @@ void BatchWorld::set_robot(const std::vector<Body>& bodies,
   node_pairs_.clear();
   chain_.fold(robot_, axes, q);
   place_trees(bodies);
-  // Solids are cut at the robot's reach, which needs the trees; a first round finds it.
+  // Solids are clipped to the robot's reach, which requires the trees: a first pass computes it.
   total_reach_ = std::numeric_limits<double>::max() / 4;
   make_pairs(bodies, pairs);
   find_reach();
@@ -297,7 +296,7 @@ void BatchWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_worl
       pair_reach_.insert(pair_reach_.end(), reach, reach + chain_.joints.size());
     }
   }
-  // What is far out on the arm meets things first.
+  // Distal parts usually collide first.
   for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
     detail::SimdSearch search{part->root, 0, 0, static_cast<std::int32_t>(solid_list_.size()),
                               0,          -1};

@@ -47,7 +47,7 @@ TriangleMesh box_mesh(const Vector3& half) {
   return mesh;
 }
 
-/// Ritter's sphere around points.
+/// Computes Ritter's bounding sphere of points.
 void bounding_sphere(const std::vector<Vector3>& points, Vector3& center, double& radius) {
   const auto farthest = [&](const Vector3& from) {
     return *std::max_element(points.begin(), points.end(), [&](const Vector3& a, const Vector3& b) {
@@ -69,8 +69,8 @@ void bounding_sphere(const std::vector<Vector3>& points, Vector3& center, double
 
 }  // namespace
 
-/// A box is kept as 12 triangles: FCL tests a mesh against those faster than against its box
-/// primitive.
+/// Exact shape. A box is stored as 12 triangles: FCL tests a mesh against those faster than against
+/// its box primitive.
 struct CollisionShape::Exact {
   std::unique_ptr<fcl::CollisionGeometryd> geometry;
 };
@@ -95,16 +95,16 @@ bool same(const Shape& a, const Shape& b) {
   return x.triangles == y.triangles && x.vertices == y.vertices;
 }
 
-/// Covers are made once for equal shapes: many worlds of one process hold the same robot.
+/// Returns a cached cover of equal shapes: many worlds of one process contain the same robot.
 std::shared_ptr<const SphereCover> remembered_cover(const Shape& shape) {
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kMaxCovers = 200;
   static std::mutex mutex;
   static std::deque<std::pair<Shape, std::shared_ptr<const SphereCover>>> made;
   const std::lock_guard lock(mutex);
   for (const auto& [known, cover] : made)
     if (same(known, shape)) return cover;
   made.emplace_back(shape, std::make_shared<const SphereCover>(cover_shape(shape)));
-  if (made.size() > kMost) made.pop_front();
+  if (made.size() > kMaxCovers) made.pop_front();
   return made.back().second;
 }
 
@@ -154,7 +154,7 @@ double point_box_distance(const Vector3& p_local, const Vector3& half) {
   return (p_local.cwiseAbs() - half).cwiseMax(0.0).norm();
 }
 
-/// Separating axes of two oriented boxes, the gap along the best of the 15.
+/// Returns the max gap over the 15 separating axes of two oriented boxes [m].
 double box_separation(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b,
                       const Pose& T_world_b) {
   const Eigen::Matrix3d R = T_world_a.linear().transpose() * T_world_b.linear();
@@ -241,7 +241,7 @@ struct ShapeAtPose {
 };
 }  // namespace
 
-/// The shape itself, or the triangle of a mesh.
+/// Returns the shape itself, or the triangle of a mesh.
 static ConvexCore nearest_core(const ShapeAtPose& placed, int triangle) {
   const CollisionShape& shape = placed.shape;
   if (!shape.is_mesh()) return convex_core(shape.shape(), placed.T_world_shape);
@@ -255,8 +255,8 @@ static ConvexCore nearest_core(const ShapeAtPose& placed, int triangle) {
   return core;
 }
 
-/// FCL's own points are wrong for meshes against other shapes, and so are the triangles it names:
-/// there all are looked through.
+/// Computes the nearest points. For meshes against other shapes FCL's points and triangles are
+/// wrong: there all triangles are searched.
 static void nearest_points(const ShapeAtPose& a, const ShapeAtPose& b,
                            const fcl::DistanceResultd& result, Vector3* on_a, Vector3* on_b) {
   if (a.shape.is_mesh() && b.shape.is_mesh()) {
@@ -266,13 +266,13 @@ static void nearest_points(const ShapeAtPose& a, const ShapeAtPose& b,
   }
   const CollisionShape& mesh = a.shape.is_mesh() ? a.shape : b.shape;
   const int triangles = static_cast<int>(std::get<MeshPtr>(mesh.shape())->triangles.size());
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (int i = 0; i < triangles; ++i) {
     Vector3 point_a, point_b;
     const double distance =
         convex_distance(nearest_core(a, i), nearest_core(b, i), &point_a, &point_b);
-    if (distance >= least || distance <= 0) continue;
-    least = distance;
+    if (distance >= min_distance || distance <= 0) continue;
+    min_distance = distance;
     if (on_a != nullptr) *on_a = point_a;
     if (on_b != nullptr) *on_b = point_b;
   }

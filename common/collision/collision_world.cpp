@@ -180,9 +180,9 @@ bool CollisionWorld::surely_free_at_steps(const Vector& from, const Vector& to, 
 
 bool CollisionWorld::surely_free(const Vector& from, const Vector& to) {
   constexpr double kFinest = 1.0 / 4096;
-  constexpr int kMostBlocks = 256;
+  constexpr int kMaxBlocks = 256;
   return impl_->batch_ready(from) && impl_->moves_only(from, to) &&
-         impl_->batch->unclear_stretches(from, to, kFinest, kMostBlocks).empty();
+         impl_->batch->unclear_stretches(from, to, kFinest, kMaxBlocks).empty();
 }
 
 std::uint32_t CollisionWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {

@@ -86,13 +86,13 @@ class CollisionWorld {
   /// Checks the straight line every `step` [rad, max norm], both ends included, ends and middle
   /// first.
   CollisionVerdict check_motion(const Vector& from, const Vector& to, double step = 0.02);
-  /// Least distance robot (with what it holds) to people [m]; closed forms against capsules around
-  /// the robot's links; +inf if nobody. Negative when they overlap. All body parts count, whatever
-  /// set_people and the allowed contacts say. Writes the points nearest each other on robot and
-  /// person, in the world, when given.
+  /// Min distance robot (with what it holds) to people [m]; closed forms against capsules around
+  /// the robot's links; +inf without people. Negative when they overlap. All body parts count,
+  /// whatever set_people and the allowed contacts say. Writes the points nearest each other on
+  /// robot and person, in the world, when given.
   double distance_to_people(const Vector& q, Vector3* on_robot = nullptr,
                             Vector3* on_person = nullptr);
-  /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked:
+  /// Min clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked:
   /// distances beyond `cap` return `cap`. Writes the points nearest each other on robot and scene,
   /// in the world, when given, the distance is below `cap` and nothing touches.
   double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity(),

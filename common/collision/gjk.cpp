@@ -41,8 +41,8 @@ Vector3 support(const ConvexCore& core, const Vector3& d) {
 }
 
 struct Simplex {
-  std::array<Vector3, 4> p;     // point of a less point of b
-  std::array<Vector3, 4> on_a;  // that point of a
+  std::array<Vector3, 4> p;     // point of a minus point of b
+  std::array<Vector3, 4> on_a;  // the point of a
   int size{};
   void keep(std::initializer_list<int> which) {
     std::array<Vector3, 4> kept, kept_on_a;
@@ -59,7 +59,7 @@ struct Simplex {
     on_a[size] = point_a;
     p[size++] = point_a - point_b;
   }
-  /// The point of a that belongs to the point v of the simplex (at most a triangle).
+  /// Returns the point of a that belongs to the point v of the simplex (at most a triangle).
   Vector3 point_of_a(const Vector3& v) const {
     if (size == 1) return on_a[0];
     const Vector3 e = p[1] - p[0], r = v - p[0];
@@ -88,7 +88,7 @@ Vector3 nearest_on_segment(Simplex& s) {
   return s.p[0] + t * d;
 }
 
-/// Nearest point of triangle (i, j, k) to the origin with the vertices that carry it.
+/// Nearest point of triangle (i, j, k) to the origin, with the vertices of its feature.
 struct OnTriangle {
   Vector3 point;
   std::array<int, 3> used{};
@@ -151,8 +151,8 @@ Vector3 reduce(Simplex& s) {
   return best.point;
 }
 
-/// Distance of the cores, with the points `v` apart; `enough`: return early with a lower bound once
-/// the distance surely exceeds it.
+/// Returns the distance of the cores, `v` apart at first; once it surely exceeds `enough`, returns
+/// a lower bound.
 double core_distance(const ConvexCore& a, const ConvexCore& b, double enough, Simplex& s,
                      Vector3& v) {
   v = a.T_world_core.translation() - b.T_world_core.translation();

@@ -9,7 +9,7 @@
 namespace handsel {
 namespace {
 
-constexpr double kDistances[] = {0.6, 0.75, 0.45, 0.9};  // shares of the arm's length
+constexpr double kDistances[] = {0.6, 0.75, 0.45, 0.9};  // ratio to the arm's length
 constexpr int kDirections = 16, kHeadings = 12;
 
 double heading_of(const Pose& T) { return std::atan2(T.linear()(1, 0), T.linear()(0, 0)); }
@@ -38,12 +38,12 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
   if (std::abs(rise) >= length) return out;
   const double level = std::sqrt(length * length - rise * rise),
                heading_now = heading_of(T_world_platform);
-  for (const double share : kDistances) {
+  for (const double ratio : kDistances) {
     for (int d = 0; d < kDirections; ++d) {
       const double direction = 2 * std::numbers::pi * d / kDirections;
       const Eigen::Vector2d shoulder =
           p_world_object.head<2>() -
-          share * level * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+          ratio * level * Eigen::Vector2d(std::cos(direction), std::sin(direction));
       for (int h = 0; h < kHeadings; ++h) {
         const double heading =
             nearest_heading(direction + 2 * std::numbers::pi * h / kHeadings, heading_now);

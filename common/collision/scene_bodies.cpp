@@ -8,18 +8,18 @@
 namespace handsel {
 namespace {
 
-constexpr double kSurePlace = 0.002;  // an object no more uncertain than this keeps its mesh [m]
+constexpr double kSurePlace = 0.002;  // max uncertainty of an object that keeps its mesh [m]
 
 }  // namespace
 
-/// A described object, or the primitive of an unknown one, larger by `margin` [m].
+/// Returns a described object, or the primitive of an unknown one, enlarged by `margin` [m].
 CollisionShapePtr SceneBodies::shape_of(const SceneObject& object, double margin) {
   if (CollisionShapePtr shape = mesh_of(object.model)) return shape;
   const std::optional<Shape> shape = primitive_shape(object.primitive, margin);
   return shape ? CollisionShape::make(*shape) : nullptr;
 }
 
-/// Instead of a mesh with a margin the box around it; T becomes its pose.
+/// Returns the bounding box instead of a mesh with a margin; T becomes its pose.
 CollisionShapePtr SceneBodies::shape_of(const SceneObject& object, double margin, Pose& T) {
   CollisionShapePtr shape = shape_of(object, margin);
   return shape && shape->is_mesh() && margin > kSurePlace ? widened(shape, margin, T) : shape;

@@ -27,7 +27,7 @@ class SceneBodies {
  public:
   explicit SceneBodies(ObjectLibrary library) : library_(std::move(library)) {}
 
-  /// Returns boxes, and objects that nobody holds; what people hold goes to `in_peoples_hands`, by
+  /// Returns boxes, and objects not held; what people hold goes to `in_peoples_hands`, by
   /// its solid parts where they are described. What the robot holds, and `attached`, is left out.
   /// Shapes of boxes that are the same `before` are kept.
   std::vector<SceneBody> bodies(const Scene& scene, const std::string& attached,

@@ -107,7 +107,7 @@ struct SimdKernels {
   std::uint32_t (*check)(const SimdTables& tables, SimdMemory& memory, const float* q,
                          const float* half, std::uint32_t state_bits, bool any) noexcept;
   /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count];
-  /// those surely beyond the nearest by `slack` may be lower bounds. Returns the least.
+  /// those surely beyond the nearest by `slack` may be lower bounds. Returns the min.
   float (*distances)(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack,
                      float* distance) noexcept;
 };

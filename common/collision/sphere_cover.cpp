@@ -16,22 +16,22 @@ namespace {
 using detail::CoverCandidate, detail::CoverSolid;
 
 constexpr double kRounding =
-    2e-6;  // spheres grow by this, so that what is near corners of cells is inside, too [m]
+    2e-6;  // spheres grow by this, to enclose points near corners of cells as well [m]
 constexpr int kBallSteps = 48;
-constexpr std::size_t kMostCandidates = 200, kOwnCandidates = 24;  // of one node; of its own cells
+constexpr std::size_t kMaxCandidates = 200, kOwnCandidates = 24;  // of one node; of its own cells
 
-/// Badoiu and Clarkson: a ball around points, near the smallest.
+/// Returns a nearly minimal ball around points (Badoiu and Clarkson).
 CoverNode ball(const CoverSolid& solid, const std::vector<int>& points) {
   Vector3 center = Vector3::Zero();
   for (int i : points)
     center += solid.points[static_cast<std::size_t>(i)] / static_cast<double>(points.size());
   const auto farthest = [&] {
     int best = points.front();
-    double most = -1;
+    double max_distance = -1;
     for (int i : points)
       if (const double d = (solid.points[static_cast<std::size_t>(i)] - center).squaredNorm();
-          d > most) {
-        most = d;
+          d > max_distance) {
+        max_distance = d;
         best = i;
       }
     return best;
@@ -88,13 +88,13 @@ class Coverer {
     return sum / static_cast<double>(solid_.corners);
   }
 
-  /// Centres worth trying for these cells: deep ones nearby, and ones below the surface.
+  /// Returns candidate centres for these cells: deep ones nearby, and ones below the surface.
   std::vector<CoverCandidate> candidates(const CoverNode& node, const std::vector<int>& cells,
                                          double excess, std::size_t level) const {
     std::vector<CoverCandidate> near, out;
     for (const CoverCandidate& c : solid_.inner)
       if (c.depth + excess > 0 && (c.center - node.center).norm() < node.radius) near.push_back(c);
-    for (std::size_t i = 0; i < near.size(); i += 1 + near.size() / kMostCandidates)
+    for (std::size_t i = 0; i < near.size(); i += 1 + near.size() / kMaxCandidates)
       out.push_back(near[i]);
     if (level == 0) return out;
     const std::size_t stride = 1 + cells.size() / kOwnCandidates;
@@ -113,16 +113,16 @@ class Coverer {
       for (double below : {1.5 * excess, 4 * excess}) {
         const Vector3 q = p - below * n.normalized();
         if (const double depth = solid_.reach(q); depth > 0.7 * below)
-          out.push_back({q, depth});  // else beyond a thin wall
+          out.push_back({q, depth});  // otherwise beyond a thin wall
       }
     }
     return out;
   }
 
-  /// Greedy: again and again the sphere that holds most cells not held yet. Empty when more than
-  /// `most` are needed.
+  /// Chooses greedily the sphere that contains the max number of remaining cells. Returns an empty
+  /// list if more than `max_count` spheres are needed.
   std::vector<Cluster> choose(const std::vector<CoverCandidate>& tried,
-                              const std::vector<int>& cells, double excess, int most) const {
+                              const std::vector<int>& cells, double excess, int max_count) const {
     const std::vector<int> points = points_of(cells);
     std::vector<int> slot(solid_.points.size(), -1);
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -152,7 +152,7 @@ class Coverer {
     std::vector<Cluster> out;
     std::size_t open = cells.size();
     while (open > 0) {
-      if (static_cast<int>(out.size()) == most) return {};
+      if (static_cast<int>(out.size()) == max_count) return {};
       std::size_t best = 0;
       int gain = 0;
       for (std::size_t c = 0; c < tried.size(); ++c) {
@@ -228,7 +228,7 @@ class Coverer {
   SphereCover cover_;
 };
 
-/// The straight part in pieces, a sphere around each.
+/// Divides the straight part into pieces with one sphere each.
 SphereCover capsule_cover(const Capsule& capsule, const CoverSettings& settings) {
   SphereCover cover;
   cover.nodes.push_back({Vector3::Zero(), 0.5 * capsule.length + capsule.radius + kRounding, 0, 0});
@@ -239,7 +239,7 @@ SphereCover capsule_cover(const Capsule& capsule, const CoverSettings& settings)
   const double step = capsule.length / pieces;
   cover.nodes[0].first_child = 1;
   cover.nodes[0].children = pieces + (pieces > 1 ? 0 : 2);
-  // A piece: sphere around a slice of the cylinder; at the ends it must hold the half sphere, too.
+  // One sphere per slice of the cylinder; at the ends it also encloses the half sphere.
   if (pieces == 1) {
     cover.nodes[0].first_child = cover.nodes[0].children = 0;
     return cover;

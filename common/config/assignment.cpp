@@ -19,7 +19,7 @@ using google::protobuf::Descriptor;
 using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 
-constexpr std::size_t kMaxShown = 200;  // [bytes] of what somebody gave
+constexpr std::size_t kMaxShown = 200;  // max length of given text that messages show [bytes]
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> out{""};
@@ -58,7 +58,7 @@ class Assignment {
     throw ConfigError("--set " + printable(text_, kMaxShown) + ": " + sentence);
   }
 
-  /// The text of the message `type` that keys from the at-th on give a value.
+  /// Returns the text of the message `type` in which the keys from `at` on give a value.
   std::string inside(const Descriptor& type, const std::vector<std::string>& keys, std::size_t at,
                      const std::string& value) const {
     const FieldDescriptor* field = type.FindFieldByName(keys[at]);

@@ -31,7 +31,8 @@ class Defaults {
  public:
   explicit Defaults(const std::string& file) : file_(file) {}
 
-  /// `line` of the message in the file, from 1; 0: the whole file.
+  /// Takes over a message. `line` is that of the message in the file, from 1; 0 means the whole
+  /// file.
   void take(Message& message, const Places* places, int line) const {
     for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
       const FieldDescriptor& field = *message.GetDescriptor()->field(i);

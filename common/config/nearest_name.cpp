@@ -23,7 +23,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::vector<std::string> nearest_names(const std::string& name,
                                        const std::vector<std::string>& names, std::size_t count) {
-  constexpr std::size_t kMaxCompared = 200;  // [bytes] longer ones are no slip of the fingers
+  constexpr std::size_t kMaxCompared = 200;  // longer words are no typing errors [bytes]
   std::vector<std::pair<std::size_t, std::string>> similar;
   if (name.empty() || name.size() > kMaxCompared) return {};
   for (const std::string& known : names) {

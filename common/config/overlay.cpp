@@ -21,19 +21,19 @@ using google::protobuf::Message;
 using google::protobuf::Reflection;
 using Places = google::protobuf::TextFormat::ParseInfoTree;
 
-/// One text with settings.
+/// One source of settings.
 struct Layer {
-  std::string name;                  ///< of the file, or "--set key=value"
-  bool has_lines{};                  ///< whether the name stands for a file
+  std::string name;                  ///< name of the file, or "--set key=value"
+  bool has_lines{};                  ///< whether the name refers to a file
   std::unique_ptr<Message> message;  ///< config::SettingsOverlay, or settings of one component
-  std::unique_ptr<Places> places;    ///< of the text
+  std::unique_ptr<Places> places;    ///< positions in the text
 };
 
-/// What is in use in this process.
+/// Settings in use in this process.
 struct State {
   std::mutex mutex;
-  std::vector<std::shared_ptr<const Layer>> layers;  ///< of the command line
-  std::vector<std::string> arguments;                ///< of a process, for the same
+  std::vector<std::shared_ptr<const Layer>> layers;  ///< from the command line
+  std::vector<std::string> arguments;                ///< equivalent arguments of a process
   std::map<const Descriptor*, std::shared_ptr<const SettingSources>> sources;  ///< by type
 };
 
@@ -49,7 +49,7 @@ const FieldDescriptor* component_of(const Descriptor* type) {
   return nullptr;
 }
 
-/// Puts one layer over a component's settings and notes where each value comes from.
+/// Applies one layer to a component's settings and records the source of each value.
 class Put {
  public:
   Put(const Layer& layer, SettingSources& sources) : layer_(layer), sources_(sources) {}
@@ -127,13 +127,14 @@ class Put {
     return -1;
   }
 
-  /// `written`: index in the layer, where it is another than in the settings.
+  /// Records a source. `written` is the index in the layer, if it differs from that in the
+  /// settings.
   void note(const FieldDescriptor& field, int index, const Places* places, const std::string& path,
             int written = -1) {
     int line = -1;
     if (places != nullptr) {
       line = places->GetLocation(&field, written >= 0 ? written : index).line;
-      if (line < 0 && index > 0) line = places->GetLocation(&field, 0).line;  // in brackets
+      if (line < 0 && index > 0) line = places->GetLocation(&field, 0).line;  // list in brackets
     }
     sources_[setting_path(path, field, index)] =
         layer_.name +
@@ -167,7 +168,7 @@ void put_layer(const Layer& layer, const FieldDescriptor& component, Message& se
   Put(layer, sources).put(settings, *from, places, "");
 }
 
-/// The files of the search path with settings of a component.
+/// Returns the files of the search path with settings of a component.
 std::vector<std::filesystem::path> files_of(const std::string& component) {
   std::vector<std::filesystem::path> out = files_of_user("config");
   std::erase_if(out, [&](const std::filesystem::path& file) { return file.stem() != component; });

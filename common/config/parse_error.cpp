@@ -10,18 +10,18 @@
 namespace handsel {
 namespace {
 
-constexpr std::size_t kMaxKey = 60;         // [bytes] shown of a key
-constexpr std::size_t kMaxSentence = 300;   // [bytes] the parser quotes a wrong word whole
-constexpr int kMaxLinesBack = 100;          // searched for the key of a wrong value
-constexpr std::size_t kMaxLookBack = 1000;  // [bytes] searched for the key before a wrong value
+constexpr std::size_t kMaxKey = 60;             // max length of a key in messages [bytes]
+constexpr std::size_t kMaxSentence = 300;       // max length of a sentence [bytes]
+constexpr int kMaxLinesBack = 100;              // max lines searched for the key of a wrong value
+constexpr std::size_t kMaxSearchLength = 1000;  // max length searched for that key [bytes]
 
 std::string nearest_key(const std::string& key, const google::protobuf::Descriptor& type) {
   std::string nearest;
-  std::size_t least = std::string::npos;
+  std::size_t min_distance = std::string::npos;
   for (int i = 0; i < type.field_count(); ++i) {
     const std::size_t distance = edit_distance(key, type.field(i)->name());
-    if (distance >= least) continue;
-    least = distance;
+    if (distance >= min_distance) continue;
+    min_distance = distance;
     nearest = type.field(i)->name();
   }
   return nearest;
@@ -37,10 +37,10 @@ std::string line_of(const std::string& text, int line) {
   return text.substr(begin, text.find('\n', begin) - begin);
 }
 
-/// Returns the key that a wrong value belongs to; empty: not known.
+/// Returns the key of a wrong value; empty if unknown.
 std::string key_before(const std::string& line, std::size_t column) {
   const std::size_t end = std::min(column, line.size());
-  const std::size_t begin = end > kMaxLookBack ? end - kMaxLookBack : 0;
+  const std::size_t begin = end > kMaxSearchLength ? end - kMaxSearchLength : 0;
   static const std::regex last_key(R"(([A-Za-z_]\w*)\s*:?[^A-Za-z_]*$)");
   std::smatch match;
   const std::string before = line.substr(begin, end - begin);
@@ -49,15 +49,15 @@ std::string key_before(const std::string& line, std::size_t column) {
 }
 
 /// Returns the line of the last occurrence of a key up to a line: the parser reports some wrong
-/// values at the word that follows them.
+/// values at the word after them.
 int line_of_key(const std::string& text, const std::string& key, int line) {
   const std::regex word("\\b" + key + "\\b");
   for (int i = line; i >= 0 && i > line - kMaxLinesBack; --i)
-    if (std::regex_search(line_of(text, i).substr(0, kMaxLookBack), word)) return i;
+    if (std::regex_search(line_of(text, i).substr(0, kMaxSearchLength), word)) return i;
   return line;
 }
 
-/// Returns the word in quotation marks after `before`; empty: there is none.
+/// Returns the word in quotation marks after `before`; empty if there is none.
 std::string quoted(const std::string& message, const std::string& before) {
   const std::size_t at = message.find(before + "\"");
   if (at == std::string::npos) return {};

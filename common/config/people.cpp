@@ -8,7 +8,7 @@
 namespace handsel {
 
 settings::PeopleProfiles load_people(const std::filesystem::path& folder) {
-  constexpr double kShortest = 0.8;  // [m]
+  constexpr double kMinHeight = 0.8;  // min height of a person [m]
   const std::filesystem::path file = folder / "people.txtpb";
   if (!std::filesystem::exists(file)) return {};
   SettingsText text;
@@ -17,7 +17,7 @@ settings::PeopleProfiles load_people(const std::filesystem::path& folder) {
   for (const settings::PersonProfile& one : profiles.people) {
     if (one.id.empty()) text.refuse("people", "a profile needs the person's id");
     if (!known.insert(one.id).second) text.refuse("people", one.id + " has two profiles");
-    if (one.height != 0 && one.height < kShortest)
+    if (one.height != 0 && one.height < kMinHeight)
       text.refuse("people", "height of " + one.id + " must be 0 (as it is seen) or in [0.8, 2.5]");
   }
   return profiles;

@@ -7,7 +7,7 @@
 
 namespace handsel {
 
-/// Returns people.txtpb of the folder with the settings; nobody where there is no such file. Throws
+/// Returns people.txtpb of the folder with the settings; none if there is no such file. Throws
 /// ConfigError for a profile that cannot be.
 settings::PeopleProfiles load_people(const std::filesystem::path& folder);
 

@@ -12,7 +12,7 @@ using Places = google::protobuf::TextFormat::ParseInfoTree;
 
 void put(Message& into, const Message& from, const Places* places, const TextPlace& at);
 
-/// The field that names the entries of a list; nullptr: they have no names.
+/// Returns the field that names the entries of a list; nullptr if they have no names.
 const FieldDescriptor* key_of(const FieldDescriptor& list) {
   const auto* id = list.message_type()->FindFieldByName("id");
   return id != nullptr ? id : list.message_type()->FindFieldByName("source");
@@ -72,7 +72,7 @@ void put(Message& into, const Message& from, const Places* places, const TextPla
   for (int i = 0; i < from.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *from.GetDescriptor()->field(i);
     const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
-    if (field.is_map()) continue;  // put_over() does the only one
+    if (field.is_map()) continue;  // put_over() handles the only map
     if (field.is_repeated() && is_message) {
       put_entries(into, from, field, places, at);
     } else if (field.is_repeated()) {

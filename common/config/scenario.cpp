@@ -16,9 +16,9 @@ namespace {
 
 using Places = google::protobuf::TextFormat::ParseInfoTree;
 
-constexpr const char* kClutter = "clutter";  // name under which its number is reported
+constexpr const char* kClutter = "clutter";  // name under which the clutter number is reported
 
-/// Random numbers of one draw: from the seed and the name of the draw, so that no draw changes
+/// Random numbers of one draw, seeded by the seed and the draw's name, so that no draw affects
 /// another.
 class Random {
  public:
@@ -29,7 +29,7 @@ class Random {
   }
   /// Returns a number in [0, 1).
   double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
-  /// Returns a whole number below `count`.
+  /// Returns an integer in [0, count).
   int below(int count) { return std::min(count - 1, static_cast<int>(uniform() * count)); }
 
  private:
@@ -65,7 +65,7 @@ class Drawing {
     throw ConfigError(at.of(key, index) + ": " + sentence);
   }
 
-  /// Refuses a description that is not there: every seed may draw it.
+  /// Refuses a missing description, as every seed may draw it.
   template <class Find>
   static void require_description(const TextPlace& at, const std::string& key, int index,
                                   const Find& find) {
@@ -172,7 +172,7 @@ class Drawing {
 
   void draw_clutter() {
     config::Scenario& scenario = out_.scenario;
-    std::map<std::string, int> numbers, entries;  // objects and entries by surface
+    std::map<std::string, int> numbers, entries;  // last ones, by surface
     int count = 0;
     for (const config::Clutter& clutter : scenario.clutter()) {
       int& number = numbers[clutter.on()];

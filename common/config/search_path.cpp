@@ -20,17 +20,17 @@ namespace handsel {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxName = 200;    // [bytes] shown of a name that somebody gave
-constexpr int kMaxEntries = 10'000;      // of a folder of the search path that are looked through
+constexpr std::size_t kMaxName = 200;    // max length of a given name in messages [bytes]
+constexpr int kMaxEntries = 10'000;      // max entries of a folder that are searched
 constexpr const char* kText = ".txtpb";  // extension of Protobuf text
 constexpr const char* kVariable = "HANDSEL_PATH";
 
-/// How files of a kind are named and laid out.
+/// Naming and layout of the files of a kind.
 struct Layout {
-  const char* word;       ///< in sentences
-  const char* folder;     ///< below a folder of the search path
-  const char* extension;  ///< of the files
-  bool nested;            ///< a file may lie in a folder of its own name
+  const char* word;       ///< name of the kind in messages
+  const char* folder;     ///< folder below a folder of the search path
+  const char* extension;  ///< extension of the files
+  bool nested;            ///< whether a file may lie in a folder of its own name
 };
 
 Layout layout_of(FileKind kind) {
@@ -91,15 +91,15 @@ bool is_of_another_kind(FileKind kind, const fs::path& file) {
   try {
     text = read_text_file(file);
   } catch (const std::exception&) {
-    return false;  // whoever reads it says why not
+    return false;  // the reader of the file reports the reason
   }
   return !parses_as(kind, text) &&
          std::any_of(std::begin(kKinds), std::end(kKinds),
                      [&](FileKind other) { return parses_as(other, text); });
 }
 
-/// Returns the folder of a kind below a folder of the search path. The source tree has scenarios
-/// and stories beside the folder with the descriptions.
+/// Returns the folder of a kind below a folder of the search path. In the source tree, scenarios
+/// and stories lie beside the folder with the descriptions.
 fs::path kind_folder(const fs::path& folder, const Layout& layout) {
   const fs::path direct = folder / layout.folder;
   std::error_code error;
@@ -109,7 +109,7 @@ fs::path kind_folder(const fs::path& folder, const Layout& layout) {
                                      : "tests/system");
 }
 
-/// Returns where the file of a name may lie in a folder of the search path.
+/// Returns the possible files of a name in a folder of the search path.
 std::vector<fs::path> candidates(FileKind kind, const fs::path& folder, const std::string& name) {
   const Layout layout = layout_of(kind);
   const fs::path own = kind_folder(folder, layout);

@@ -11,7 +11,7 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 
-/// Returns the map that a field is the value of, else the field itself.
+/// Returns the map field whose value a field is, otherwise the field itself.
 const FieldDescriptor& map_of(const FieldDescriptor& field) {
   const auto& entry = *field.containing_type();
   if (!entry.options().map_entry() || field.number() != entry.map_value()->number()) return field;

@@ -15,9 +15,9 @@ using google::protobuf::Message;
 using google::protobuf::Reflection;
 using Places = google::protobuf::TextFormat::ParseInfoTree;
 
-constexpr std::size_t kMaxText = 4096;  // [bytes] names, paths and sentences are far shorter
+constexpr std::size_t kMaxText = 4096;  // max length of a text [bytes]
 
-/// Returns the length of the UTF-8 character at `at`, 0 where there is none.
+/// Returns the length of the UTF-8 character at `at`; 0 if there is none.
 std::size_t character_length(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) {
     return static_cast<unsigned char>(i < text.size() ? text[i] : 0);
@@ -62,7 +62,7 @@ class TextCheck {
                          const std::string& what) const {
     int line = places != nullptr ? places->GetLocation(&field, index).line : -1;
     if (line < 0 && index > 0 && places != nullptr)
-      line = places->GetLocation(&field, 0).line;  // of a list in brackets
+      line = places->GetLocation(&field, 0).line;  // list in brackets
     throw ConfigError(file_ + (line < 0 ? "" : ":" + std::to_string(line + 1)) + ":" +
                       field.name() + ": " + what);
   }
@@ -102,7 +102,7 @@ class TextCheck {
   void number(double value, const FieldDescriptor& field, int index, const Places* places) const {
     const bool written =
         value != 0 || (places != nullptr && places->GetLocation(&field, index).line >= 0);
-    if (!written) return;  // whether a field may be left out is known to the component
+    if (!written) return;  // the component checks whether a field may be omitted
     const Setting setting = setting_of(field);
     if (is_allowed(value, setting)) return;
     fail(field, index, places,

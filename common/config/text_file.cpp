@@ -15,7 +15,7 @@ bool is_there(const fs::path& path) {
 }
 
 std::string read_text_file(const fs::path& file, std::uintmax_t max_bytes) {
-  constexpr std::size_t kMaxShown = 400;  // [bytes] of a path
+  constexpr std::size_t kMaxShown = 400;  // max length of a path in messages [bytes]
   if (!is_there(file)) throw MissingError("no file " + printable(file.string(), kMaxShown));
   std::error_code error;
   if (!fs::is_regular_file(file, error)) throw ConfigError(file.string() + " is not a file");

@@ -17,15 +17,15 @@ constexpr std::array<double, kAngles> kRest = {0, 5 * kDegree, 0, 30 * kDegree};
 constexpr std::array<double, 7> kSwivels = {
     -20 * kDegree, 0, 15 * kDegree, 30 * kDegree, 50 * kDegree, 70 * kDegree, 90 * kDegree};
 constexpr double kDisplacementWeight = 0.4, kEffortWeight = 0.4, kLimitWeight = 0.2;
-constexpr double kUpperArmMass = 2.1, kForearmMass = 1.7;  // of 75 kg
+constexpr double kUpperArmMass = 2.1, kForearmMass = 1.7;  // for a body mass of 75 kg [kg]
 
 double near_limit(double ratio) {
   const double base = 0.5 * (std::sin(5.0 * ratio + 1.571) + 1.0);
   return base < 0.85 ? 0.0 : std::pow(base, 100);
 }
 
-/// Cost of a posture with upper arm direction u and forearm direction f (forward, outward, up); 1
-/// outside the joint limits.
+/// Returns the cost of an arm posture with upper arm direction u and forearm direction f (forward,
+/// outward, up); 1 outside the joint limits.
 double posture_cost(const ArmSize& arm, const Vector3& u, const Vector3& f) {
   const double flexion = std::atan2(u.x(), -u.z()),
                abduction = std::asin(std::clamp(u.y(), -1.0, 1.0));
@@ -41,15 +41,15 @@ double posture_cost(const ArmSize& arm, const Vector3& u, const Vector3& f) {
     const double range = kUpper[i] - kLower[i];
     displacement += std::abs(q[i] - kRest[i]) / range / kAngles;
     limits += near_limit((kUpper[i] - q[i]) / range);
-    if (i < 3) limits += near_limit((q[i] - kLower[i]) / range);  // a straight elbow is no strain
+    if (i < 3) limits += near_limit((q[i] - kLower[i]) / range);  // a straight elbow is comfortable
   }
   const auto raised = [](double mass, double height) { return mass * mass * height * height; };
   const double effort =
       raised(kUpperArmMass, 0.5 * arm.upper * (1 + u.z())) +
       raised(kForearmMass, arm.upper * (1 + u.z()) + 0.5 * arm.fore * (1 + f.z()));
-  const double most =
+  const double max_effort =
       raised(kUpperArmMass, arm.upper) + raised(kForearmMass, 2 * arm.upper + arm.fore);
-  return std::min(1.0, kDisplacementWeight * displacement + kEffortWeight * effort / most +
+  return std::min(1.0, kDisplacementWeight * displacement + kEffortWeight * effort / max_effort +
                            kLimitWeight * std::min(1.0, limits));
 }
 

@@ -7,7 +7,7 @@ namespace handsel {
 namespace {
 
 constexpr std::uint8_t kForbidden = 255;
-constexpr double kMost = 254;
+constexpr double kMaxLevel = 254;
 
 }  // namespace
 
@@ -30,9 +30,9 @@ CostGrid::CostGrid(Costmap map)
       forbids_(std::find(map_.values.begin(), map_.values.end(), kForbidden) != map_.values.end()) {
 }
 
-/// The eight points around a place: their values and the place between them.
+/// The eight grid points around a position: their values and the position between them.
 struct CostGrid::Cell {
-  double f[3];        // place between the lower and the upper points, [0, 1]
+  double f[3];        // position between the lower and the upper points, [0, 1]
   std::uint8_t v[8];  // values, x fastest
   double weight(int corner) const {
     return (corner & 1 ? f[0] : 1 - f[0]) * (corner & 2 ? f[1] : 1 - f[1]) *
@@ -67,14 +67,14 @@ GridValue CostGrid::value(const Vector3& p_world) const {
     weight += w;
     sum += w * cell.v[corner];
   }
-  return {weight > 0 ? sum / (kMost * weight) : 1.0, Vector3::Zero(), true, weight <= 0.5};
+  return {weight > 0 ? sum / (kMaxLevel * weight) : 1.0, Vector3::Zero(), true, weight <= 0.5};
 }
 
 GridValue CostGrid::at(const Vector3& p_world) const {
   Cell cell;
   if (!find(p_world, cell)) return {};
   double sum = 0, weight = 0;
-  Vector3 d_sum = Vector3::Zero(), d_weight = Vector3::Zero();  // along the axes, a cell
+  Vector3 d_sum = Vector3::Zero(), d_weight = Vector3::Zero();  // per cell, along the axes
   for (int corner = 0; corner < 8; ++corner) {
     if (cell.v[corner] == kForbidden) continue;
     const double x = corner & 1 ? cell.f[0] : 1 - cell.f[0],
@@ -88,8 +88,8 @@ GridValue CostGrid::at(const Vector3& p_world) const {
     d_sum += cell.v[corner] * slope;
   }
   if (weight <= 0) return {1.0, Vector3::Zero(), true, true};
-  return {sum / (kMost * weight),
-          (d_sum * weight - sum * d_weight) / (weight * weight * kMost * map_.resolution), true,
+  return {sum / (kMaxLevel * weight),
+          (d_sum * weight - sum * d_weight) / (weight * weight * kMaxLevel * map_.resolution), true,
           weight <= 0.5};
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kComfort = "arm_comfort";
 constexpr Duration kComplaintLasts = std::chrono::seconds(10);
-constexpr std::size_t kMostLayers = 16;
+constexpr std::size_t kMaxLayers = 16;
 
 bool ours(const std::string& layer) {
   return std::find(std::begin(kOwnLayers), std::end(kOwnLayers), layer) != std::end(kOwnLayers);
@@ -33,10 +33,10 @@ void CostLayers::put(const Costmap& map, TimePoint sent, TimePoint now) {
     leave_out(map.layer, why, now);
   } else if (now - sent > stale_) {
     leave_out(map.layer, too_old(map.layer), now);
-  } else if (kept_.size() >= kMostLayers && !kept_.contains(map.layer)) {
+  } else if (kept_.size() >= kMaxLayers && !kept_.contains(map.layer)) {
     leave_out(
         map.layer,
-        "cost layer \"" + map.layer + "\": there are " + std::to_string(kMostLayers) + " already",
+        "cost layer \"" + map.layer + "\": there are " + std::to_string(kMaxLayers) + " already",
         now);
   } else {
     kept_[map.layer] = {std::make_shared<const CostGrid>(map), sent};

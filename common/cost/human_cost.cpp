@@ -11,7 +11,7 @@ namespace handsel {
 namespace {
 
 constexpr double kProbeSpacing =
-    0.1;  // [m] between the points of a link at which outside layers are looked at
+    0.1;  // distance of the points of a link at which external layers are sampled [m]
 
 double point_to_cylinder(const SimplifiedBody& body, const Vector3& p) {
   const Vector3 r = p - body.axis_bottom;
@@ -21,12 +21,13 @@ double point_to_cylinder(const SimplifiedBody& body, const Vector3& p) {
   return std::hypot(std::max(0.0, outside), std::max(0.0, above));
 }
 
-/// Golden section: the distance to a convex body is convex along a line.
+/// Returns the distance by golden-section search: the distance to a convex body is convex along a
+/// line.
 double segment_to_cylinder(const SimplifiedBody& body, const Vector3& a, const Vector3& b) {
   constexpr double kGolden = 0.6180339887498949;
   double low = 0, high = 1, t1 = 1 - kGolden, t2 = kGolden;
   const auto at = [&](double t) { return point_to_cylinder(body, a + t * (b - a)); };
-  double f1 = at(t1), f2 = at(t2), least = std::min({at(0), at(1), f1, f2});
+  double f1 = at(t1), f2 = at(t2), min_distance = std::min({at(0), at(1), f1, f2});
   for (int i = 0; i < 24; ++i) {
     if (f1 < f2) {
       high = t2;
@@ -41,12 +42,12 @@ double segment_to_cylinder(const SimplifiedBody& body, const Vector3& a, const V
       t2 = low + kGolden * (high - low);
       f2 = at(t2);
     }
-    least = std::min({least, f1, f2});
+    min_distance = std::min({min_distance, f1, f2});
   }
-  return least;
+  return min_distance;
 }
 
-/// A capsule that holds the cylinder: never farther than the cylinder.
+/// Returns a lower bound of the distance, from a capsule that encloses the cylinder.
 double cylinder_bound(const SimplifiedBody& body, const Vector3& a, const Vector3& b) {
   return segment_distance(a, b, body.axis_bottom, body.axis_bottom + Vector3(0, 0, body.height)) -
          body.radius;
@@ -163,9 +164,10 @@ CostParts point_cost(const Person& person, const Vector3& p, const CostSettings&
   return parts;
 }
 
-/// Bounds from the capsules' middles first, then exactly those that can be nearest.
+/// Computes bounds from the middles of the capsules, then exact distances where they can be the
+/// min.
 double HumanCost::distance_to(const SimplifiedBody& body) const {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   bounds_.resize(placed_.size());
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const PlacedCapsule& capsule = placed_[i];
@@ -173,17 +175,19 @@ double HumanCost::distance_to(const SimplifiedBody& body) const {
     const double d =
         std::min(point_to_cylinder(body, middle), (middle - body.head).norm() - body.head_radius) -
         capsule.radius;
-    least = std::min(least, d);
+    min_distance = std::min(min_distance, d);
     bounds_[i] = d - 0.5 * (capsule.b - capsule.a).norm();
   }
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const PlacedCapsule& capsule = placed_[i];
-    if (bounds_[i] >= least) continue;
-    least = std::min(least, head_distance(body, capsule.a, capsule.b) - capsule.radius);
-    if (cylinder_bound(body, capsule.a, capsule.b) - capsule.radius < least)
-      least = std::min(least, segment_to_cylinder(body, capsule.a, capsule.b) - capsule.radius);
+    if (bounds_[i] >= min_distance) continue;
+    min_distance =
+        std::min(min_distance, head_distance(body, capsule.a, capsule.b) - capsule.radius);
+    if (cylinder_bound(body, capsule.a, capsule.b) - capsule.radius < min_distance)
+      min_distance =
+          std::min(min_distance, segment_to_cylinder(body, capsule.a, capsule.b) - capsule.radius);
   }
-  return least;
+  return min_distance;
 }
 
 template <class PointAt>
@@ -236,7 +240,7 @@ CostParts HumanCost::parts(const Vector& q) const {
     placed_[i] = {T_world_base_ * (T_root_link * capsule.a),
                   T_world_base_ * (T_root_link * capsule.b), capsule.radius};
   }
-  double most = -1;
+  double max_cost = -1;
   for (const Someone& one : someone_) {
     CostParts now;
     now.distance = distance_to(one.body);
@@ -244,8 +248,8 @@ CostParts HumanCost::parts(const Vector& q) const {
     if (settings_.w_visibility > 0 && one.sight)
       now.visibility = visibility_cost(*one.sight, p_tool, settings_.visibility_cutoff);
     if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(one.comfort, one.arms, p_tool);
-    if (weighted_cost(now, settings_) > most) {
-      most = weighted_cost(now, settings_);
+    if (weighted_cost(now, settings_) > max_cost) {
+      max_cost = weighted_cost(now, settings_);
       worst = now;
     }
   }
@@ -279,17 +283,17 @@ void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, 
     }
     for (int slot = 0; slot < here; ++slot) {
       const Vector3 p_tool = batch_->point(0, slot);
-      double most = 0;
+      double max_cost = 0;
       for (std::size_t k = 0; k < someone_.size(); ++k) {
         CostParts now;
         now.safety = batch_->safety(k, slot);
         now.visibility = batch_->visibility(k, slot);
         if (settings_.w_comfort > 0)
           now.comfort = arm_comfort_cost(someone_[k].comfort, someone_[k].arms, p_tool);
-        most = std::max(most, weighted_cost(now, settings_));
+        max_cost = std::max(max_cost, weighted_cost(now, settings_));
       }
       cost[first + slot] =
-          gain_ * most + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
+          gain_ * max_cost + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
     }
   }
 }

@@ -87,7 +87,7 @@ struct ForbiddenPlace {
   int link{-1};             ///< robot link that is in the forbidden place; -1: none
 };
 
-/// Cost of a robot configuration for everyone in the scene; the largest over people. Safety looks
+/// Cost of a robot configuration for all people in the scene: the max over people. Safety looks
 /// at the links that axes move (a platform at rest would hide what the arm does), visibility and
 /// comfort at the tool frame, outside layers at points along those links and the tool frame.
 class HumanCost {

@@ -12,21 +12,21 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNear = 0.6;  // of the chapter's form [m]
+constexpr double kNear = 0.6;  // range in the chapter's cost function [m]
 
 double square(double x) { return x * x; }
 
-/// Fades from 1 to 0 over `range`.
+/// Decreases from 1 to 0 over `range` [m].
 double fade(double x, double range) {
   return x >= range ? 0.0 : square(std::cos(std::max(0.0, x) * M_PI / (2 * range)));
 }
 
 double point_to_segment(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
   const Vector2d along = b - a;
-  const double share = along.squaredNorm() > 0
+  const double ratio = along.squaredNorm() > 0
                            ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0)
                            : 0.0;
-  return (p - a - share * along).norm();
+  return (p - a - ratio * along).norm();
 }
 
 double segment_to_segment(const Vector2d& a, const Vector2d& b, const Vector2d& c,
@@ -114,7 +114,7 @@ void NavigationCost::find_conversations() {
     }
 }
 
-/// Highest where the platform stands on a line between two people who talk.
+/// Returns the cost of a platform between two people who talk: max on the line between them.
 double NavigationCost::between_people(const Eigen::Rotation2Dd& turn, const Vector2d& place) const {
   double worst = 0;
   for (const auto& [a, b] : conversations_) {

@@ -1,4 +1,4 @@
-// Where a person's front is, and where they look.
+// Front and gaze of a person.
 #pragma once
 
 #include <optional>

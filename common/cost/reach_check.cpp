@@ -13,7 +13,7 @@ bool inside(const Vector3& p_box, const Vector3& half) {
   return ((p_box.cwiseAbs() - half).array() <= 0).all();
 }
 
-/// Does the segment pass through the box (slab test, box frame)?
+/// Returns whether the segment intersects the box (slab test, box frame).
 bool crosses(const Vector3& a, const Vector3& b, const Vector3& half) {
   double enter = 0, leave = 1;
   for (int i = 0; i < 3; ++i) {
@@ -50,7 +50,7 @@ ReachCheck::ReachCheck(const Person& person, const std::vector<SceneBox>& boxes,
       one.left = one.T_box_world * left->position;
       one.right = one.T_box_world * right->position;
       if (distance(one.left, one.half) > reach && distance(one.right, one.half) > reach)
-        continue;  // no hand gets there
+        continue;  // no hand reaches this point
     }
     ids_.push_back(box.id);
     one.id = ids_.size() - 1;

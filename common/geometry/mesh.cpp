@@ -17,9 +17,9 @@
 namespace handsel {
 namespace {
 
-constexpr double kLargest = 100,
-                 kSmallest = 1e-4;  // [m] nothing a robot has or meets is larger or smaller
-constexpr double kWeldGrid = 1e-7;  // of the file's own unit, relative to its size
+constexpr double kMaxExtent = 100,
+                 kMinExtent = 1e-4;  // range of plausible sizes of a mesh [m]
+constexpr double kWeldGrid = 1e-7;   // relative to the size of the mesh, in the unit of the file
 
 using Cell = std::array<long long, 3>;
 
@@ -28,8 +28,7 @@ struct Soup {
   std::vector<std::array<int, 3>> faces;
 };
 
-/// Adds the polygons of a mesh, and the vertices they have, to the soup. Points and lines are left
-/// out.
+/// Adds the polygons of a mesh, and their vertices, to the soup. Points and lines are skipped.
 void append(const aiMesh& mesh, const aiMatrix4x4& T, const std::filesystem::path& file,
             Soup& soup) {
   std::vector<int> place(mesh.mNumVertices, -1);
@@ -58,8 +57,8 @@ void append(const aiMesh& mesh, const aiMatrix4x4& T, const std::filesystem::pat
     std::swap(soup.faces[t][1], soup.faces[t][2]);
 }
 
-/// Adds what is attached to a node to the soup. A mesh may be attached to many nodes: the caps
-/// count each time.
+/// Adds the meshes of a node to the soup. A mesh may belong to several nodes: the bounds count each
+/// use.
 void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_parent,
             const std::filesystem::path& file, Soup& soup) {
   const aiMatrix4x4 T = T_parent * node.mTransformation;
@@ -68,7 +67,7 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_paren
   for (unsigned c = 0; c < node.mNumChildren; ++c) append(scene, *node.mChildren[c], T, file, soup);
 }
 
-/// Throws ConfigError when a face names a vertex that its mesh does not have.
+/// Throws ConfigError if a face refers to a vertex that its mesh does not have.
 void check_indices(const aiScene& scene, const std::filesystem::path& file) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
@@ -97,8 +96,8 @@ std::string read(const std::filesystem::path& file) {
 Soup import(const std::filesystem::path& file, std::string given) {
   const std::string content = mesh::checked(file, std::move(given));
   Assimp::Importer importer;
-  // From memory: the file is read, not what it names. Without post-processing, which trusts the
-  // indices.
+  // Imports from memory, so that files it names are not read. Without post-processing, which relies
+  // on valid indices.
   const aiScene* scene =
       importer.ReadFileFromMemory(content.data(), content.size(), 0, file.extension().c_str() + 1);
   if (scene == nullptr || scene->mRootNode == nullptr)
@@ -142,9 +141,9 @@ TriangleMesh mesh::parse(const std::filesystem::path& file, std::string content,
     std::array<int, 3> t{index[f[0]], index[f[1]], index[f[2]]};
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    const double longest =
+    const double max_edge =
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-    if ((b - a).cross(c - a).norm() <= 1e-9 * longest) continue;
+    if ((b - a).cross(c - a).norm() <= 1e-9 * max_edge) continue;
     if (mirrored) std::swap(t[1], t[2]);
     mesh.triangles.push_back(t);
   }
@@ -154,7 +153,7 @@ TriangleMesh mesh::parse(const std::filesystem::path& file, std::string content,
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  if (const double size = (high - low).maxCoeff(); size > kLargest || size < kSmallest) {
+  if (const double size = (high - low).maxCoeff(); size > kMaxExtent || size < kMinExtent) {
     char text[120];
     std::snprintf(
         text, sizeof text,

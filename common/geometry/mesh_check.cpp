@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
   throw ConfigError(file.string() + ": " + what);
 }
 
-/// Counts the triangles of the faces read so far; throws once there are too many.
+/// Counts the triangles of the faces read so far; throws if there are too many.
 class TriangleCount {
  public:
   explicit TriangleCount(const fs::path& file) : file_(file) {}
@@ -30,7 +30,7 @@ class TriangleCount {
   std::size_t count_{0};
 };
 
-/// The vertex of a face of an OBJ: "7", "7/1", "7//3" or "-1/..".
+/// Checks the vertex index of an OBJ face: "7", "7/1", "7//3" or "-1/..".
 void check_obj_index(const Lines& lines, std::string_view word, long long before, long long all) {
   const auto index = whole_of(word.substr(0, word.find('/')));
   if (!index) lines.fail("a face has " + shown(word) + " where the number of a vertex should be");

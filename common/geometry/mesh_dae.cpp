@@ -1,5 +1,5 @@
-// COLLADA: only geometry and nodes reach the import library; materials, animations, skins and the
-// rest of the file are left out.
+// COLLADA: only geometry and nodes are passed to the import library; materials, animations, skins
+// and all other elements are removed.
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
 constexpr int kMaxDepth = 64;
-constexpr std::size_t kMaxNodes = 100'000;  // after every instance_node was put in place
+constexpr std::size_t kMaxNodes = 100'000;  // max nodes after expansion of every instance_node
 constexpr std::size_t kMaxNodeDepth = 200;
 
 class Document {
@@ -138,7 +138,7 @@ class Document {
       const char* source = e->Attribute("source");
       const auto array =
           source != nullptr && *source == '#' ? arrays_.find(source + 1) : arrays_.end();
-      if (array == arrays_.end()) continue;  // of names, which nothing here reads
+      if (array == arrays_.end()) continue;  // array of names, which is not used
       const auto number = [&](const char* key, long long otherwise) {
         const char* text = e->Attribute(key);
         const auto value = text == nullptr ? std::optional(otherwise) : whole_of(text);
@@ -162,8 +162,7 @@ class Document {
     std::size_t nodes{1}, depth{1};
   };
 
-  /// Returns size and depth of the tree at this node, with those nodes that are named in place of
-  /// being there.
+  /// Returns size and depth of the tree at this node, with instantiated nodes expanded.
   Tree expand(const XMLElement& node, std::size_t depth) {
     if (depth > kMaxNodeDepth)
       fail(node, "nodes are nested deeper than 200, or name each other in a circle");

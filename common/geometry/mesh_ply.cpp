@@ -1,4 +1,4 @@
-// PLY (Stanford): the header, then every value of the body is walked once.
+// PLY (Stanford): reads the header, then checks every value of the body once.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -20,7 +20,7 @@ enum class Format { text, little_endian, big_endian };
 struct Property {
   std::string name;
   Scalar type{};
-  std::optional<Scalar> length;  ///< of a list: type of its number of values
+  std::optional<Scalar> length;  ///< of a list: type of its element count
 };
 
 struct Element {

@@ -7,8 +7,7 @@ namespace {
 
 using Flat = Eigen::Vector2d;
 
-/// The corner of a quadrilateral at which its inner angle is above 180 degrees; 0 where there is
-/// none.
+/// Returns the corner of a quadrilateral with an inner angle above 180 degrees; 0 if there is none.
 std::size_t reflex_corner(const std::vector<Vector3>& points, const std::vector<int>& corners) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3& at = points[static_cast<std::size_t>(corners[i])];
@@ -28,7 +27,7 @@ double turn(const Flat& a, const Flat& b, const Flat& c) {
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-/// The corners in the polygon's mean plane, counter-clockwise.
+/// Returns the corners in the polygon's mean plane, counter-clockwise.
 std::vector<Flat> flattened(const std::vector<Vector3>& points, const std::vector<int>& corners) {
   Vector3 normal = Vector3::Zero();
   const auto at = [&](std::size_t i) -> const Vector3& {
@@ -46,8 +45,8 @@ std::vector<Flat> flattened(const std::vector<Vector3>& points, const std::vecto
   return flat;
 }
 
-/// Whether the corner `i` of those left can be cut off: it turns left and no other corner lies in
-/// its triangle.
+/// Returns whether the remaining corner `i` can be cut off: it is convex and its triangle contains
+/// no other corner.
 bool is_ear(const std::vector<Flat>& flat, const std::vector<std::size_t>& left, std::size_t i) {
   const std::size_t n = left.size(), before = left[(i + n - 1) % n], after = left[(i + 1) % n];
   const Flat &a = flat[before], &b = flat[left[i]], &c = flat[after];
@@ -77,7 +76,7 @@ void split_polygon(const std::vector<Vector3>& points, const std::vector<int>& c
   while (left.size() > 2) {
     std::size_t ear = 0;
     while (ear < left.size() && !is_ear(flat, left, ear)) ++ear;
-    if (ear == left.size()) ear = 0;  // crosses itself or has no area
+    if (ear == left.size()) ear = 0;  // the polygon intersects itself or has no area
     const std::size_t m = left.size();
     triangles.push_back(
         {corners[left[(ear + m - 1) % m]], corners[left[ear]], corners[left[(ear + 1) % m]]});

@@ -11,7 +11,7 @@ std::optional<double> coordinate_of(std::string_view word) {
   double value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error == std::errc::result_out_of_range)
-    value = std::strtod(std::string(word).c_str(), nullptr);  // nearly 0, or infinite
+    value = std::strtod(std::string(word).c_str(), nullptr);  // underflow or infinite
   if (error == std::errc::invalid_argument || end != word.data() + word.size()) return std::nullopt;
   if (!std::isfinite(value) || std::abs(value) > kLargestCoordinate) return std::nullopt;
   return value;

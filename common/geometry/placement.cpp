@@ -9,7 +9,7 @@
 namespace handsel {
 namespace {
 
-constexpr double kSameNormal = 0.99985;  // cosine of a degree
+constexpr double kSameNormal = 0.99985;  // cosine of one degree
 
 struct Face {
   Vector3 normal;  // outward
@@ -41,7 +41,7 @@ std::vector<Face> hull_faces(const TriangleMesh& mesh) {
     face.normal = sum / face.area;
     out.push_back(std::move(face));
   }
-  // Bullet's order of corners is not told: outward is away from the middle.
+  // Bullet does not define the order of corners: outward is away from the centre.
   Vector3 middle = Vector3::Zero();
   for (const Face& face : out) middle += face.corners[0] / static_cast<double>(out.size());
   for (Face& face : out)
@@ -50,7 +50,7 @@ std::vector<Face> hull_faces(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Corners of the convex polygon around points in a plane, counter-clockwise.
+/// Returns the corners of the convex polygon around points in a plane, counter-clockwise.
 std::vector<Eigen::Vector2d> around(std::vector<Eigen::Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());

@@ -37,14 +37,13 @@ WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edg
 }
 
 int wrench_rank(const WrenchMatrix& wrenches) {
-  // Elimination along the few rows, each pivoted on its largest entry; a row that has nothing left
-  // adds nothing.
+  // Elimination along the few rows, each pivoted on its largest entry; a row of zeros adds no rank.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a = wrenches;
-  const double least = 1e-10 * (a.size() == 0 ? 0.0 : a.cwiseAbs().maxCoeff());
+  const double min_pivot = 1e-10 * (a.size() == 0 ? 0.0 : a.cwiseAbs().maxCoeff());
   int rank = 0;
   for (Eigen::Index k = 0; k < a.rows(); ++k) {
     Eigen::Index pivot = 0;
-    if (a.cols() == 0 || !(a.row(k).cwiseAbs().maxCoeff(&pivot) > least)) continue;
+    if (a.cols() == 0 || !(a.row(k).cwiseAbs().maxCoeff(&pivot) > min_pivot)) continue;
     ++rank;
     for (Eigen::Index i = k + 1; i < a.rows(); ++i)
       a.row(i) -= (a(i, pivot) / a(k, pivot)) * a.row(k);

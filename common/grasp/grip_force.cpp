@@ -9,7 +9,7 @@
 
 namespace handsel {
 
-// Simplex method from the slack basis; the free variables are split into two that are not negative.
+// Simplex method from the slack basis; each free variable is split into two non-negative ones.
 Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A,
                          const Eigen::VectorXd& b) {
   const Eigen::Index rows = A.rows(), n = A.cols(), columns = 2 * n + rows;
@@ -57,7 +57,8 @@ Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A,
 
 namespace {
 
-// 6 x 3m: force and torque about `centre`, the torque over `size`, of a force at each contact.
+// Returns 6 x 3m: force and torque about `centre`, torque divided by `size`, of unit contact
+// forces.
 Eigen::MatrixXd wrenches(const std::vector<PointContact>& contacts, const Vector3& centre,
                          double size) {
   const auto m = static_cast<Eigen::Index>(contacts.size());
@@ -76,17 +77,17 @@ double size_of(const std::vector<PointContact>& contacts, const Vector3& centre)
   return size;
 }
 
-bool holds_all_ways(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) {
+bool has_full_rank(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) {
   return svd.singularValues()[5] > 1e-6 * svd.singularValues()[0];
 }
 
-constexpr double kUnbounded = 1e6;  // no margin reaches this [N]
+constexpr double kUnbounded = 1e6;  // upper bound of all margins [N]
 
-// The squeeze of one hand. `free`: 3m x n, forces that cancel out; `bear`: 3m x 3, forces on the
-// object that bear a force at its centre.
-GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::MatrixXd& free,
-                   const Eigen::MatrixXd& bear, const GripLoad& load,
-                   const GripForceSettings& settings) {
+// Computes the grip forces of one hand. `free`: 3m x n, internal forces that cancel out; `bear`: 3m
+// x 3, contact forces that balance a force at the object's centre.
+GripForces grip(const std::vector<PointContact>& contacts, const Eigen::MatrixXd& free,
+                const Eigen::MatrixXd& bear, const GripLoad& load,
+                const GripForceSettings& settings) {
   const auto m = static_cast<Eigen::Index>(contacts.size());
   GripForces out;
   const Eigen::Index n = free.cols() + 1, per = settings.edges + 1;
@@ -111,20 +112,20 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
     A.row(i * per + settings.edges).head(n - 1) = normal.transpose() * free.middleRows(3 * i, 3);
     b[i * per + settings.edges] = settings.max_normal;
     c.head(n - 1) -=
-        1e-3 * free.middleRows(3 * i, 3).transpose() * normal;  // of equal margins the gentlest
+        1e-3 * free.middleRows(3 * i, 3).transpose() * normal;  // gentlest of equal margins
   }
   c[n - 1] = 1;
-  double least = std::numeric_limits<double>::infinity();  // the margin without a squeeze
+  double min_margin = std::numeric_limits<double>::infinity();  // without internal forces [N]
   for (Eigen::Index i = 0; i < cones; ++i)
-    if (i % per != settings.edges) least = std::min(least, b[i]);
+    if (i % per != settings.edges) min_margin = std::min(min_margin, b[i]);
   for (Eigen::Index i = 0; i < cones; ++i)
-    if (i % per != settings.edges) b[i] -= least;
+    if (i % per != settings.edges) b[i] -= min_margin;
   A(cones, n - 1) = 1;
-  b[cones] = std::clamp(settings.enough - least, 0.0, kUnbounded);
+  b[cones] = std::clamp(settings.enough - min_margin, 0.0, kUnbounded);
   const Eigen::VectorXd x = maximise(c, A, b);
   const Eigen::VectorXd f = free * x.head(n - 1);
   for (Eigen::Index i = 0; i < m; ++i) out.forces.push_back(f.segment<3>(3 * i));
-  out.margin = x[n - 1] + least;
+  out.margin = x[n - 1] + min_margin;
   return out;
 }
 
@@ -136,10 +137,10 @@ GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3&
   if (m < 3) return {};
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(wrenches(contacts, com, size_of(contacts, com)),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!holds_all_ways(svd)) return {};
+  if (!has_full_rank(svd)) return {};
   const Eigen::MatrixXd bear = -svd.solve(Eigen::MatrixXd::Identity(6, 3));
-  return squeeze(contacts, svd.matrixV().rightCols(3 * m - 6), bear,
-                 {Vector3::Zero(), mass * settings.acceleration}, settings);
+  return grip(contacts, svd.matrixV().rightCols(3 * m - 6), bear,
+              {Vector3::Zero(), mass * settings.acceleration}, settings);
 }
 
 std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands,
@@ -151,7 +152,7 @@ std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointCo
   if (all.size() < 3) return out;
   const Eigen::JacobiSVD<Eigen::MatrixXd> together(wrenches(all, com, size_of(all, com)),
                                                    Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (!holds_all_ways(together)) return out;
+  if (!has_full_rank(together)) return out;
   const Eigen::MatrixXd bear = -together.solve(Eigen::MatrixXd::Identity(6, 3));
   Eigen::Index row = 0;
   for (std::size_t h = 0; h < hands.size(); ++h) {
@@ -162,9 +163,9 @@ std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointCo
       const Eigen::JacobiSVD<Eigen::MatrixXd> own(
           wrenches(hands[h], middle, size_of(hands[h], middle)),
           Eigen::ComputeThinU | Eigen::ComputeFullV);
-      if (holds_all_ways(own))
-        out[h] = squeeze(hands[h], own.matrixV().rightCols(3 * m - 6), bear.middleRows(row, 3 * m),
-                         load, settings);
+      if (has_full_rank(own))
+        out[h] = grip(hands[h], own.matrixV().rightCols(3 * m - 6), bear.middleRows(row, 3 * m),
+                      load, settings);
     }
     row += 3 * m;
   }

@@ -50,7 +50,7 @@ struct AttentionState {
 struct AttentionAdvice {
   Stamp stamp{};             ///< time of sending, UTC [ns]; 0: filled in by the bus
   double speed_factor{1.0};  ///< minimum over the released behaviours, [-1, 1]
-  /// A person closes in, and neither way along the path leads away: retreat beside the path.
+  /// A person closes in, and neither direction along the path leads away: retreat beside the path.
   bool leaves_path{};
   std::string limiting;                   ///< name of the behaviour that asked for it; empty: none
   std::string reason;                     ///< one phrase for people
@@ -66,7 +66,7 @@ struct AttentionAdvice {
   double cost_map_period{};  ///< wanted period of the cost map [s]
   double replan_period{};    ///< wanted period of the search for a better path [s]
   TaskChange change{};       ///< change wanted of the running task
-  std::string person;        ///< id of the person the change concerns; empty: nobody
+  std::string person;        ///< id of the person the change concerns; empty: none
 };
 
 }  // namespace handsel

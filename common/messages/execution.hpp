@@ -80,7 +80,7 @@ enum class Cause : std::uint8_t {
   separation,          ///< Slow ... Stop
   robot_state_silent,  ///< Stop
   human_state_silent,  ///< Stop
-  human_unknown,       ///< Slow: nobody is seen, but not all is covered
+  human_unknown,       ///< Slow: no person is observed, but not all space is covered
   drive_not_enabled,   ///< Stop
   tracking_error,      ///< Fault
   limit_violation,     ///< Fault
@@ -137,7 +137,7 @@ struct ExecutionStatus {
   std::uint64_t cycles{}, late_cycles{};  ///< control cycles; later than one period
   /// Largest |.| sent so far / guard limit.
   double limit_ratio_velocity{}, limit_ratio_acceleration{}, limit_ratio_jerk{};
-  double separation{1e9};  ///< to the nearest person, without exempt parts [m]; 1e9: nobody
+  double separation{1e9};  ///< to the nearest person, without exempt parts [m]; 1e9: no person
   /// Required by speed and separation monitoring there at the present speed [m].
   double separation_limit{};
   /// On the axes of the nearest capsules, world [m].
@@ -167,8 +167,8 @@ struct TrajectoryForecast {
   bool collides{};             ///< a collision is predicted within the horizon
   /// At present speed [s]; infinity if none within the horizon (1e9 on the wire).
   double time_to_collision{};
-  double clearance{};  ///< least distance to people over the horizon [m]
-  double cost{};       ///< largest human-aware cost over the horizon, [0, 1]
+  double clearance{};  ///< min distance to people over the horizon [m]
+  double cost{};       ///< max human-aware cost over the horizon, [0, 1]
   std::string reason;  ///< which bodies touch
 };
 

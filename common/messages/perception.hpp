@@ -40,7 +40,7 @@ struct HumanObservation {
   Stamp stamp{};                       ///< time of measurement, UTC [ns]; 0: filled in by the bus
   std::string source;                  ///< name of the sensor
   Coverage coverage;                   ///< volume observed in this measurement
-  std::vector<ObservedPerson> people;  ///< everybody seen, at most 256
+  std::vector<ObservedPerson> people;  ///< all observed people, at most 256
 };
 
 /// A part of a robot that moves: the capsule about the segment from `a` to `b`.

@@ -109,7 +109,8 @@ struct PathReply {
 struct TipNode {
   Pose T_world_tip{Pose::Identity()};  ///< pose of the tip at the node
   bool has_elbow{};  ///< false: `elbow` is chosen such that the joints stay clear of their limits
-  /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad].
+  /// Angle on its circle about the line from shoulder to wrist, 0 = max position along axis 1
+  /// [rad].
   double elbow{};
   Vector also;  ///< positions of the axes `also` of the request at the node [rad]
 };
@@ -246,7 +247,7 @@ struct RegraspRequest {
   std::string object;  ///< scene object id
   Vector start;        ///< all axes of the robot
   std::string holder;  ///< group of the arm whose hand holds the object; empty: it stands
-  /// Grasp of `holder`, as the object lies in the hand; no meaning where nobody holds it.
+  /// Grasp of `holder`, as the object lies in the hand; no meaning while it is not held.
   Grasp grasp;
   /// Where the object may stand at the end, any of them, the best first; not empty, at most 64.
   std::vector<StandingPlace> goals;

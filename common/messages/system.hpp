@@ -57,9 +57,9 @@ struct SafetyState {
   std::uint64_t revision{};     ///< grows with every change, also over restarts; 0: never valid
   bool paused{};                ///< a person paused the robot
   double override_factor{1.0};  ///< speed override a person asked for, [0, 1]
-  bool fault{};                 ///< a fault nobody has acknowledged
-  bool awaits_person{};  ///< a protective, user or emergency stop after which nobody has resumed
-  std::string reason;    ///< why it does not permit motion, one sentence; empty: it does
+  bool fault{};                 ///< an unacknowledged fault
+  bool awaits_person{};         ///< a protective, user or emergency stop without a resume since
+  std::string reason;           ///< why it does not permit motion, one sentence; empty: it does
   /// People out of sight and not known to have left, in their last known state.
   std::vector<Person> lost{};
 };
@@ -116,7 +116,7 @@ struct SimControl {
   double value{};       ///< dart: speed [m/s]; silence: duration [s]
 };
 
-/// A note of whoever runs a study, for the record; no component reads it but the bridge. Topic
+/// A note of the operator of a study, for the record; no component reads it but the bridge. Topic
 /// StudyMark, profile goal, on demand.
 struct StudyMark {
   Stamp stamp{};            ///< time of sending, UTC [ns]; 0: filled in by the bus
@@ -149,12 +149,12 @@ struct GroundTruth {
   std::uint64_t handovers{};
   bool taken{};                   ///< a person has taken the object from the robot's hand
   Side taking_side{Side::right};  ///< the hand that took it last; valid if `taken`
-  /// Least fraction of its ranges that the wrist of that hand used at the release, [0, 1].
+  /// Min fraction of its ranges that the wrist of that hand used at the release, [0, 1].
   double taking_wrist_strain{};
   double taking_arm_strain{};  ///< fraction of its range that the upper arm used then, [0, 1]
   /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
-  double min_separation{};      ///< smallest `separation` so far [m]; infinity: nobody was there
+  double min_separation{};  ///< smallest `separation` so far [m]; infinity: no person was present
   double min_robot_distance{};  ///< smallest distance to other robots [m]; infinity: no other robot
   std::uint64_t ssm_violations{};  ///< steps with a higher speed toward a person than SSM allows
   double peak_closing_speed{};     ///< of robot and person within 0.5 m [m/s]

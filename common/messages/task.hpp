@@ -46,7 +46,7 @@ struct TaskGoal {
   double value{};       ///< of kind speed: speed override, [0, 1]
   /// Of kind drive, where nothing is named: platform x, y [m], heading [rad] in the world.
   Vector3 place{Vector3::Zero()};
-  /// Box where what is taken, cleared or tidied ends; empty: where there is room.
+  /// Box where what is taken, cleared or tidied ends; empty: where there is space.
   std::string onto;
 };
 

@@ -111,7 +111,7 @@ struct OtherRobot {
 /// Topic HumanState, profile state. Published at its rate even when nobody is there.
 struct HumanState {
   Stamp stamp{};               ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::vector<Person> people;  ///< everybody who may be there, lost people included; at most 16
+  std::vector<Person> people;  ///< all people who may be present, lost people included; at most 16
   bool covered{};  ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
   std::vector<SourceView> views{};  ///< of every source
   std::uint32_t left_out{};  ///< people known but left out: farther from the robot than those named

@@ -11,7 +11,7 @@ ArmReach arm_reach(const RobotModel& robot, const Group* arm, int palm) {
                         ? -1
                         : robot.axes()[static_cast<std::size_t>(arm->axes.front())].joint;
   ArmReach reach;
-  double length = kObjectBeyondTool;  // to the frame of `link`
+  double length = kObjectBeyondTool;  // up to the frame of `link` [m]
   for (int link = palm; link > 0;) {
     const int up = robot.links()[static_cast<std::size_t>(link)].parent_joint;
     const Joint& joint = robot.joints()[static_cast<std::size_t>(up)];

@@ -35,7 +35,7 @@ class HandModelBuilder {
  private:
   void read_model() {
     std::vector<std::string>
-        joints;  // in the order of the fingers; one that moves several fingers once
+        joints;  // in the order of the fingers; a joint that moves several fingers occurs once
     for (const auto& finger : text_.fingers())
       for (const std::string& joint : finger.joints())
         if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
@@ -119,8 +119,8 @@ class HandModelBuilder {
     }
   }
 
-  /// Where the finger workspaces meet: the mean of the tips' mid-range positions, thumb and the
-  /// others weighing the same. Axes of the palm.
+  /// Returns the centre of the finger workspaces: the mean of the mid-range positions of the tips,
+  /// with equal weight of the thumb and all others. Axes of the palm.
   Pose workspace_centre() const {
     const Vector middle = (hand_.lower_contact_ + hand_.upper_contact_) / 2;
     std::vector<Pose> links;

@@ -1,7 +1,7 @@
-// Closed form where the chain is shoulder-elbow-wrist (srs_arm.hpp); else damped least squares
-// (Levenberg-Marquardt, damping by the remaining error) on the chain of one group: joints that
-// reach a limit are frozen there and the rest solved again; the null space pulls toward the rest
-// posture; seeded restarts. Ours.
+// Closed form for shoulder-elbow-wrist chains (srs_arm.hpp); otherwise damped least squares
+// (Levenberg-Marquardt, damping by the remaining error) on the chain of one group: joints at a
+// limit are frozen and the others solved again; the null space pulls toward the rest configuration;
+// seeded restarts. Own method: combines known parts.
 #include <Eigen/Cholesky>
 
 #include <cmath>
@@ -13,11 +13,11 @@
 namespace handsel {
 namespace {
 
-constexpr double kMetresPerRadian = 0.3;               // weighs turning against moving
-constexpr double kMaxStep = 0.6;                       // [rad] per iteration
-constexpr double kOnLimit = 1e-7, kWorthTrying = 0.3;  // [rad] outside of a closed-form solution
+constexpr double kMetresPerRadian = 0.3;  // weight of rotation against translation [m/rad]
+constexpr double kMaxStep = 0.6;          // max step per iteration [rad]
+constexpr double kOnLimit = 1e-7, kWorthTrying = 0.3;  // excess over limits, closed form [rad]
 constexpr double kPullNearSeed = 0.05, kPullElsewhere = 0.3;
-constexpr int kPatience = 15;  // iterations without 5 % progress
+constexpr int kMaxStalledIterations = 15;  // max iterations without 5 % progress
 
 using ik::Axes;
 using ik::Chain;
@@ -26,8 +26,8 @@ using ik::Jacobian;
 using ik::kMaxAxes;
 using ik::Vector6;
 
-/// One step; joints that would leave their range are put on the limit and the others make up for
-/// it.
+/// Computes one step; joints that would exceed their range are put on the limit and the others
+/// compensate.
 Axes step_of(const Chain& chain, const Axes& q, const Jacobian& J, const Vector6& error,
              double damping, double pull) {
   const int n = chain.size();
@@ -65,7 +65,7 @@ bool converge(const Chain& chain, const Pose& target, const IkOptions& options, 
               Axes& q) {
   Jacobian J;
   double best = std::numeric_limits<double>::infinity();
-  int patience = kPatience;
+  int stalled_iterations_left = kMaxStalledIterations;
   for (int i = 0; i < options.max_iterations; ++i) {
     Vector6 error = error_of(target, chain.forward(q, &J));
     if (error.head<3>().norm() <= options.position_tolerance &&
@@ -76,8 +76,8 @@ bool converge(const Chain& chain, const Pose& target, const IkOptions& options, 
     const double size = error.squaredNorm();
     if (size < 0.95 * best) {
       best = size;
-      patience = kPatience;
-    } else if (--patience == 0) {
+      stalled_iterations_left = kMaxStalledIterations;
+    } else if (--stalled_iterations_left == 0) {
       return false;
     }
     q += step_of(chain, q, J, error, 0.05 * size + 1e-10, size < 1e-6 ? 0.0 : pull);

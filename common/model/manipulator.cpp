@@ -10,7 +10,7 @@
 namespace handsel {
 namespace {
 
-/// Whether `link` is `of`, or moves with it.
+/// Returns whether `link` is `of`, or moves with it.
 bool hangs_on(const RobotModel& robot, int link, int of) {
   for (; link >= 0 && link != of;) {
     const int joint = robot.links()[static_cast<std::size_t>(link)].parent_joint;
@@ -19,7 +19,7 @@ bool hangs_on(const RobotModel& robot, int link, int of) {
   return link == of;
 }
 
-/// The group whose tip carries all of `fingers`, the nearest of them; nullptr: none.
+/// Returns the nearest group whose tip carries all of `fingers`; nullptr if there is none.
 const Group* carrier(const RobotModel& robot, const Group& fingers) {
   const Group* nearest = nullptr;
   for (const Group& arm : robot.groups()) {

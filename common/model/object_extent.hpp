@@ -9,7 +9,7 @@
 
 namespace handsel {
 
-/// The shape of a thing nobody has described, centred in its frame, its surface moved outward by
+/// The shape of an object without a description, centred in its frame, its surface moved outward by
 /// `margin` [m] (a box keeps its corners). nullopt: no primitive, or one without a size. A cylinder
 /// that is not round takes the larger diameter, a sphere the largest.
 std::optional<Shape> primitive_shape(const Primitive&, double margin = 0);

@@ -24,7 +24,7 @@ struct ObjectModel {
   Vector3 com{Vector3::Zero()};   ///< object frame [m]
   double friction{0.6};           ///< Coulomb coefficient
   double height_above_support{};  ///< of the object frame's origin when standing [m]
-  double max_tilt{};  ///< carried with its z axis within this of up; 0: in any way [rad]
+  double max_tilt{};  ///< carried with its z axis within this of up; 0: in any orientation [rad]
 
   /// Returns the physical form, object frame: the parts, the hollow ones by their walls.
   std::vector<PlacedShape> solids() const;

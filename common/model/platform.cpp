@@ -8,9 +8,10 @@
 namespace handsel {
 namespace {
 
-constexpr int kAdded = 3;              // axes, joints and links
-constexpr double kMostHeading = 40.0;  // [rad]
-// Drives and wheels hold a force of this fraction of the weight, and turn with it at this lever.
+constexpr int kAdded = 3;             // number of axes, joints and links added
+constexpr double kMaxHeading = 40.0;  // max heading [rad]
+// Max force of the drives and wheels as a fraction of the weight, and the lever of the resulting
+// torque.
 constexpr double kTraction = 0.5, kTractionLever = 0.3;  // [1], [m]
 constexpr double kGravity = 9.81;                        // [m/s^2]
 
@@ -20,12 +21,12 @@ Vector longer(const Vector& of_robot, double linear, double angular) {
   return out;
 }
 
-/// Speeds, accelerations and jerks of the platform over its speeds of comfort.
+/// Ratios of platform speeds, accelerations and jerks to the comfort speeds.
 struct PlatformRatios {
   double velocity, acceleration, jerk;
 };
 constexpr PlatformRatios kComfort{1.0, 2.0, 6.0};
-constexpr PlatformRatios kGuard{1.1, 6.0, 60.0};  // and of a stop
+constexpr PlatformRatios kGuard{1.1, 6.0, 60.0};  // also for stops
 
 KinematicLimits longer(const KinematicLimits& of_robot, double speed, double turn_speed,
                        const PlatformRatios& ratios) {
@@ -51,20 +52,20 @@ RobotModel RobotModelBuilder::on_platform(const RobotModel& robot, double speed,
         i == 0 ? "world" : std::string(names[i - 1]) + "_carriage";
     links[static_cast<std::size_t>(i)].parent_joint = i - 1;
     Joint& joint = joints[static_cast<std::size_t>(i)];
-    const double most = i < 2 ? kPlatformExtent : kMostHeading;
+    const double bound = i < 2 ? kPlatformExtent : kMaxHeading;
     joint.name = names[i];
     joint.kind = i < 2 ? JointKind::prismatic : JointKind::revolute;
     joint.parent = i;
     joint.child = i + 1;
     joint.axis = i == 0 ? Vector3::UnitX() : i == 1 ? Vector3::UnitY() : Vector3::UnitZ();
     joint.dof = robot.dof() + i;
-    joint.lower = -most;
-    joint.upper = most;
+    joint.lower = -bound;
+    joint.upper = bound;
     joint.max_velocity = i < 2 ? speed : turn_speed;
     joint.max_effort = i < 2 ? traction : kTractionLever * traction;
   }
   for (Link link : robot.links()) {
-    link.parent_joint += kAdded;  // of the root, -1, to the joint that turns it
+    link.parent_joint += kAdded;  // parent of the root, -1, becomes the joint that rotates it
     links.push_back(std::move(link));
   }
   for (Joint joint : robot.joints()) {

@@ -19,7 +19,7 @@ struct Fit {
   double volume() const { return M_PI * radius * radius * ((a - b).norm() + 4.0 / 3.0 * radius); }
 };
 
-/// The capsule along `axis` through the middle of the points that contains them all.
+/// Returns the capsule along `axis`, through the middle of the points, that contains all of them.
 Fit fit_along(const Points& points, const Vector3& axis) {
   const Vector3 u = axis.unitOrthogonal(), v = axis.cross(u);
   Eigen::Array3d low = Eigen::Array3d::Constant(1e300), high = -low;
@@ -59,7 +59,7 @@ Fit fit(const Points& points) {
   return best;
 }
 
-/// Flat boxes become strips side by side.
+/// Divides flat boxes into strips side by side.
 void fit_box(const Vector3& size, std::vector<Fit>& out) {
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int i, int k) { return size[i] > size[k]; });

@@ -22,10 +22,10 @@ std::vector<LinkCapsule> robot_capsules(const RobotModel&);
 
 /// Nearest approach of robot and person.
 struct Separation {
-  double distance{};   ///< [m], may be negative when overlapping; +inf if nobody
-  int link{-1};        ///< of the robot; -1 if nobody
+  double distance{};   ///< [m], may be negative when overlapping; +inf without people
+  int link{-1};        ///< of the robot; -1 without people
   BodyPart part{};     ///< of that person
-  std::string person;  ///< id; empty if nobody
+  std::string person;  ///< id; empty without people
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< world [m]
 };
 

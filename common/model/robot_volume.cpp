@@ -20,7 +20,7 @@ bool RobotVolume::fits(const Vector& values) const {
 
 std::vector<MovingPart> RobotVolume::parts(const Vector& position, const Vector& velocity,
                                            const Pose& T_world_base) {
-  constexpr double kStep = 1e-3;  // of the differences that give the velocities [s]
+  constexpr double kStep = 1e-3;  // step of the finite differences for velocities [s]
   robot_->forward(position, links_);
   robot_->forward(position + kStep * velocity, later_);
   std::vector<MovingPart> parts;

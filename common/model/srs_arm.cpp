@@ -5,18 +5,18 @@
 namespace handsel::ik {
 namespace {
 
-constexpr double kSame = 1e-6;  // [m] and [rad], for recognising the shape
+constexpr double kSame = 1e-6;  // tolerance of the recognition of the shape [m], [rad]
 constexpr int kCircleSamples = 48;
 constexpr int kRefinements = 24;
-constexpr double kViolation = 1e3;  // cost of each radian outside the limits
-constexpr double kArmOnLimit = 1e-7, kArmWorthTrying = 0.3;  // [rad] outside the limits
+constexpr double kViolation = 1e3;  // cost per radian outside the limits [1/rad]
+constexpr double kArmOnLimit = 1e-7, kArmWorthTrying = 0.3;  // excess over the limits [rad]
 constexpr double kRestWeight = 0.02;
-constexpr double kMargin = 0.15;  // [rad] wanted to the limits
+constexpr double kMargin = 0.15;  // desired distance to the limits [rad]
 constexpr double kMarginWeight = 4.0;
 
 double wrap(double angle) { return angle - 2 * M_PI * std::nearbyint(angle / (2 * M_PI)); }
 
-/// Where two lines meet; false when they do not.
+/// Computes the intersection of two lines; returns false if there is none.
 bool meet(const Vector3& p, const Vector3& a, const Vector3& q, const Vector3& b, Vector3& at) {
   const Vector3 n = a.cross(b);
   if (n.norm() < 0.9) return false;
@@ -30,14 +30,14 @@ bool on_line(const Vector3& x, const Vector3& p, const Vector3& a) {
 
 }  // namespace
 
-/// What does not change along the circle of elbow positions.
+/// Values that are constant along the circle of elbow positions.
 struct SrsArm::Problem {
   Axes seed;
   Eigen::Matrix3d R_tip;  // R_target * R_zero^T
-  Vector3 to_target;      // shoulder to wrist, wanted
+  Vector3 to_target;      // desired vector from shoulder to wrist
   double elbow, elbow_cost;
-  Eigen::Matrix3d R_elbow_t;  // turn of the elbow, transposed
-  Eigen::Matrix3d R_start;    // a turn of the shoulder that brings the wrist to its place
+  Eigen::Matrix3d R_elbow_t;  // rotation of the elbow, transposed
+  Eigen::Matrix3d R_start;    // a rotation of the shoulder that puts the wrist in place
   Vector3 circle_axis;
 };
 
@@ -102,8 +102,8 @@ double SrsArm::axis_cost(const Problem& problem, int axis, double& angle) const 
          kMarginWeight * tight * tight + kViolation * std::max({low - angle, angle - high, 0.0});
 }
 
-/// The two ways to split R into turns about three axes from `first`; one, twice, when they are in
-/// line.
+/// Returns both decompositions of R into rotations about three axes from `first`; the same one
+/// twice if the axes are aligned.
 SrsArm::Solutions SrsArm::solutions(const Eigen::Matrix3d& R, int first,
                                     double first_when_in_line) const {
   const Eigen::Matrix3d& B = basis_[first / 4];
@@ -122,7 +122,7 @@ SrsArm::Solutions SrsArm::solutions(const Eigen::Matrix3d& R, int first,
   return {{{q0, middle, sign * q2}, {q0 + other, -middle, sign * (q2 + other)}}};
 }
 
-/// Of the two ways the cheaper one goes into the candidate.
+/// Adds the cheaper of the two solutions to the candidate.
 void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first,
                     Candidate& candidate) const {
   double best = std::numeric_limits<double>::infinity();
@@ -146,7 +146,7 @@ SrsArm::Candidate SrsArm::at(const Problem& problem, double circle) const {
   return candidate;
 }
 
-/// Golden-section search between the samples beside `centre`.
+/// Refines by golden-section search between the samples beside `centre`.
 SrsArm::Candidate SrsArm::refine(const Problem& problem, double centre) const {
   constexpr double golden = 0.6180339887498949;
   double low = centre - 2 * M_PI / kCircleSamples, high = centre + 2 * M_PI / kCircleSamples;
@@ -168,7 +168,7 @@ SrsArm::Candidate SrsArm::refine(const Problem& problem, double centre) const {
   return best;
 }
 
-/// How far the elbow is turned; nullopt when the wrist is out of reach.
+/// Returns the elbow rotation [rad]; nullopt if the wrist is out of reach.
 std::optional<double> SrsArm::set_target(const Pose& T_root_tip, Problem& problem) const {
   problem.R_tip = T_root_tip.linear() * R_zero_.transpose();
   problem.to_target = T_root_tip * p_tip_wrist_ - shoulder_;
@@ -176,7 +176,7 @@ std::optional<double> SrsArm::set_target(const Pose& T_root_tip, Problem& proble
   const double cosine = (d * d - upper * upper - fore * fore) / (2 * upper * fore);
   if (!(d >= 1e-6 && std::abs(cosine) <= 1)) return std::nullopt;
   problem.circle_axis = problem.to_target / d;
-  // Turned by this much from straight; the arm may be folded back on itself when all joints are 0.
+  // Rotation from the straight arm; the arm may be folded back on itself if all joints are 0.
   return to_elbow_.dot(to_wrist_) > 0 ? std::acos(cosine) : M_PI - std::acos(cosine);
 }
 
@@ -205,8 +205,8 @@ double SrsArm::elbow_angle(const Axes& q) const {
   return angle_of(shoulder * to_elbow_, shoulder * (to_elbow_ + turn(3) * to_wrist_));
 }
 
-/// One step onto the pose: a chain from a file is square and parallel to the digits of the file
-/// only.
+/// Computes one Newton step onto the pose: the axes of a chain from a file are perpendicular and
+/// parallel only to the digits of the file.
 Axes SrsArm::polished(const Pose& T_root_tip, const Axes& q) const {
   Jacobian J;
   const Vector6 error = error_of(T_root_tip, chain_->forward(q, &J));

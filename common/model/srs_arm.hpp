@@ -23,22 +23,22 @@ class SrsArm {
   /// A solution of solve().
   struct Solution {
     Axes q;          ///< within the limits [rad]
-    double outside;  ///< largest violation of a limit before it was put on it [rad]
+    double outside;  ///< max violation of a limit before it was put on it [rad]
   };
   /// Returns the solution inside the limits nearest `seed`, found over the whole circle of elbow
   /// positions; a little weight goes to the rest configuration and to the distance from the limits.
-  /// When there is none: the one least outside, put on the limits, with `outside` > 0; nullopt when
-  /// the wrist is out of reach.
+  /// When there is none: the one with min violation, put on the limits, with `outside` > 0; nullopt
+  /// when the wrist is out of reach.
   std::optional<Solution> solve(const Pose& T_root_tip, const Axes& seed) const;
 
   /// Returns every solution for the pose with the elbow at this angle on its circle about the line
-  /// from shoulder to wrist; 0 is where it is farthest along axis 1 from the shoulder. Elbow bent
+  /// from shoulder to wrist; 0 is its max position along axis 1 from the shoulder. Elbow bent
   /// to either side, times two of the shoulder, times two of the wrist; limits are not checked,
   /// angles are in (-2 pi, 2 pi]. Empty when the wrist is out of reach. Where three axes of
   /// shoulder or wrist are in line their two solutions are one, given twice.
   std::vector<Axes> branches(const Pose& T_root_tip, double elbow_angle) const;
-  /// Of those inside the limits the one nearest `near` in its farthest joint; nullopt when there is
-  /// none.
+  /// Of those inside the limits the one nearest `near` by the max joint difference; nullopt when
+  /// there is none.
   std::optional<Axes> nearest(const Pose& T_root_tip, double elbow_angle, const Axes& near) const;
   /// Joints moved by whole turns next to `near` and inside the limits [rad]; nullopt when they
   /// cannot be.

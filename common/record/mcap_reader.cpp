@@ -7,20 +7,19 @@
 namespace handsel::mcap {
 namespace {
 
-constexpr std::uint64_t kHead = 9;  // [bytes] of a record: what it is and how long
+constexpr std::uint64_t kHead = 9;  // size of a record header: type and length [bytes]
 constexpr std::uint64_t kEarliestMagic = kMagic.size();
 constexpr std::uint64_t kMaxRecord =
-    256u << 20;  // [bytes] of a record that is read into memory: chunks have a few MB
-constexpr std::size_t kMaxMessages = 1'000'000;  // of one chunk
+    256u << 20;  // max size of a record read into memory; chunks have a few MB [bytes]
+constexpr std::size_t kMaxMessages = 1'000'000;  // max messages of one chunk
 
-/// Whether the reader uses a record of this kind; the others are passed over without reading them.
+/// Returns whether the reader uses a record of this type; others are skipped unread.
 bool is_used(Op op) {
   return op == Op::schema || op == Op::channel || op == Op::metadata || op == Op::message ||
          op == Op::chunk || op == Op::data_end;
 }
 
-/// Takes one field after the other from the content of a record; `short_of` once there was none
-/// left.
+/// Reads the fields of a record's content in sequence; `short_of` is set once data is missing.
 class Fields {
  public:
   explicit Fields(std::string_view bytes) : bytes_(bytes) {}
@@ -54,7 +53,7 @@ class Fields {
 
 struct Reader::Record {
   Op op{};
-  std::uint64_t at{};  ///< where it begins in the file
+  std::uint64_t at{};  ///< start in the file [bytes]
   std::string content;
 };
 
@@ -75,7 +74,7 @@ Reader::Reader(const std::filesystem::path& file) : file_(file) {
   if (!in_ || magic != kMagic)
     throw ConfigError(file.string() + " is no MCAP recording: it does not begin like one");
   at_ = kMagic.size();
-  // What stands in front of the first chunk: channels and what is said of the whole.
+  // Records before the first chunk: channels and metadata of the file.
   Record record;
   while (waiting_.empty() && !ended_ && read(record)) take(record);
 }

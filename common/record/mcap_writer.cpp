@@ -11,7 +11,7 @@
 namespace handsel::mcap {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 20;  // [bytes] a fuller one is ended
+constexpr std::size_t kChunk = 1 << 20;  // min size of a completed chunk [bytes]
 
 std::string map_record(const Metadata& map) {
   std::string entries, out;
@@ -33,7 +33,7 @@ std::uint32_t crc32(std::string_view bytes) {
 
 struct Writer::ChunkPlace {
   std::uint64_t first{}, last{}, offset{}, length{}, index_length{}, size{};
-  std::map<std::uint16_t, std::uint64_t> indexes;  ///< where the index of each channel stands
+  std::map<std::uint16_t, std::uint64_t> indexes;  ///< offset of the index of each channel
 };
 
 Writer::Writer(const std::filesystem::path& file, const std::vector<Channel>& channels,
@@ -82,7 +82,7 @@ Writer::~Writer() {
   try {
     close();
   } catch (const std::exception&) {
-    return;  // nobody is left to be told
+    return;  // no receiver of the error is left
   }
 }
 
@@ -106,7 +106,7 @@ void Writer::write(const Message& message) {
   append(head, message.channel);
   append(head, sequences_[message.channel]++);
   append(head, time);
-  append(head, time);  // when it was recorded, when it was written: the same clock
+  append(head, time);  // log time and publish time: the same clock
   append(chunk_, Op::message);
   append(chunk_, static_cast<std::uint64_t>(head.size() + message.data.size()));
   chunk_ += head;
@@ -161,7 +161,7 @@ void Writer::close() {
   if (!open_) return;
   flush();
   std::string out, content;
-  append(content, std::uint32_t{0});  // no checksum of the whole
+  append(content, std::uint32_t{0});  // no checksum of the file
   append_record(out, Op::data_end, content);
 
   struct Group {
@@ -174,7 +174,7 @@ void Writer::close() {
     if (!records.empty()) groups.push_back({op, written_ + out.size(), records.size()});
     out += records;
   };
-  // Schemas and channels stand in turn: they are found without an offset of their own.
+  // The schemas and channels are adjacent, so that no separate offset is needed.
   out += announced_;
   std::string records;
   for (const ChunkPlace& chunk : chunks_) {

@@ -9,9 +9,9 @@ namespace handsel {
 
 namespace {
 
-constexpr double kReached = 1e-10;  // of a resting set-point [rad]
-constexpr double kAtRest = 1e-6;    // fastest set-point that counts as resting [rad/s]
-// A reference that is no faster [rad/s] and accelerates no more [rad/s^2] may rest at once.
+constexpr double kReached = 1e-10;  // max distance from a set-point at rest [rad]
+constexpr double kAtRest = 1e-6;    // max speed of a set-point at rest [rad/s]
+// Max speed [rad/s] and acceleration [rad/s^2] of a reference that may rest at once.
 constexpr double kMaxRestSpeed = 1e-7, kMaxRestAcceleration = 1e-3;
 constexpr const char* kAgain = "; the robot follows again once set-points rest where it is";
 
@@ -59,11 +59,10 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
   if (command.position.size() != n || command.velocity.size() != n ||
       command.acceleration.size() != n)
     return false;
-  const bool takes_up = mode_ == DriveMode::enabled || mode_ == DriveMode::braked ||
-                        mode_ == DriveMode::protective_stop;
-  if (reference_ == Reference::stands && takes_up) {
-    // A set-point that rests where the one before did is still the same one while the reference
-    // moves to it.
+  const bool may_resume = mode_ == DriveMode::enabled || mode_ == DriveMode::braked ||
+                          mode_ == DriveMode::protective_stop;
+  if (reference_ == Reference::stands && may_resume) {
+    // A set-point at rest in the same place stays the same one while the reference moves to it.
     const bool same = matching_ > 0 && command.position == joined_ && command.velocity.isZero(0.0);
     matching_ = same || continues(command, kAtRest) ? matching_ + 1 : 0;
     joined_ = command.position;
@@ -82,8 +81,8 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
   return true;
 }
 
-/// Whether a set-point may be followed; if not, the reference begins to stop, or to move to where
-/// the first set-points rest.
+/// Returns whether a set-point may be followed; if not, the reference begins to stop, or to move to
+/// the position of the first set-points at rest.
 bool RobotSide::accepted(const JointCommand& command, double arrival) {
   if (settings_.period <= 0) return true;
   if (!seen_ && !reached(command) && continues(command, settings_.resume_tolerance)) {
@@ -117,15 +116,15 @@ bool RobotSide::reached(const JointCommand& command) const {
   return (command.position - position_).cwiseAbs().maxCoeff() <= kReached;
 }
 
-/// Returns whether the reference may rest from one step to the next: it may just pass where the
-/// set-points rest.
+/// Returns whether the reference may rest from one step to the next, and does not merely pass the
+/// position of the set-points.
 bool RobotSide::rests() const {
   return velocity_.lpNorm<Eigen::Infinity>() <= kMaxRestSpeed &&
          acceleration_.lpNorm<Eigen::Infinity>() <= kMaxRestAcceleration;
 }
 
-/// A loaded arm sags and a closed hand is bent by what it holds: the measured posture counts as
-/// well as the one that is held to.
+/// Returns whether a set-point continues from the present position. A loaded arm sags and a held
+/// object bends the fingers: the measured configuration counts as well as the reference.
 bool RobotSide::continues(const JointCommand& command, double max_speed) const {
   if (!command.position.allFinite() || !command.velocity.allFinite()) return false;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
@@ -173,7 +172,7 @@ void RobotSide::begin_stop(DriveMode mode) {
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
     const AxisState s{position_[i], velocity_[i], acceleration_[i]};
     const AxisLimits limits = limits_of(limits_, i);
-    // The guard limits where the stop limits would not stop the axis within its bounds.
+    // Uses the guard limits if the stop limits would not stop the axis within its bounds.
     stops_[i].init(s,
                    gate_.stops_within_bounds(s, i, limits) ? limits : limits_of(gate_.limits(), i));
   }
@@ -220,8 +219,8 @@ void RobotSide::step_stop(double dt) {
   }
 }
 
-/// Continues with the acceleration of the set-point before, as long as the robot can still be
-/// stopped within its limits afterwards.
+/// Continues with the previous acceleration as long as the robot can still stop within its limits
+/// afterwards.
 void RobotSide::extrapolate(double dt) {
   for (Eigen::Index i = 0; i < position_.size() && settings_.period > 0; ++i) {
     const AxisState s = advanced({position_[i], velocity_[i], acceleration_[i]}, dt, 0);
@@ -243,7 +242,8 @@ void RobotSide::step(double now, double dt) {
                std::to_string(std::lround(1e3 * settings_.max_gap)) + " ms" + kAgain;
   }
   if (reference_ != Reference::follows) {
-    if (!fresh_) step_stop(dt);  // else the set-point before the refused one was this step's
+    if (!fresh_)
+      step_stop(dt);  // otherwise the set-point before the refused one was that of this step
   } else if (!fresh_ && seen_) {
     extrapolate(dt);
   }

@@ -37,8 +37,8 @@ const char* reason(AxisOutcome outcome) noexcept {
 
 namespace {
 
-/// Brings a state with v beyond +V (or heading beyond it) back to V as fast as possible without
-/// heading beyond -V then; `side` -1 mirrors.
+/// Brings a state with v beyond +V (or bound to exceed it) back to V as fast as possible without
+/// then exceeding -V; `side` -1 mirrors.
 void brake_velocity(AxisState& s, const AxisLimits& l, double side, AxisProfile& out) noexcept {
   const double V = l.velocity, A = l.acceleration, J = l.jerk;
   const double v = side * s.velocity, a = side * s.acceleration;
@@ -151,8 +151,8 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to,
   return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
 }
 
-/// The durations possible are the same for the largest and the least displacement; where the two
-/// families see that differently, rounding has decided in one of them.
+/// Makes the possible durations of the max and the min displacement agree; if the two families
+/// differ, rounding has decided in one of them.
 void AxisProblem::settle_islands() noexcept {
   for (detail::MotionFamily* f : {&up_, &down_}) {
     if (f->gap_is_rounding()) f->close_gap();
@@ -291,7 +291,8 @@ AxisOutcome AxisProblem::profile_in(const Span& at, AxisProfile& out) const noex
   return arrives(out, brake_time_ + at.T) ? AxisOutcome::ok : AxisOutcome::blocked;
 }
 
-/// Rounding decides some problems twice: a motion is handed out only if it is one.
+/// Returns whether a profile arrives; rounding may invalidate a solution, which is then not
+/// returned.
 bool AxisProblem::arrives(const AxisProfile& profile, double duration) const noexcept {
   constexpr double kNear = 1e-9;
   AxisState s = start_;

@@ -116,7 +116,7 @@ class MotionFamily {
 
  private:
   double min_gain() const noexcept;
-  /// Where the displacement is largest between a place where it grows and one where it falls.
+  /// Returns the place of max displacement between a place where it grows and one where it falls.
   double top(double lo, double hi) const noexcept;
   double bracketed(double D, double lo, double hi, double f_lo) const noexcept;
   double v0_{}, a0_{}, vf_{}, af_{}, V_{}, A_{}, J_{}, over_J_{}, over_JA_{}, C_{}, at_limit_{};

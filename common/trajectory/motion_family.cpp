@@ -1,4 +1,4 @@
-// The motions of largest displacement of one axis; the class is declared in min_time.hpp.
+// Motions of max displacement of one axis; the class is declared in min_time.hpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@ namespace handsel {
 
 namespace {
 constexpr double kUnitRounding = std::numeric_limits<double>::epsilon();
-// Where 12 x^4 + 12 x^2 = 1: the valley, over sqrt(C), at which the gain is least.
+// Solution of 12 x^4 + 12 x^2 = 1: the valley, divided by sqrt(C), of min gain.
 constexpr double kInflexion = 0.27811916365;
 
 double lobe(double v, double a, double a1, double hold, double J, double over_J) noexcept {
@@ -171,7 +171,7 @@ double MotionFamily::top(double lo, double hi) const noexcept {
     if (!(middle > lo && middle < hi)) break;
     const double g = gain(middle);
     if (g == 0 || hi - lo <= 2 * kUnitRounding * std::abs(middle)) break;
-    // The end that stays counts for half: both ends close in.
+    // The value of the retained end is halved, so that both ends converge (Illinois method).
     if (g > 0) {
       lo = middle, g_lo = g;
       if (side == 1) g_hi /= 2;

@@ -12,8 +12,8 @@ double usable(double x, double bound) noexcept {
   return std::isfinite(x) ? std::clamp(x, -bound, bound) : 0.0;
 }
 
-/// Acceleration that can be kept for a tick at this velocity without leading beyond the velocity
-/// limit, before or after.
+/// Returns the acceleration that can be held for a tick at this velocity without exceeding the
+/// velocity limit, before or after.
 double reachable_acceleration(double velocity, double acceleration, const AxisLimits& l,
                               double dt) noexcept {
   const double room = std::max(0.0, l.velocity - std::abs(velocity) - l.acceleration * dt);

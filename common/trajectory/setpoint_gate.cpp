@@ -9,9 +9,9 @@
 namespace handsel {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // relative, of every limit
+constexpr double kTolerance = 1e-6;  // relative tolerance of every limit
 constexpr double kRounding =
-    1e-12;  // of positions [rad], of velocities [rad/s] and accelerations [rad/s^2]
+    1e-12;  // of positions [rad], velocities [rad/s] and accelerations [rad/s^2]
 
 using Reason = SetpointRefusal::Reason;
 

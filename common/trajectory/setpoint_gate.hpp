@@ -1,4 +1,4 @@
-// The robot side's own check of every set-point, whoever sent it: bounds, and finite differences
+// The robot side's own check of every set-point of any sender: bounds, and finite differences
 // against the set-point followed before. Pure, no heap after construction.
 #pragma once
 
@@ -53,7 +53,7 @@ class SetpointGate {
   /// The next set-point is the first: it must continue from rest at its own position. Whether that
   /// position may be followed is the caller's.
   void restart() { has_previous_ = false; }
-  /// Checks a set-point that arrived at `now` [s], by a clock that never stands still; one that is
+  /// Checks a set-point that arrived at `now` [s], by a clock that never stops; one that is
   /// not refused becomes the one the next is checked against. The vectors have as many elements as
   /// there are axes.
   SetpointRefusal check(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity,

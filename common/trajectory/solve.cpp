@@ -27,20 +27,21 @@ std::string axis_reason(Eigen::Index axis, const std::string& what) {
   return "axis " + std::to_string(axis) + ": " + what;
 }
 
-/// Imposed duration, or every axis as fast as it can; empty, or why not.
+/// Solves for the imposed duration, or each axis in min time; returns the reason of a failure, or
+/// an empty text.
 std::string one_by_one(const MotionState3& from, const MotionState3& to,
                        const KinematicLimits& limits, std::optional<double> imposed,
                        std::vector<AxisProfile>& profiles, Solution& out) {
   const auto n = static_cast<Eigen::Index>(profiles.size());
   std::vector<AxisProblem> problems(profiles.size());
-  double longest = 0;
+  double max_duration = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     AxisProblem& problem = problems[static_cast<std::size_t>(i)];
     const AxisOutcome outcome =
         problem.init(state_of(from, i), state_of(to, i), limits_of(limits, i));
     if (outcome != AxisOutcome::ok) return axis_reason(i, reason(outcome));
     out.min_durations.push_back(problem.minimum());
-    longest = std::max(longest, problem.minimum());
+    max_duration = std::max(max_duration, problem.minimum());
     if (imposed && *imposed < problem.minimum() * (1 - 1e-12)) {
       return axis_reason(i, "needs " + std::to_string(problem.minimum()) + " s, imposed are " +
                                 std::to_string(*imposed) + " s");
@@ -51,10 +52,10 @@ std::string one_by_one(const MotionState3& from, const MotionState3& to,
     AxisProfile& profile = profiles[static_cast<std::size_t>(i)];
     if (!imposed) {
       problem.minimum_profile(profile);
-      if (problem.minimum() == longest) continue;
+      if (problem.minimum() == max_duration) continue;
       if (to.velocity[i] != 0 || to.acceleration[i] != 0)
         return axis_reason(i, "ends early and moving, so it cannot wait for the others");
-      profile.push(longest - problem.minimum(), 0);
+      profile.push(max_duration - problem.minimum(), 0);
     } else if (problem.profile(*imposed, profile) != AxisOutcome::ok) {
       const auto three = three_segment(state_of(from, i), state_of(to, i), *imposed);
       out.excess =

@@ -79,11 +79,11 @@ Trajectory stop_trajectory(const MotionState3& state, const KinematicLimits& lim
     out.axes.push_back({{state.position[i], state.velocity[i], state.acceleration[i]},
                         {p.segments.begin(), p.segments.begin() + p.count}});
   }
-  const double longest = out.duration();
+  const double max_duration = out.duration();
   for (AxisTrajectory& axis : out.axes) {
     double sum = 0;
     for (const Segment& s : axis.segments) sum += s.duration;
-    if (sum < longest) axis.segments.push_back({longest - sum, 0});
+    if (sum < max_duration) axis.segments.push_back({max_duration - sum, 0});
   }
   return out;
 }

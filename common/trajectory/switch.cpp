@@ -11,8 +11,8 @@ namespace handsel {
 namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-6;
-constexpr double kShortest = 1e-13;  // [s]
-constexpr double kRounding = 1e-11;  // [rad], [rad/s], [rad/s^2]
+constexpr double kMinDuration = 1e-13;  // min duration of a segment [s]
+constexpr double kRounding = 1e-11;     // [rad], [rad/s], [rad/s^2]
 }  // namespace
 
 const char* reason(SwitchOutcome outcome) noexcept {
@@ -87,17 +87,17 @@ bool TrajectorySwitch::best_place(const MotionState3& now, const SegmentTable& n
   const int tries = std::max(2, settings.tries);
   const double spacing = (last - first) / (tries - 1);
   double best = kNever;
-  const auto look = [&](double t) {
+  const auto evaluate = [&](double t) {
     const double total = meeting(now, next, limits, t, 0) - t;
     if (total < best - 1e-12) best = total, join_ = t;
   };
-  for (int k = 0; k < tries; ++k) look(k + 1 == tries ? last : first + k * spacing);
+  for (int k = 0; k < tries; ++k) evaluate(k + 1 == tries ? last : first + k * spacing);
   if (best == kNever) return false;
   double reach = spacing / 2;
   while (reach > 1e-3) {
     const double centre = join_;
-    look(std::max(first, centre - reach));
-    look(std::min(last, centre + reach));
+    evaluate(std::max(first, centre - reach));
+    evaluate(std::min(last, centre + reach));
     reach /= 2;
   }
   connect_ = meeting(now, next, limits, join_, 0);
@@ -170,10 +170,10 @@ SwitchOutcome TrajectorySwitch::plan(const MotionState3& now, const SegmentTable
              std::abs(leads_to) > V * allowed;
   }
   if (beyond) return SwitchOutcome::start_beyond_limits;
-  for (const double share : {reserve, std::sqrt(reserve), 1.0}) {
-    reduced_.velocity = limits.velocity / share;
-    reduced_.acceleration = limits.acceleration / share;
-    reduced_.jerk = limits.jerk / share;
+  for (const double scale : {reserve, std::sqrt(reserve), 1.0}) {
+    reduced_.velocity = limits.velocity / scale;
+    reduced_.acceleration = limits.acceleration / scale;
+    reduced_.jerk = limits.jerk / scale;
     const bool found = settings.on_clock ? earliest_meeting(now, next, reduced_, settings)
                                          : best_place(now, next, reduced_, settings);
     if (found && make_profiles(now, limits)) return SwitchOutcome::ok;
@@ -205,7 +205,7 @@ void TrajectorySwitch::add_to(SegmentTable& out, const SegmentTable& next) noexc
         left_[i] = ++at_[i] < profiles_[i].count ? profiles_[i].segments[at_[i]].duration : kNever;
     }
     t += step;
-    if (step > kShortest)
+    if (step > kMinDuration)
       out.add(step, there_.position.data(), there_.velocity.data(), there_.acceleration.data(),
               jerk_.data());
   }
@@ -232,12 +232,12 @@ AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLi
 
 void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out,
               MotionState3& state) noexcept {
-  if (!(end - begin > kShortest)) return;
+  if (!(end - begin > kMinDuration)) return;
   int cursor = 0;
   for (int k = from.find(begin, 0); k < from.segments() && from.knot(k) < end; ++k) {
     const double start = std::max(begin, from.knot(k)),
                  length = std::min(end, from.knot(k + 1)) - start;
-    if (!(length > kShortest)) continue;
+    if (!(length > kMinDuration)) continue;
     cursor = k;
     from.evaluate(start, cursor, state);
     out.add(length, state.position.data(), state.velocity.data(), state.acceleration.data(),

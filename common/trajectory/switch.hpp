@@ -2,7 +2,7 @@
 // on-line). Own method: a search over where to join, so that the end of the new trajectory is
 // reached first.
 //
-// A motion of least time, all axes ending together, leads from the present state to a state of the
+// A motion of min time, all axes ending together, leads from the present state to a state of the
 // other trajectory; of the places where it can be joined the one is taken from which its end is
 // reached first. Velocity and acceleration are continuous, the limits hold exactly.
 #pragma once

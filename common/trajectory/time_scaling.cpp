@@ -11,17 +11,17 @@
 namespace handsel {
 
 namespace {
-// Of the guard: what is planned with leaves something for what happens between two steps, and for
-// rounding of what was planned.
+// Fraction of the guard limits used for planning, which leaves a margin for the motion between two
+// steps and for rounding.
 constexpr double kMargin = 0.99;
 constexpr double kAllowed = 1 + 5e-7;
 constexpr double kWhole = 1 - 1e-4;
-constexpr double kMaxPush = 0.8;   // alpha'' times the step [1/s]: what alpha' changes by in one
-constexpr double kMaxRate = 28.0;  // [1/s]
-constexpr int kHorizon = 600;      // steps of a way back to constant alpha
+constexpr double kMaxPush = 0.8;   // max change of alpha' in one step [1/s]
+constexpr double kMaxRate = 28.0;  // max alpha' [1/s]
+constexpr int kHorizon = 600;      // max steps of a recovery to constant alpha
 constexpr double kLanded = 1e-9;
 
-/// What happens to tau, alpha and its rate in a time of constant alpha''.
+/// Returns tau, alpha and its rate after a time of constant alpha''.
 template <typename State>
 State moved(const State& s, double u, double t) noexcept {
   return {s.tau + t * (s.alpha + t * (s.beta / 2 + t * u / 6)), s.alpha + t * (s.beta + t * u / 2),
@@ -211,7 +211,8 @@ bool TimeScaling::pushes(const Now& s, const Rates& begin, const Rates& end,
   range[1] = std::min(kMaxPush / h, (kMaxRate - s.beta) / h);
   bool possible = kernels.push_range(at, begin.data(), end.data(), range);
   const int from = std::min(begin.segment, end.segment), to = std::max(begin.segment, end.segment);
-  // Where a step ends is known up to what alpha'' adds; a knot that near is passed, or not.
+  // The end of a step is known up to the effect of alpha''; whether so near a knot is passed is
+  // unknown.
   const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h / 6,
                stop = s.tau + span;
   const bool on = span >= 0 && to + 1 < table_.segments() && table_.knot(to + 1) - stop < unsure;
@@ -232,8 +233,8 @@ bool TimeScaling::holds(const Now& s, const Now& next, double push) const noexce
                                             begin_.data(), end_.data());
 }
 
-/// False if the way back to a constant alpha leaves the limits anywhere; where alpha leaves its
-/// range, that is what it ends with.
+/// Computes the recovery to a constant alpha; returns false if it violates a limit. If alpha leaves
+/// its range, the recovery ends with that value.
 bool TimeScaling::recover(Now s, Recovery& out) noexcept {
   const auto allowed = [this](double alpha) {
     return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded;
@@ -285,27 +286,27 @@ double TimeScaling::choose() noexcept {
                           ? recovery_.pushes[static_cast<std::size_t>(recovery_.next)]
                           : 0.0,
                full = range[want > 0] - safe;
-  const auto miss = [&](double share, double* out) {
-    const double u = safe + share * full;
+  const auto miss = [&](double ratio, double* out) {
+    const double u = safe + ratio * full;
     const Now next = next_of(now_, u);
     rates_at(now_.tau, begin_);
     rates_at(next.tau, end_);
     if (!holds(now_, next, u)) return false;
     const bool kept = recover(next, tried_);
     *out = (target_ - tried_.end) * (want > 0 ? 1 : -1);
-    return kept || *out < 0;  // beyond its range alpha is also beyond the target: too far
+    return kept || *out < 0;  // outside its range alpha is also beyond the target: too far
   };
-  const auto go = [&](double share, Recovery& with) {
+  const auto go = [&](double ratio, Recovery& with) {
     std::swap(recovery_, with);
-    return safe + share * full;
+    return safe + ratio * full;
   };
-  double share = 1, left = 0;
-  while (!miss(share, &left)) {
-    share /= 2;
-    if (share < 0.006) return recovery_.take();
+  double ratio = 1, left = 0;
+  while (!miss(ratio, &left)) {
+    ratio /= 2;
+    if (ratio < 0.006) return recovery_.take();
   }
-  if (left >= -kLanded) return go(share, tried_);
-  double under = 0, over = share, left_under = std::abs(want), left_over = left;
+  if (left >= -kLanded) return go(ratio, tried_);
+  double under = 0, over = ratio, left_under = std::abs(want), left_over = left;
   for (int k = 0; k < 20; ++k) {
     double middle = under + (over - under) * left_under / (left_under - left_over);
     if (k % 4 == 3) middle = 0.5 * (under + over);

@@ -7,13 +7,13 @@
 namespace handsel {
 
 double Trajectory::duration() const {
-  double longest = 0;
+  double max_duration = 0;
   for (const AxisTrajectory& axis : axes) {
     double sum = 0;
     for (const Segment& s : axis.segments) sum += s.duration;
-    longest = std::max(longest, sum);
+    max_duration = std::max(max_duration, sum);
   }
-  return longest;
+  return max_duration;
 }
 
 void Trajectory::sample(double t, MotionState3& out) const noexcept {

@@ -59,7 +59,7 @@ void describe(WireIo& io, HumanObservation& m, handsel_HumanObservation& w) {
   io.text("source", m.source, w.source, Text::name);
   io.stamp(m.stamp, w.stamp);
   io.part("coverage", m.coverage, w.coverage);
-  // A person left out may be anywhere: then the source has shown no place to be empty.
+  // An omitted person may be anywhere: then the source has observed no region as empty.
   if (io.spared_list("people", m.people, w.people, 256) > 0) m.coverage.high = m.coverage.low;
 }
 

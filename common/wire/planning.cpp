@@ -64,7 +64,8 @@ void describe(WireIo& io, PathRequest& m, handsel_PathRequest& w) {
   io.text("group", m.group, w.group, Text::name);
   io.choice("space", m.space, w.space, kSpaces);
   io.vector("start", m.start, w.start, kCoordinate);
-  io.list("goals", m.goals, w.goals, 64, true);  // any of them: the first ones do
+  io.list("goals", m.goals, w.goals, 64,
+          true);  // alternatives: the first ones suffice
   io.list("poses", m.poses, w.poses, 64, true);
   io.indices("also", m.also, w.also, kMaxAxes, kMaxAxes - 1);
   io.vector("also_goal", m.also_goal, w.also_goal, kCoordinate);

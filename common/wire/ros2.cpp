@@ -11,14 +11,13 @@
 namespace handsel {
 namespace {
 
-constexpr double kLargest =
-    1e4;  // [m], [rad], and their first derivatives, as everywhere on our wire
-constexpr double kForce = 1e5;    // [N], [Nm]
-constexpr double kUnit = 1e-3;    // of a quaternion's norm
-constexpr double kLongest = 1e4;  // [s] of a trajectory
+constexpr double kMaxValue = 1e4;     // as in all messages: [m], [rad], and their first derivatives
+constexpr double kForce = 1e5;        // [N], [Nm]
+constexpr double kUnit = 1e-3;        // max deviation of a quaternion's norm from 1
+constexpr double kMaxDuration = 1e4;  // max duration of a trajectory [s]
 
-/// Says once what is wrong.
-struct Judge {
+/// Records the first error of a message.
+struct ReadCheck {
   std::string& why;
   bool good{true};
   bool fail(const std::string& field, const std::string& sentence) {
@@ -35,13 +34,13 @@ void put(Stamp stamp, builtin_interfaces_msg_dds__Time_& out) {
   out.nanosec_ = static_cast<std::uint32_t>(stamp % 1'000'000'000);
 }
 
-std::string text_of(Judge& judge, const char* field, const char* text) {
+std::string text_of(ReadCheck& check, const char* field, const char* text) {
   std::string value = text ? text : "";
   const bool printable =
       std::all_of(value.begin(), value.end(), [](char c) { return c > 31 && c < 127; });
   if (value.size() > kRosText)
-    judge.fail(field, "is longer than " + std::to_string(kRosText) + " bytes");
-  if (!printable) judge.fail(field, "holds bytes that are not printable ASCII");
+    check.fail(field, "is longer than " + std::to_string(kRosText) + " bytes");
+  if (!printable) check.fail(field, "holds bytes that are not printable ASCII");
   return value;
 }
 
@@ -51,24 +50,24 @@ void put(const std::string& text, char*& out) {
 }
 
 template <class Seq>
-void texts_of(Judge& judge, const char* field, const Seq& seq, std::size_t most,
+void texts_of(ReadCheck& check, const char* field, const Seq& seq, std::size_t max_count,
               std::vector<std::string>& out) {
   out.clear();
-  if (seq._length > most) {
-    judge.fail(field, "has " + std::to_string(seq._length) + " elements, at most " +
-                          std::to_string(most) + " are taken");
+  if (seq._length > max_count) {
+    check.fail(field, "has " + std::to_string(seq._length) + " elements, at most " +
+                          std::to_string(max_count) + " are taken");
     return;
   }
-  for (std::uint32_t i = 0; i < seq._length && judge.good; ++i)
-    out.push_back(text_of(judge, field, seq._buffer[i]));
+  for (std::uint32_t i = 0; i < seq._length && check.good; ++i)
+    out.push_back(text_of(check, field, seq._buffer[i]));
 }
 
-/// As many as `count`, or none.
+/// Reads exactly `count` numbers, or none.
 template <class Seq>
-void numbers_of(Judge& judge, const char* field, const Seq& seq, std::size_t count, double largest,
-                Vector& out) {
+void numbers_of(ReadCheck& check, const char* field, const Seq& seq, std::size_t count,
+                double largest, Vector& out) {
   if (seq._length != count && seq._length != 0) {
-    judge.fail(field, "has " + std::to_string(seq._length) + " elements for " +
+    check.fail(field, "has " + std::to_string(seq._length) + " elements for " +
                           std::to_string(count) + " names");
     return;
   }
@@ -76,7 +75,7 @@ void numbers_of(Judge& judge, const char* field, const Seq& seq, std::size_t cou
   for (std::uint32_t i = 0; i < seq._length; ++i) {
     out[i] = seq._buffer[i];
     if (std::abs(out[i]) <= largest) continue;
-    judge.fail(std::string(field) + "[" + std::to_string(i) + "]",
+    check.fail(std::string(field) + "[" + std::to_string(i) + "]",
                std::isfinite(out[i]) ? "is out of range" : "is not finite");
     return;
   }
@@ -109,13 +108,13 @@ void put_header(Stamp stamp, const std::string& frame, std_msgs_msg_dds__Header_
   put(frame, out.frame_id_);
 }
 
-bool read(const sensor_msgs_msg_dds__JointState_& w, ros2::JointState& m, Judge& judge) {
+bool read(const sensor_msgs_msg_dds__JointState_& w, ros2::JointState& m, ReadCheck& check) {
   m.stamp = stamp_of(w.header_.stamp_);
-  texts_of(judge, "name", w.name_, kRosJoints, m.names);
-  numbers_of(judge, "position", w.position_, m.names.size(), kLargest, m.position);
-  numbers_of(judge, "velocity", w.velocity_, m.names.size(), kLargest, m.velocity);
-  numbers_of(judge, "effort", w.effort_, m.names.size(), kForce, m.effort);
-  return judge.good;
+  texts_of(check, "name", w.name_, kRosJoints, m.names);
+  numbers_of(check, "position", w.position_, m.names.size(), kMaxValue, m.position);
+  numbers_of(check, "velocity", w.velocity_, m.names.size(), kMaxValue, m.velocity);
+  numbers_of(check, "effort", w.effort_, m.names.size(), kForce, m.effort);
+  return check.good;
 }
 
 void write(const ros2::JointState& m, sensor_msgs_msg_dds__JointState_& w) {
@@ -127,27 +126,27 @@ void write(const ros2::JointState& m, sensor_msgs_msg_dds__JointState_& w) {
 }
 
 bool read(const trajectory_msgs_msg_dds__JointTrajectory_& w, ros2::JointTrajectory& m,
-          Judge& judge) {
+          ReadCheck& check) {
   m.stamp = stamp_of(w.header_.stamp_);
-  texts_of(judge, "joint_names", w.joint_names_, kRosJoints, m.joint_names);
+  texts_of(check, "joint_names", w.joint_names_, kRosJoints, m.joint_names);
   if (w.points_._length > kRosPoints)
-    return judge.fail("points", "are more than " + std::to_string(kRosPoints));
+    return check.fail("points", "are more than " + std::to_string(kRosPoints));
   m.points.assign(w.points_._length, {});
   double before = 0;
-  for (std::uint32_t i = 0; i < w.points_._length && judge.good; ++i) {
+  for (std::uint32_t i = 0; i < w.points_._length && check.good; ++i) {
     const auto& point = w.points_._buffer[i];
     const std::string field = "points[" + std::to_string(i) + "].";
-    numbers_of(judge, (field + "positions").c_str(), point.positions_, m.joint_names.size(),
-               kLargest, m.points[i].positions);
-    if (point.positions_._length == 0) return judge.fail(field + "positions", "are missing");
+    numbers_of(check, (field + "positions").c_str(), point.positions_, m.joint_names.size(),
+               kMaxValue, m.points[i].positions);
+    if (point.positions_._length == 0) return check.fail(field + "positions", "are missing");
     m.points[i].time_from_start =
         point.time_from_start_.sec_ + 1e-9 * point.time_from_start_.nanosec_;
-    if (m.points[i].time_from_start < before || m.points[i].time_from_start > kLongest)
-      return judge.fail(field + "time_from_start", "is not between that of the point before and " +
-                                                       std::to_string(int(kLongest)) + " s");
+    if (m.points[i].time_from_start < before || m.points[i].time_from_start > kMaxDuration)
+      return check.fail(field + "time_from_start", "is not between that of the point before and " +
+                                                       std::to_string(int(kMaxDuration)) + " s");
     before = m.points[i].time_from_start;
   }
-  return judge.good;
+  return check.good;
 }
 
 void write(const ros2::JointTrajectory& m, trajectory_msgs_msg_dds__JointTrajectory_& w) {
@@ -165,34 +164,34 @@ void write(const ros2::JointTrajectory& m, trajectory_msgs_msg_dds__JointTraject
   }
 }
 
-std::string frame_of(Judge& judge, const std::string& field, const char* text) {
-  const std::string frame = text_of(judge, field.c_str(), text);
-  if (frame.empty() || frame == "/") judge.fail(field, "is empty");
+std::string frame_of(ReadCheck& check, const std::string& field, const char* text) {
+  const std::string frame = text_of(check, field.c_str(), text);
+  if (frame.empty() || frame == "/") check.fail(field, "is empty");
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
 
-bool read(const tf2_msgs_msg_dds__TFMessage_& w, ros2::Transforms& m, Judge& judge) {
+bool read(const tf2_msgs_msg_dds__TFMessage_& w, ros2::Transforms& m, ReadCheck& check) {
   if (w.transforms_._length > kRosTransforms)
-    return judge.fail("transforms", "are more than " + std::to_string(kRosTransforms));
+    return check.fail("transforms", "are more than " + std::to_string(kRosTransforms));
   m.transforms.assign(w.transforms_._length, {});
-  for (std::uint32_t i = 0; i < w.transforms_._length && judge.good; ++i) {
+  for (std::uint32_t i = 0; i < w.transforms_._length && check.good; ++i) {
     const auto& from = w.transforms_._buffer[i];
     ros2::Transform& to = m.transforms[i];
     const std::string field = "transforms[" + std::to_string(i) + "].";
     to.stamp = stamp_of(from.header_.stamp_);
-    to.parent = frame_of(judge, field + "header.frame_id", from.header_.frame_id_);
-    to.child = frame_of(judge, field + "child_frame_id", from.child_frame_id_);
+    to.parent = frame_of(check, field + "header.frame_id", from.header_.frame_id_);
+    to.child = frame_of(check, field + "child_frame_id", from.child_frame_id_);
     const auto& t = from.transform_.translation_;
     const auto& q = from.transform_.rotation_;
     const Vector3 p(t.x_, t.y_, t.z_);
-    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kLargest)
-      judge.fail(field + "translation", "is not finite within 1e4 m");
+    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kMaxValue)
+      check.fail(field + "translation", "is not finite within 1e4 m");
     const Eigen::Quaterniond rotation(q.w_, q.x_, q.y_, q.z_);
     if (!(std::abs(rotation.norm() - 1) <= kUnit))
-      judge.fail(field + "rotation", "is no unit quaternion");
+      check.fail(field + "rotation", "is no unit quaternion");
     to.T_parent_child = make_pose(p, rotation.normalized());
   }
-  return judge.good;
+  return check.good;
 }
 
 void write(const ros2::Transforms& m, tf2_msgs_msg_dds__TFMessage_& w) {
@@ -209,10 +208,10 @@ void write(const ros2::Transforms& m, tf2_msgs_msg_dds__TFMessage_& w) {
   }
 }
 
-bool read(const hri_msgs_msg_dds__IdsList_& w, ros2::Ids& m, Judge& judge) {
+bool read(const hri_msgs_msg_dds__IdsList_& w, ros2::Ids& m, ReadCheck& check) {
   m.stamp = stamp_of(w.header_.stamp_);
-  texts_of(judge, "ids", w.ids_, kRosJoints, m.ids);
-  return judge.good;
+  texts_of(check, "ids", w.ids_, kRosJoints, m.ids);
+  return check.good;
 }
 
 void write(const ros2::Ids& m, hri_msgs_msg_dds__IdsList_& w) {
@@ -220,9 +219,9 @@ void write(const ros2::Ids& m, hri_msgs_msg_dds__IdsList_& w) {
   put(m.ids, w.ids_);
 }
 
-bool read(const std_msgs_msg_dds__String_& w, ros2::Text& m, Judge& judge) {
-  m.data = text_of(judge, "data", w.data_);
-  return judge.good;
+bool read(const std_msgs_msg_dds__String_& w, ros2::Text& m, ReadCheck& check) {
+  m.data = text_of(check, "data", w.data_);
+  return check.good;
 }
 
 void write(const ros2::Text& m, std_msgs_msg_dds__String_& w) { put(m.data, w.data_); }
@@ -238,7 +237,7 @@ Stamp stamp_in(const tf2_msgs_msg_dds__TFMessage_& w) {
   return w.transforms_._length > 0 ? stamp_of(w.transforms_._buffer[0].header_.stamp_) : 0;
 }
 
-/// Name and row live in the type.
+/// Name and row are part of the type.
 template <class M, class W>
 class RosType final : public MessageType {
  public:
@@ -258,15 +257,15 @@ class RosType final : public MessageType {
   using MessageType::from_wire;
   bool from_wire(const void* wire, void* message, std::string& why,
                  LeftOutElements&) const override {
-    Judge judge{why};
-    if (read(*static_cast<const W*>(wire), *static_cast<M*>(message), judge)) return true;
+    ReadCheck check{why};
+    if (read(*static_cast<const W*>(wire), *static_cast<M*>(message), check)) return true;
     why = topic_ + ": " + why;
     return false;
   }
   Stamp stamp(const void* wire) const override { return stamp_in(*static_cast<const W*>(wire)); }
   void set_stamp(void*, Stamp) const override {}
   std::string_view key(const void*) const override { return {}; }
-  /// Of our own messages only; those of others have no viewer and no tests that walk them.
+  /// Converts own messages only; foreign ones have no viewer and no generic tests.
   std::string to_json(const void*) const override {
     return std::string("{\"type\":\"") + row_.type + "\"}";
   }

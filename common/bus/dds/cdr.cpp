@@ -10,8 +10,7 @@
 namespace handsel {
 namespace {
 
-/// Without a network no port of the machine is needed, so none can be taken. Above the domains that
-/// a system may have.
+/// Domain above those that a system may have. Without a network it needs no port, so it is free.
 constexpr dds_domainid_t kOwn = 231;
 constexpr const char* kNoNetwork =
     "<CycloneDDS><Domain><General><Transport>none</Transport></General></Domain></CycloneDDS>";
@@ -28,14 +27,14 @@ dds_entity_t need(dds_entity_t entity, const char* what) {
 struct CdrCodec::Impl {
   dds_entity_t domain{}, participant{};
   std::map<const MessageType*, ddsi_serdata*>
-      samples;  ///< one of each type met, for the sake of what it knows of the type
+      samples;  ///< one sample per type, which gives its serialization type
 
   ~Impl() {
     for (const auto& [type, sample] : samples) ddsi_serdata_unref(sample);
     if (domain > 0) dds_delete(domain);
   }
 
-  /// The transport tells of a type only through a sample that went through it.
+  /// Returns the serialization type, which the transport reveals only through a sample.
   const ddsi_sertype* sertype(const MessageType& type) {
     ddsi_serdata*& sample = samples[&type];
     if (sample) return sample->type;
@@ -81,7 +80,7 @@ bool CdrCodec::decode(const MessageType& type, const std::vector<std::uint8_t>& 
   constexpr std::size_t kEncapsulation = 4;
   if (cdr.size() <= kEncapsulation) return false;
   ddsrt_iovec_t bytes{};
-  bytes.iov_base = const_cast<std::uint8_t*>(cdr.data());  // only read
+  bytes.iov_base = const_cast<std::uint8_t*>(cdr.data());  // read only
   bytes.iov_len = cdr.size();
   ddsi_serdata* data =
       ddsi_serdata_from_ser_iov(impl_->sertype(type), SDK_DATA, 1, &bytes, cdr.size());

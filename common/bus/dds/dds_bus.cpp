@@ -32,8 +32,8 @@ namespace {
 
 constexpr Duration kDdsHealthPeriod = std::chrono::milliseconds(100);
 constexpr Duration kRetryPeriod = std::chrono::milliseconds(5);
-constexpr std::size_t kQueueBound = 64;  // requests and replies that wait for room in the transport
-constexpr int kSamplesPerTurn = 64;      // then other topics have their turn
+constexpr std::size_t kQueueBound = 64;  // max requests and replies waiting for the transport
+constexpr int kSamplesPerTurn = 64;  // max samples of a topic before other topics have their turn
 
 Stamp system_now() {
   timespec t{};
@@ -81,10 +81,10 @@ struct DdsBus::Impl {
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
-  std::uint64_t simulator{};  // that gives the pace, its incarnation
-  Reader* pace{};             // of sim_clock, where that is followed
+  std::uint64_t simulator{};  // incarnation of the simulator that grants time
+  Reader* pace{};             // reader of sim_clock, if simulated time is followed
   std::unique_ptr<WriterDiscovery>
-      discovery;  // from the first reader of a topic with one writer on
+      discovery;  // created with the first reader of a topic with one writer
   std::atomic<bool> discovery_news{false};
   std::uint64_t incarnation{};
   HealthState state{HealthState::starting};
@@ -101,16 +101,16 @@ struct DdsBus::Impl {
   void log(const std::string& what) const {
     std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str());
   }
-  /// The system clock, standing still while this component's time does.
+  /// Returns the system clock; it is at rest while this component's time is.
   Stamp stamp_now() { return system_now() - (monotonic_now() - executor.now()).count(); }
-  /// A topic entity of the reader's own whose filter is the reader's gate.
+  /// Creates a topic entity for one reader, filtered by the reader's gate.
   dds_entity_t gated_topic(Reader& reader) {
     const dds_entity_t entity = topics.make(reader.intake.type());
     reader.gate.filter(entity, [this, &reader] { mark(reader); });
     return entity;
   }
   void mark(Reader& reader);
-  /// Adds the reader to those that drain() serves.
+  /// Adds the reader to the queue of drain().
   void queue(Reader& reader);
   void drain();
   bool knows_time();
@@ -215,7 +215,7 @@ void DdsBus::Impl::mark(Reader& reader) {
   executor.wake();
 }
 
-/// Takes the news of who writes the topics with one writer to their readers.
+/// Reports changes of the writers of topics with one writer to their readers.
 void DdsBus::Impl::discover_writers() {
   if (!discovery) return;
   discovery->take(
@@ -231,7 +231,7 @@ void DdsBus::Impl::discover_writers() {
       });
 }
 
-/// Tells a new reader who writes its topic.
+/// Reports the known writers of its topic to a new reader.
 void DdsBus::Impl::follow_writers(Reader& reader) {
   if (!has_one_writer(reader.intake.type().row())) return;
   if (!discovery) {
@@ -247,9 +247,9 @@ void DdsBus::Impl::follow_writers(Reader& reader) {
   reader.gate.open_for(reader.intake.pinned());
 }
 
-/// Returns whether this component knows how far time has advanced. A process that has been stopped
-/// does so with the next grant; what has arrived is not taken before: it would have arrived in the
-/// past, and everything later would count as late.
+/// Returns whether this component knows the present time. A process that was stopped knows it from
+/// the next grant on; samples are not taken before that, as they would arrive in the past and all
+/// later ones would count as late.
 bool DdsBus::Impl::knows_time() {
   if (pace == nullptr || !executor.stale()) return true;
   pace->pending.store(false, std::memory_order_release);
@@ -258,7 +258,7 @@ bool DdsBus::Impl::knows_time() {
 }
 
 void DdsBus::Impl::drain() {
-  if (!knows_time()) return;  // the grant wakes this executor
+  if (!knows_time()) return;  // the next grant wakes this executor
   if (discovery_news.exchange(false, std::memory_order_acq_rel)) discover_writers();
   {
     const std::lock_guard lock(pending_mutex);
@@ -303,7 +303,7 @@ void DdsBus::Impl::look_at_matching(Reader& reader) {
   status.writers = alive;
 }
 
-/// Answers every grant, so that the simulator knows this component has had its turn.
+/// Acknowledges every grant, so that the simulator knows this component has had its turn.
 void DdsBus::Impl::follow_pace(const SimClock& clock) {
   if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)),
                        from_seconds(clock.waited)}))
@@ -318,7 +318,7 @@ void DdsBus::Impl::follow_pace(const SimClock& clock) {
   reached->publish(reached_message);
 }
 
-/// Heartbeats say that the process lives: they come in real time.
+/// Publishes the heartbeat, in real time, as it shows that the process lives.
 void DdsBus::Impl::publish_health(TimePoint wall) {
   const TimePoint now = executor.now();
   ComponentHealth& m = health_message;
@@ -359,7 +359,7 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
 
 DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   use_default_dds_configuration();
-  // First: the transport's own threads inherit the priority.
+  // This must come first: the threads of the transport inherit the priority.
   impl_->realtime_note = enter_realtime({.cpu = settings.cpu,
                                          .wanted = settings.realtime,
                                          .priority = static_cast<int>(settings.urgency)});
@@ -471,11 +471,11 @@ std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type, RawDepth de
 std::uint32_t DdsBus::domain() const { return impl_->settings.domain; }
 
 Duration DdsBus::lag_any(const MessageType& type) const {
-  Duration least = Duration::max();
+  Duration min_age = Duration::max();
   for (const auto& reader : impl_->readers)
     if (&reader->intake.type() == &type)
-      least = std::min(least, reader->intake.status().age(now()));
-  return least;
+      min_age = std::min(min_age, reader->intake.status().age(now()));
+  return min_age;
 }
 
 const TimerStatus& DdsBus::every(Duration period, std::function<void(TimePoint)> on_tick) {

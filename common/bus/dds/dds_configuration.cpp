@@ -47,8 +47,8 @@ std::string text_of(const XMLElement& element) {
 std::optional<std::uint64_t> bytes_of(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  constexpr double kMost = 1e15;  // [bytes]
-  if (error != std::errc() || !(value >= 0 && value <= kMost)) return std::nullopt;
+  constexpr double kMaxBytes = 1e15;  // [bytes]
+  if (error != std::errc() || !(value >= 0 && value <= kMaxBytes)) return std::nullopt;
   std::string unit(end, text.data() + text.size());
   std::erase(unit, ' ');
   constexpr std::pair<const char*, double> kUnits[] = {
@@ -56,7 +56,7 @@ std::optional<std::uint64_t> bytes_of(const std::string& text) {
       {"MB", 1 << 20}, {"MiB", 1 << 20}, {"GB", 1 << 30}, {"GiB", 1 << 30}};
   for (const auto& [name, factor] : kUnits)
     if (same(unit.c_str(), name))
-      return static_cast<std::uint64_t>(std::min(value * factor, kMost));
+      return static_cast<std::uint64_t>(std::min(value * factor, kMaxBytes));
   return std::nullopt;
 }
 
@@ -135,8 +135,7 @@ DdsConfiguration read_dds_configuration(const std::string& uri, std::uint32_t do
   DdsConfiguration out;
   Configuration configuration(out, domain);
   for (std::size_t begin = 0; begin < uri.size() && out.error.empty();) {
-    // A comma ends an item; inline XML ends with its last closing bracket, commas inside it are its
-    // own.
+    // A comma ends an item; inline XML ends with its last closing bracket and may contain commas.
     std::size_t end = uri.find(',', begin);
     if (uri[begin] == '<') {
       while (end != std::string::npos && uri[uri.find_last_not_of(" \t\r\n", end - 1)] != '>')
@@ -151,7 +150,7 @@ DdsConfiguration read_dds_configuration(const std::string& uri, std::uint32_t do
 
 namespace {
 
-/// What the transport logs while the object lives.
+/// Collects what the transport logs during the lifetime of the object.
 class Log {
  public:
   Log() { dds_set_log_sink(&Log::write, this); }

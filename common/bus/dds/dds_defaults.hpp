@@ -18,7 +18,7 @@ std::string system_name();
 /// Sets CYCLONEDDS_URI when the environment has none. Without $HANDSEL_PEERS: loopback.xml of
 /// `folder`, this machine only. With it: network.xml of `folder`, which discovers by multicast, and
 /// the hosts it names (names or addresses, separated by commas or spaces) as peers; the word
-/// "multicast" alone names nobody else. Changes nothing when the file is not there. Throws
+/// "multicast" alone names no other peer. Changes nothing when the file is not there. Throws
 /// MissingError naming the first host that has no address.
 void use_dds_configuration(const std::filesystem::path& folder);
 

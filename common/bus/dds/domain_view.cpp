@@ -12,16 +12,16 @@
 namespace handsel {
 namespace {
 
-constexpr std::int32_t kMost = 256;
+constexpr std::int32_t kMaxRead = 256;
 
-/// Calls with every living sample of a builtin topic.
+/// Calls a function with every living sample of a builtin topic.
 template <class Sample, class Visit>
 void each(dds_entity_t participant, dds_entity_t topic, Visit visit) {
   const dds_entity_t reader = dds_create_reader(participant, topic, nullptr, nullptr);
   if (reader < 0) return;
-  void* samples[kMost] = {};
-  dds_sample_info_t infos[kMost];
-  const dds_return_t n = dds_read(reader, samples, infos, kMost, kMost);
+  void* samples[kMaxRead] = {};
+  dds_sample_info_t infos[kMaxRead];
+  const dds_return_t n = dds_read(reader, samples, infos, kMaxRead, kMaxRead);
   for (dds_return_t i = 0; i < n; ++i)
     if (infos[i].valid_data && infos[i].instance_state == DDS_IST_ALIVE)
       visit(*static_cast<const Sample*>(samples[i]));

@@ -15,7 +15,7 @@ namespace handsel {
 namespace {
 
 constexpr std::size_t kMaxWriters =
-    1024;  // followed; further ones stay unknown, and their samples are refused
+    1024;  // max writers followed; samples of further ones are refused
 
 std::string own_host() {
   char host[256] = {};
@@ -23,8 +23,8 @@ std::string own_host() {
   return host;
 }
 
-/// When a process of this host started [clock ticks since boot]; 0: it has ended, or cannot be
-/// seen.
+/// Returns the start of a process of this host [clock ticks since boot]; 0 if it has ended or is
+/// not visible.
 std::uint64_t start_of(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string text;

@@ -10,7 +10,7 @@ namespace handsel {
 
 namespace {
 
-constexpr std::size_t kMaxWaitingCalls = 64;  // requests or replies
+constexpr std::size_t kMaxWaitingCalls = 64;  // max waiting requests or replies
 
 bool transient_local(Profile p) { return p == Profile::state || p == Profile::latch; }
 bool best_effort(Profile p) { return p == Profile::sensor || p == Profile::setpoint; }
@@ -19,8 +19,8 @@ std::size_t depth(Profile p) {
   return p == Profile::command || p == Profile::goal ? 8 : 1;
 }
 
-/// Counts the thread's CPU time of a callback for its component. It is for reports and
-/// decides nothing.
+/// Measures the thread's CPU time of a callback for its component. Used in reports only; no effect
+/// on behaviour.
 class Meter {
  public:
   Meter(LocalNetwork::Impl& network, LocalBus* bus);
@@ -30,7 +30,7 @@ class Meter {
 
  private:
   LocalNetwork::Impl& net_;
-  LocalBus* bus_;  // null: nothing is counted
+  LocalBus* bus_;  // null: no measurement
   double begin_{};
 };
 
@@ -131,14 +131,14 @@ void LocalNetwork::Impl::send(Writer& writer, const Sample& sample) {
 }
 
 void LocalNetwork::Impl::travel(Writer& writer, Subscription& to, const Sample& sample) {
-  const Duration on_the_way = delay();
+  const Duration transit = delay();
   const bool lost =
       best_effort(writer.type->row().profile) && settings.loss > 0 && uniform() < settings.loss;
   if (lost || to.bus->killed_ ||
       (writer.bus != to.bus && (writer.bus->isolated_ || to.bus->isolated_)))
     return;
   TimePoint& last = to.last_arrival[writer.id];
-  last = std::max(last + Duration(1), now + on_the_way);
+  last = std::max(last + Duration(1), now + transit);
   schedule(last, nullptr, [this, &to, id = writer.id, sample] { arrive(to, id, sample); });
 }
 

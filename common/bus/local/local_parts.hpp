@@ -98,7 +98,7 @@ struct LocalNetwork::Impl {
   void schedule(TimePoint at, LocalBus* owner, std::function<void()> run);
   /// Handles the next event unless it is after `limit`; returns whether there was one.
   bool step(TimePoint limit);
-  /// Returns a sample that nobody uses any more, or a new one.
+  /// Returns a sample that is no longer used, or a new one.
   Sample sample(const MessageType& type);
   /// Returns the bus of a living component. Throws std::invalid_argument.
   LocalBus& find(const std::string& component);

@@ -15,10 +15,10 @@ namespace {
 
 namespace stdx = std::experimental;
 
-constexpr double kLargestCell = 0.008;  // [m]
-constexpr std::size_t kMostTriangles = 20000;
-constexpr double kLattice = 300;  // candidate centres in the bounding box
-constexpr int kClimbs = 6;        // steps of a candidate away from the nearest surface
+constexpr double kMaxCell = 0.008;  // max cell size [m]
+constexpr std::size_t kMaxTriangles = 20000;
+constexpr double kLattice = 300;  // number of candidate centres in the bounding box
+constexpr int kClimbs = 6;        // number of steps of a candidate away from the nearest surface
 
 struct Bounds {
   Vector3 low{Vector3::Constant(std::numeric_limits<double>::infinity())}, high{-low};
@@ -36,7 +36,7 @@ Bounds bounds(const std::vector<Vector3>& points) {
 
 double cell_size(const Vector3& extents) {
   const double middle = extents.sum() - extents.maxCoeff() - extents.minCoeff();
-  return std::clamp(middle / 8, 0.002, kLargestCell * std::max(1.0, extents.maxCoeff() / 0.6));
+  return std::clamp(middle / 8, 0.002, kMaxCell * std::max(1.0, extents.maxCoeff() / 0.6));
 }
 
 }  // namespace
@@ -67,7 +67,8 @@ CoverSolid box_cells(const Vector3& size) {
   return solid;
 }
 
-/// Rings of wedges, the outer corners outside the circle so that their chords hold the arc.
+/// Returns rings of wedges whose outer corners lie outside the circle, so that their chords enclose
+/// the arc.
 CoverSolid cylinder_cells(double radius, double length) {
   CoverSolid solid;
   solid.volume = true;
@@ -101,7 +102,7 @@ CoverSolid cylinder_cells(double radius, double length) {
 
 namespace {
 
-/// Halves triangles at their longest edge until none is longer than `cell`.
+/// Halves triangles at their longest edge until no edge exceeds `cell` [m].
 void cut(CoverSolid& solid, const TriangleMesh& mesh, double cell) {
   solid.points = mesh.vertices;
   solid.corners = 3;
@@ -139,7 +140,7 @@ void cut(CoverSolid& solid, const TriangleMesh& mesh, double cell) {
   }
 }
 
-/// Very fine meshes: the cubes their triangles pass through.
+/// Adds, for very fine meshes, the cubes that their triangles intersect.
 void cubes(CoverSolid& solid, const TriangleMesh& mesh, double cell) {
   std::unordered_map<std::uint64_t, int> corner;
   std::unordered_map<std::uint64_t, bool> seen;
@@ -174,8 +175,8 @@ void cubes(CoverSolid& solid, const TriangleMesh& mesh, double cell) {
   }
 }
 
-/// Depth from samples of the surface: nearest of them, and whether the solid angle of the surface
-/// says inside.
+/// Depth estimated from samples of the surface: distance to the nearest, and inside or outside by
+/// the solid angle of the surface.
 struct SampledDepth {
   using F = stdx::native_simd<float>;
   static F row(const std::vector<float>& values, std::size_t i) {
@@ -207,7 +208,7 @@ struct SampledDepth {
     }
     return std::abs(static_cast<double>(reduce(angle))) > 2 * M_PI ? nearest(p) : -nearest(p);
   }
-  /// To whole registers: the last point again, no area.
+  /// Pads to whole registers with the last point, without area.
   void fill() {
     while (point[0].size() % F::size() != 0)
       for (auto& values : point) values.push_back(values.back());
@@ -231,13 +232,13 @@ CoverSolid mesh_cells(const TriangleMesh& mesh) {
   CoverSolid solid;
   const Bounds box = bounds(mesh.vertices);
   const Vector3 extents = box.high - box.low;
-  if (mesh.triangles.size() > kMostTriangles)
+  if (mesh.triangles.size() > kMaxTriangles)
     cubes(solid, mesh, std::max(1e-4, extents.maxCoeff() / 64));
   else
     cut(solid, mesh, std::max(1e-4, cell_size(extents)));
   SampledDepth depth;
   for (const Vector3& p : solid.points) append(depth.point, p);
-  const bool surface = mesh.triangles.size() <= kMostTriangles;
+  const bool surface = mesh.triangles.size() <= kMaxTriangles;
   const auto sample = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
     append(depth.at, (a + b + c) / 3);
     append(depth.area, 0.5 * (b - a).cross(c - a));
@@ -250,7 +251,7 @@ CoverSolid mesh_cells(const TriangleMesh& mesh) {
       sample(at(solid.points, c[0]), at(solid.points, c[1]), at(solid.points, c[2]));
   else
     for (std::size_t i = 0; i < mesh.triangles.size();
-         i += mesh.triangles.size() / kMostTriangles + 1) {
+         i += mesh.triangles.size() / kMaxTriangles + 1) {
       const auto& t = mesh.triangles[i];
       sample(at(mesh.vertices, t[0]), at(mesh.vertices, t[1]), at(mesh.vertices, t[2]));
     }
@@ -261,7 +262,7 @@ CoverSolid mesh_cells(const TriangleMesh& mesh) {
   return solid;
 }
 
-/// A lattice of centres inside the solid, and each moved where it is deeper.
+/// Adds a lattice of centres inside the solid, each moved to greater depth.
 void find_inner(CoverSolid& solid) {
   const Bounds box = bounds(solid.points);
   const Vector3 extents = (box.high - box.low).cwiseMax(1e-4);

@@ -7,12 +7,12 @@
 
 namespace handsel {
 
-/// All pairs at once in single precision; those that may be nearest again in double.
+/// Checks all pairs at once in single precision, then those that may be nearest in double.
 double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Vector3* on_person) {
   constexpr float kSlack = 2e-4f;
   Impl& w = *impl_;
-  double least = std::numeric_limits<double>::infinity();
-  if (w.people.empty()) return least;
+  double min_distance = std::numeric_limits<double>::infinity();
+  if (w.people.empty()) return min_distance;
   w.robot.forward(q, w.T_root_link);
   const Vector3 origin = w.T_world_base.translation();
   std::vector<std::pair<Vector3, Vector3>>& ends = w.capsule_ends;
@@ -45,14 +45,14 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
         Vector3 a, b;
         const double axes = segment_distance(ends[c].first, ends[c].second, body.a, body.b, &a, &b),
                      d = axes - w.capsules[c].radius - body.radius;
-        if (d >= least) continue;
-        least = d;
+        if (d >= min_distance) continue;
+        min_distance = d;
         const Vector3 along = axes > 1e-9 ? Vector3((b - a) / axes) : Vector3::UnitX();
         if (on_robot) *on_robot = a + w.capsules[c].radius * along;
         if (on_person) *on_person = b - body.radius * along;
       }
   }
-  return least;
+  return min_distance;
 }
 
 double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* on_robot,
@@ -77,21 +77,21 @@ double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* o
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.bound < b.bound; });
-  double least = cap;
+  double min_distance = cap;
   for (const Candidate& c : candidates) {
-    if (c.bound >= least) break;
+    if (c.bound >= min_distance) break;
     const bool lowered = c.body >= w.link_bodies && c.thing->lowered;
     Vector3 on_body, on_thing;
     const double distance = gap(*w.bodies[c.body].shape, w.T_world_body[c.body],
                                 lowered ? *c.thing->lowered : *c.thing->shape,
                                 lowered ? c.thing->T_world_lowered : c.thing->T_world_shape,
                                 on_robot ? &on_body : nullptr, on_scene ? &on_thing : nullptr);
-    if (distance >= least) continue;
-    least = distance;
+    if (distance >= min_distance) continue;
+    min_distance = distance;
     if (on_robot != nullptr) *on_robot = on_body;
     if (on_scene != nullptr) *on_scene = on_thing;
   }
-  return least;
+  return min_distance;
 }
 
 }  // namespace handsel

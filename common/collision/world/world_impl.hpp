@@ -63,7 +63,7 @@ struct CollisionWorld::Impl {
   std::vector<SelfPair> link_pairs, held_pairs;
   std::vector<SceneBody> scene, obstacles;
   std::vector<SceneBody>
-      in_peoples_hands;  // by their solid parts: nobody reaches into an offered cup
+      in_peoples_hands;  // by their solid parts: no hand reaches into an offered cup
   std::vector<MovingBody> people, other_robots;
   Scene last_scene;
   Attachment attachment;

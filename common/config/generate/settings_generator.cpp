@@ -1,8 +1,9 @@
-// Makes plain structs of settings from the schema:
+// Generates plain structs of settings from the schema:
 //   handsel_settings_generator SCHEMA_SET FOLDER NAME...
-// SCHEMA_SET is what `protoc --descriptor_set_out` wrote. For each NAME, FOLDER/NAME.hpp gets the
-// structs of schema/NAME.proto that belong to a settings file, with default values and comments,
-// and FOLDER/NAME.cpp the functions that read and fill them. A file that has not changed stays.
+// SCHEMA_SET is the output of `protoc --descriptor_set_out`. For each NAME, FOLDER/NAME.hpp
+// contains the structs of schema/NAME.proto that belong to a settings file, with default values and
+// comments, and FOLDER/NAME.cpp the functions that read and fill them. Unchanged files are not
+// written.
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -33,7 +34,7 @@ std::string in_lower(std::string text) {
   return text;
 }
 
-/// "CostmapSettings" -> "costmap_settings"; "Ros2LaneSettings" -> "ros2_lane_settings".
+/// Converts "CostmapSettings" to "costmap_settings", "Ros2LaneSettings" to "ros2_lane_settings".
 std::string in_snake_case(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -43,7 +44,7 @@ std::string in_snake_case(const std::string& name) {
   return out;
 }
 
-/// "robot_grip" -> "RobotGrip".
+/// Converts "robot_grip" to "RobotGrip".
 std::string in_camel_case(const std::string& name) {
   std::string out;
   bool begins = true;
@@ -55,7 +56,7 @@ std::string in_camel_case(const std::string& name) {
   return out;
 }
 
-/// Returns the inner struct that holds a field; empty: none.
+/// Returns the inner struct that contains a field; empty if none does.
 std::string part_of(const FieldDescriptor& field) {
   return field.options().GetExtension(config::part);
 }
@@ -103,7 +104,7 @@ std::string value_type(const FieldDescriptor& field) {
   return {};
 }
 
-/// Whether a scalar has no default value and may be left out.
+/// Returns whether a scalar has no default value and may be omitted.
 bool is_open(const FieldDescriptor& field) {
   return field.has_optional_keyword() && !setting_of(field).has_default &&
          !setting_of(field).required;
@@ -118,7 +119,7 @@ std::string member_type(const FieldDescriptor& field) {
   return value_type(field);
 }
 
-/// Returns the initial value in braces, or nothing where the type has one of its own.
+/// Returns the initial value in braces, or nothing if the type has its own.
 std::string initial_value(const FieldDescriptor& field) {
   if (field.is_repeated() || is_open(field)) return "";
   const std::string value = setting_of(field).default_value;
@@ -139,7 +140,7 @@ std::string comment_of(const FieldDescriptor& field) {
   return setting.doc + (setting.unit.empty() ? "" : " [" + setting.unit + "]");
 }
 
-/// Adds a message and the messages inside it that are of the same file, the inner ones first.
+/// Adds a message and its nested messages of the same file, the inner ones first.
 void add_with_parts(const Descriptor& message, std::vector<const Descriptor*>& out) {
   if (std::find(out.begin(), out.end(), &message) != out.end()) return;
   for (int i = 0; i < message.field_count(); ++i) {
@@ -150,7 +151,7 @@ void add_with_parts(const Descriptor& message, std::vector<const Descriptor*>& o
   out.push_back(&message);
 }
 
-/// The structs of one schema file.
+/// Generates the structs of one schema file.
 class Structs {
  public:
   Structs(const FileDescriptor& file, const std::vector<const Descriptor*>& messages)
@@ -216,7 +217,7 @@ class Structs {
     return out;
   }
 
-  /// The enumerations of the fields, each once.
+  /// Returns the enumerations of the fields, each once.
   std::vector<const EnumDescriptor*> choices() const {
     std::vector<const EnumDescriptor*> out;
     for (const Descriptor* message : messages_)

@@ -9,7 +9,7 @@
 namespace handsel {
 namespace {
 
-/// Directions of a Fibonacci lattice on the sphere, after the six axes.
+/// Returns directions of a Fibonacci lattice on the sphere, after the six axis directions.
 std::vector<Vector3> directions(int count) {
   std::vector<Vector3> out;
   for (int axis = 0; axis < 3; ++axis)

@@ -14,7 +14,7 @@ TriangleMesh convex_hull(const std::vector<Vector3>& points);
 /// Returns the volume inside a closed mesh [m^3]; 0 without triangles.
 double volume_of(const TriangleMesh& mesh);
 
-/// Returns the hull of at most `max_points` of the points: those that lie farthest in directions
+/// Returns the hull of at most `max_points` of the points: the extreme ones in directions
 /// spread over the sphere. It lies inside the hull of all.
 TriangleMesh reduced_hull(const std::vector<Vector3>& points, int max_points);
 

@@ -12,13 +12,13 @@ namespace {
 
 using Cells = std::vector<int>;
 
-/// Fraction of a cell of the surface that counts as solid: half of the cell, and what the steps of
-/// the grid take from the hull of their centres.
+/// Fraction of a surface cell that counts as solid: half of the cell, plus the loss of the hull of
+/// the cell centres by the steps of the grid.
 constexpr double kSurfaceFill = 0.8;
 
-/// Volume that the hull of the cells' centres has beyond the cells [m^3].
+/// Returns the volume of the hull of the cell centres outside the cells [m^3].
 double concavity_of(const VoxelGrid& grid, const Cells& cells) {
-  std::map<std::pair<int, int>, std::pair<int, int>> columns;  // lowest and highest cell
+  std::map<std::pair<int, int>, std::pair<int, int>> columns;  // min and max cell
   for (const int i : cells) {
     const auto [x, y, z] = grid.cell_at(i);
     auto [at, is_new] = columns.try_emplace({x, y}, z, z);
@@ -37,7 +37,7 @@ double concavity_of(const VoxelGrid& grid, const Cells& cells) {
   return std::max(0.0, hull - grid.cell_volume() * filled);
 }
 
-/// Pieces of cells that touch, at least by a corner.
+/// Connected components of cells; cells that share a corner are connected.
 class Components {
  public:
   explicit Components(const VoxelGrid& grid) : grid_(grid), mark_(grid.solid.size(), 0) {}
@@ -61,7 +61,7 @@ class Components {
       for (int dz = -1; dz <= 1; ++dz)
         for (int dy = -1; dy <= 1; ++dy)
           for (int dx = -1; dx <= 1; ++dx) {
-            const int to = grid_.index(x + dx, y + dy, z + dz);  // the rim of the grid is empty
+            const int to = grid_.index(x + dx, y + dy, z + dz);  // the grid boundary is empty
             if (mark_[static_cast<std::size_t>(to)] == 0) continue;
             mark_[static_cast<std::size_t>(to)] = 0;
             out.push_back(to);
@@ -94,10 +94,10 @@ double sum_of(const std::vector<Piece>& pieces) {
   return sum;
 }
 
-/// The cut along an axis that leaves least concavity, among equal ones the most even.
+/// Returns the cut along an axis with the min remaining concavity, among equal ones the most even.
 std::vector<Piece> cut(const VoxelGrid& grid, Components& components, const Cells& cells) {
-  constexpr int kPlanes = 9;           // tried along an axis
-  constexpr double kPieceCost = 0.02;  // of the concavity, for each piece beyond two
+  constexpr int kPlanes = 9;           // planes tried along an axis
+  constexpr double kPieceCost = 0.02;  // per piece beyond two, fraction of the concavity
   std::vector<Piece> best;
   double best_cost = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -129,7 +129,7 @@ std::vector<Piece> cut(const VoxelGrid& grid, Components& components, const Cell
   return best;
 }
 
-/// Corners of cells, for pieces whose samples lie in one plane.
+/// Returns corners of cells, for pieces whose samples lie in one plane.
 std::vector<Vector3> corners_of(const VoxelGrid& grid, const Cells& cells) {
   std::vector<Vector3> out;
   for (const int i : cells)
@@ -186,7 +186,7 @@ std::vector<ConvexPart> convex_parts(const VoxelGrid& grid, const ConvexPartsSet
 }
 
 PlacedShape simplest_shape(const TriangleMesh& hull, int max_points) {
-  constexpr double kMinFill = 0.97;  // of the volume of a box or a cylinder
+  constexpr double kMinFill = 0.97;  // fraction of the volume of a box or a cylinder
   Vector3 low = hull.vertices.front(), high = low;
   for (const Vector3& v : hull.vertices) {
     low = low.cwiseMin(v);

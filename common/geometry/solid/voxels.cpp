@@ -37,7 +37,7 @@ void sample_surface(const TriangleMesh& mesh, VoxelGrid& grid) {
   }
 }
 
-/// Calls a function with each of the six neighbours that lies in the grid.
+/// Calls a function with each of the six neighbours inside the grid.
 template <class F>
 void each_neighbour(const VoxelGrid& grid, int index, const F& f) {
   const auto [x, y, z] = grid.cell_at(index);
@@ -92,8 +92,9 @@ VoxelGrid voxelize(const TriangleMesh& mesh, int resolution) {
   return grid;
 }
 
-// Water of a cell stands as high as the lowest path from the cell to the rim of the grid: priority
-// flood (Barnes, Lehman, Mulla 2014) in three dimensions. The level of a path is its highest cell.
+// Water in a cell rises to the level of the lowest path from the cell to the boundary of the grid:
+// priority flood (Barnes, Lehman, Mulla 2014) in three dimensions. The level of a path is its
+// highest cell.
 std::vector<int> cavity_of(const VoxelGrid& grid) {
   const auto is_solid = [&](int i) { return grid.solid[static_cast<std::size_t>(i)] != 0; };
   std::vector<int> level(grid.solid.size(), -1);

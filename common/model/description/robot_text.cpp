@@ -7,9 +7,9 @@ namespace handsel {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxExtensions = 8;  // descriptions that extend one another
+constexpr int kMaxExtensions = 8;  // max depth of descriptions that extend one another
 
-/// Makes the paths of a description absolute, so that they mean the same from another folder.
+/// Makes the paths of a description absolute, so that they stay valid from another folder.
 void make_absolute(config::RobotDescription& text, const fs::path& file) {
   const auto absolute = [&](const std::string& path) {
     return path.empty() ? path : fs::absolute(described_path(file, path)).string();

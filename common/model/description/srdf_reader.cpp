@@ -74,8 +74,7 @@ class SrdfReader {
     return index;
   }
 
-  /// Collects the joints of a group, of each group within it once: what was collected before adds
-  /// nothing.
+  /// Collects the joints of a group and its subgroups, each subgroup once.
   void collect_named(const std::string& name, const XMLElement& group) {
     visits_[name] = Visit::open;
     for (const auto* e = group.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
@@ -137,9 +136,9 @@ class SrdfReader {
   const std::filesystem::path& srdf_;
   const XMLElement& robot_;
   bool strict_;
-  std::vector<std::string> joints_;  // of the group that is being read
+  std::vector<std::string> joints_;  // joints of the group being read
   std::string tip_;
-  std::map<std::string, Visit> visits_;  // of groups within it
+  std::map<std::string, Visit> visits_;  // visits of its subgroups
 };
 
 void RobotModelBuilder::read_srdf(const std::filesystem::path& srdf, bool groups, bool strict) {

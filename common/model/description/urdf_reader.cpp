@@ -26,7 +26,7 @@ Pose to_pose(const urdf::Pose& pose) {
                    Eigen::Quaterniond(r.w, r.x, r.y, r.z));
 }
 
-/// Keeps what urdfdom says about a bad file instead of printing it.
+/// Collects the messages of urdfdom about an invalid file instead of printing them.
 class Listener : public console_bridge::OutputHandler {
  public:
   Listener() { console_bridge::useOutputHandler(this); }
@@ -39,10 +39,10 @@ class Listener : public console_bridge::OutputHandler {
 
 constexpr std::size_t kMaxLinks = 1000;
 constexpr double kLargestNumber =
-    1e12;  // in any unit: some files write 1e10 for an axis without an end
+    1e12;  // max number in any unit: some files write 1e10 for an unlimited axis
 
-/// Throws ConfigError where an attribute of numbers, in the element or below, holds something else,
-/// or a name holds a control character.
+/// Throws ConfigError if a numeric attribute, in the element or below, has another content, or if a
+/// name contains a control character.
 void require_attributes(const tinyxml2::XMLElement& e, const fs::path& file) {
   static const std::set<std::string_view> kNumeric{
       "xyz", "rpy", "size", "radius", "length", "scale",  "ixx",      "ixy",        "ixz",
@@ -71,8 +71,8 @@ void require_attributes(const tinyxml2::XMLElement& e, const fs::path& file) {
     require_attributes(*child, file);
 }
 
-/// What urdfdom does not say, or not with a line: XML errors, duplicates, shapes that are not URDF,
-/// a link with two parents.
+/// Checks what urdfdom does not report, or only without a line: XML errors, duplicates, shapes
+/// unknown to URDF, links with two parents.
 struct Document {
   Document(const fs::path& file, const std::string& text) {
     tinyxml2::XMLDocument xml;
@@ -125,10 +125,10 @@ struct Document {
   std::vector<std::string> joints;
   std::set<std::string> names;
   std::map<std::string, std::pair<std::string, std::string>>
-      parents;  // of each child link: parent link, file and line
+      parents;  // by child link: parent link, file and line
 };
 
-/// Folders of packages: the description's, those of ROS_PACKAGE_PATH, the shares of
+/// Returns package folders: those of the description, of ROS_PACKAGE_PATH, and the share folders of
 /// AMENT_PREFIX_PATH.
 std::vector<fs::path> package_folders(const std::vector<fs::path>& described) {
   std::vector<fs::path> folders = described;
@@ -142,8 +142,8 @@ std::vector<fs::path> package_folders(const std::vector<fs::path>& described) {
   return folders;
 }
 
-/// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are
-/// searched too.
+/// Finds package://name/rest, model://name/rest, file:// and plain paths, also in the folders above
+/// the URDF.
 fs::path find_mesh(const fs::path& urdf, const std::string& uri,
                    const std::vector<fs::path>& packages) {
   constexpr std::size_t kMaxUri = 1024;  // [bytes]
@@ -294,7 +294,7 @@ void read_mass(const urdf::Link& from, Link& to, const fs::path& file) {
   to.inertia = T.linear() * inertia * T.linear().transpose();
 }
 
-/// Follows mimic joints to the joint that is not one; factor and offset composed. Names first, axes
+/// Follows mimic joints to the actuated joint and composes factor and offset. Names first, axes
 /// later.
 void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint& joint,
                    std::vector<Joint>& joints) {

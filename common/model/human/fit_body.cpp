@@ -10,24 +10,24 @@ namespace {
 
 using namespace body;
 
-constexpr double kLeastConfidence = 0.05;
-constexpr double kLeastSpread =
-    4e-3;  // points closer to one vertical line do not tell which way a body faces [m^2]
+constexpr double kMinConfidence = 0.05;
+constexpr double kMinSpread =
+    4e-3;  // points closer to one vertical line do not show the heading of a body [m^2]
 constexpr int kCount = static_cast<int>(kBodyJoints.size());
 
 /// The skeleton as a tree from the chest outward.
 constexpr std::array<int, kCount> kParent = {
     neck,       torso,   -1,      torso, neck,  l_shoulder, l_elbow, l_wrist, neck,
     r_shoulder, r_elbow, r_wrist, waist, l_hip, l_knee,     waist,   r_hip,   r_knee};
-/// How much a joint says about where the trunk is and faces.
+/// Weight of a joint for position and heading of the trunk.
 constexpr std::array<double, kCount> kTrunkWeight = {
     0.5, 1, 1, 1, 1, 0.05, 0.02, 0.02, 1, 0.05, 0.02, 0.02, 1, 0.2, 0.1, 1, 0.2, 0.1};
 
-using Seen = std::array<double, kCount>;  // confidence, 0 = unseen
+using Seen = std::array<double, kCount>;  // confidence, 0 = not observed
 
 double flat_norm(const Vector3& v) { return std::hypot(v.x(), v.y()); }
 
-/// Turn about z and shift that bring `body` onto the seen points.
+/// Moves `body` onto the observed points by a rotation about z and a translation.
 void place(Points& body, const Points& points, const Seen& seen, const ObservedPerson& observed) {
   double total = 0;
   Vector3 from = Vector3::Zero(), to = Vector3::Zero();
@@ -48,7 +48,7 @@ void place(Points& body, const Points& points, const Seen& seen, const ObservedP
     spread += w * flat_norm(a) * flat_norm(b);
   }
   double turn = 0;
-  if (spread > kLeastSpread) {
+  if (spread > kMinSpread) {
     turn = std::atan2(sine, cosine);
   } else if (observed.has_gaze && flat_norm(observed.gaze_direction) > 0.1) {
     const Vector3 left = body[l_shoulder] - body[r_shoulder];
@@ -69,7 +69,7 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
   bool any = false;
   for (const auto& joint : observed.joints) {
     const int i = body_joint_index(joint.name);
-    if (i < 0 || !(joint.confidence >= kLeastConfidence) || !joint.position.allFinite() ||
+    if (i < 0 || !(joint.confidence >= kMinConfidence) || !joint.position.allFinite() ||
         joint.confidence <= seen[i])
       continue;
     seen[i] = std::min(joint.confidence, 1.0);
@@ -97,8 +97,8 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
       done[i] = seen[i] > 0;
       if (done[i]) fitted[i] = points[i];
     }
-    // From the seen joints outward: in the direction of where the body as a whole has it, a bone's
-    // length away.
+    // From the observed joints outward, each joint is placed one bone length away, in the direction
+    // of the fitted body.
     for (auto before = done; !std::all_of(done.begin(), done.end(), [](bool d) { return d; });
          before = done)
       for (int i = 0; i < kCount; ++i) {
@@ -107,9 +107,9 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
         for (int k = 0; from < 0 && k < kCount; ++k)
           if (kParent[k] == i && before[k]) from = k;
         if (from < 0) continue;
-        const Vector3 way = body[i] - fitted[from];
+        const Vector3 direction = body[i] - fitted[from];
         const double length = from == kParent[i] ? bone[i] : bone[from];
-        if (way.norm() > 1e-6) fitted[i] = fitted[from] + length * way.normalized();
+        if (direction.norm() > 1e-6) fitted[i] = fitted[from] + length * direction.normalized();
         done[i] = true;
       }
     for (const int arm : {0, r_shoulder - l_shoulder}) {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace body;
 
-// Lengths as shares of the stature (Drillis and Contini; depths and breadths ours).
+// Lengths as ratios to the stature (Drillis and Contini); depths and breadths are own values.
 constexpr double kHead = 0.93, kNeck = 0.85, kShoulder = 0.818, kTorso = 0.72, kHip = 0.53,
                  kKnee = 0.285, kAnkle = 0.039;
 constexpr double kShoulderHalf = 0.115, kHipHalf = 0.055, kUpperArm = 0.186, kForearm = 0.146,
@@ -27,7 +27,7 @@ bool complete(const Person& person) {
   return true;
 }
 
-/// False when the body is incomplete and nothing can be made of it.
+/// Returns false if the body is too incomplete.
 bool points_of(const Person& person, Points& out) {
   if (complete(person)) {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = person.joints[i].position;
@@ -62,8 +62,8 @@ void body_capsules(const Person& person, std::array<BodyCapsule, kBodyCapsules>&
   }
   const double h = person.stature;
   std::size_t n = 0;
-  const auto add = [&](BodyPart part, const Vector3& a, const Vector3& b, double share) {
-    out[n++] = {part, a, b, share * h + person.inflation};
+  const auto add = [&](BodyPart part, const Vector3& a, const Vector3& b, double ratio) {
+    out[n++] = {part, a, b, ratio * h + person.inflation};
   };
   const auto hand = [&](BodyPart part, const Vector3& elbow, const Vector3& wrist,
                         const Vector3& centre) {
@@ -163,7 +163,7 @@ Vector3 comfortable_reach(const Person& person, Side side) {
   left.z() = 0;
   const Vector3 forward = direction(Vector3::Zero(), left).cross(Vector3::UnitZ());
   const Vector3& shoulder = side == Side::right ? p[r_shoulder] : p[l_shoulder];
-  // Upper arm hanging a little forward, elbow bent by about 70 degrees, a little toward the middle.
+  // Upper arm hanging slightly forward, elbow bent by about 70 degrees, slightly inward.
   const Vector3 inward =
       (side == Side::right ? 1.0 : -1.0) * 0.02 * h * direction(Vector3::Zero(), left);
   return shoulder + 0.27 * h * forward - 0.16 * h * Vector3::UnitZ() + inward;

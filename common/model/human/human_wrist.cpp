@@ -9,11 +9,11 @@
 namespace handsel {
 namespace {
 
-constexpr double kStretched = 0.95;  // share of its length an arm reaches comfortably
-constexpr double kNearest = 0.2;     // [m]
+constexpr double kStretched = 0.95;  // max comfortable reach, ratio to the arm's length
+constexpr double kMinReach = 0.2;    // min reach [m]
 constexpr int kElbows = 7;
 
-double share(double angle, double positive, double negative) {
+double ratio(double angle, double positive, double negative) {
   return angle >= 0 ? angle / positive : -angle / negative;
 }
 
@@ -46,10 +46,10 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
   const Vector3 line = T_world_wrist.translation() - arm.shoulder;
   const double d = line.norm();
   if (d > kStretched * (arm.upper + arm.forearm) ||
-      d < std::max(kNearest, std::abs(arm.upper - arm.forearm) + 0.01))
+      d < std::max(kMinReach, std::abs(arm.upper - arm.forearm) + 0.01))
     return std::nullopt;
   const Vector3 along = line / d;
-  // Circle of the elbow about the line.
+  // The elbow lies on a circle about the line.
   const double x = (d * d + arm.upper * arm.upper - arm.forearm * arm.forearm) / (2 * d);
   const double radius = std::sqrt(std::max(0.0, arm.upper * arm.upper - x * x));
   Vector3 below = -Vector3::UnitZ() + along * along.z();
@@ -79,8 +79,8 @@ std::optional<WristPosture> wrist_posture(const HumanArm& arm, const Pose& T_wor
     p.pronation = -mirror * std::atan2(forearm.dot(neutral.cross(across)), neutral.dot(across));
     const WristRanges& r = kWristRanges;
     p.strain =
-        std::max({share(p.flexion, r.flexion, r.extension), share(p.radial, r.radial, r.ulnar),
-                  share(p.pronation, r.pronation, r.supination), p.elevation / r.elevation,
+        std::max({ratio(p.flexion, r.flexion, r.extension), ratio(p.radial, r.radial, r.ulnar),
+                  ratio(p.pronation, r.pronation, r.supination), p.elevation / r.elevation,
                   p.adduction / r.adduction});
     if (!best || p.strain < best->strain) best = p;
   }

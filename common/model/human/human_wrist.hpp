@@ -45,7 +45,7 @@ inline constexpr WristRanges kWristRanges{1.396, 1.222, 0.349, 0.524, 1.396, 1.3
 /// Up to this fraction of the ranges an arm counts as comfortable.
 inline constexpr double kComfortableStrain = 0.6;
 
-/// Returns the configuration of least strain, the elbow anywhere from straight below the line from
+/// Returns the configuration of min strain, the elbow anywhere from straight below the line from
 /// shoulder to wrist to level outward. `T_world_wrist`: the hand's frame, in the wrist, z along the
 /// fingers, x out of the palm. nullopt when the wrist is out of the arm's reach, or nearer than 0.2
 /// m.

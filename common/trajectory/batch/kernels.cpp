@@ -6,7 +6,7 @@ namespace handsel::detail {
 
 namespace {
 
-/// Those of this processor, the widest first; the rest is empty.
+/// Returns the kernels this processor supports, the widest SIMD first; the rest is null.
 std::array<const BatchKernels*, 3> present() noexcept {
 #ifdef HANDSEL_SIMD_UNITS
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");

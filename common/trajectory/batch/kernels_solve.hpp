@@ -8,7 +8,7 @@
 namespace handsel::detail {
 namespace {
 
-// Where 12 x^4 + 12 x^2 = 1: the valley, over sqrt(C), at which the gain is least.
+// Where 12 x^4 + 12 x^2 = 1: the valley, over sqrt(C), of min gain.
 constexpr double kInflexion = 0.27811916365;
 // starts and ends this close to a limit, relative, are inside
 constexpr double kBorder = 1e-12;

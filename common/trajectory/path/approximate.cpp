@@ -40,7 +40,7 @@ class Fit {
       const ApproximationTolerance& tolerance)
       : times_(times), samples_(samples), tolerance_(tolerance) {}
 
-  /// Sample indices at which pieces meet.
+  /// Returns the sample indices at which pieces meet.
   std::vector<std::size_t> pieces() const {
     std::vector<std::size_t> ends{0};
     split(0, samples_.size() - 1, ends);
@@ -74,7 +74,7 @@ class Fit {
     split(first, middle, ends);
     split(middle, last, ends);
   }
-  /// Seen at a few samples first: most pieces that do not fit are far off.
+  /// Checks a few samples first: most pieces that do not fit deviate by far.
   bool good(std::size_t first, std::size_t last) const {
     if (last - first < 2) return true;
     return fits(first, last, std::max<std::size_t>(1, (last - first) / 8)) && fits(first, last, 1);
@@ -121,9 +121,9 @@ class Fit {
   const ApproximationTolerance& tolerance_;
 };
 
-/// Least of the values within `reach` [s] on either side.
-std::vector<double> least_around(const std::vector<double>& times,
-                                 const std::vector<double>& values, double reach) {
+/// Returns the min of the values within `reach` [s] on either side.
+std::vector<double> min_around(const std::vector<double>& times, const std::vector<double>& values,
+                               double reach) {
   std::vector<double> out(values.size());
   std::size_t first = 0, last = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -135,7 +135,8 @@ std::vector<double> least_around(const std::vector<double>& times,
   return out;
 }
 
-/// Mean of the values within `reach` [s] on either side, weight falling to zero there.
+/// Returns the mean of the values within `reach` [s] on either side, with weights that fall to
+/// zero.
 std::vector<double> mean_around(const std::vector<double>& times, const std::vector<double>& values,
                                 double reach) {
   std::vector<double> out(values.size());
@@ -153,7 +154,7 @@ std::vector<double> mean_around(const std::vector<double>& times, const std::vec
   return out;
 }
 
-/// Samples run through with time increment alpha.
+/// Runs through the samples with time increment alpha.
 void run_through(const std::vector<double>& times, const std::vector<MotionState3>& samples,
                  SlowedDown& out) {
   const std::size_t n = samples.size();
@@ -236,7 +237,7 @@ Derived differentiate(const std::vector<double>& times,
 }
 
 namespace {
-/// `bound`: of alpha at each sample; lowered where needed.
+/// Slows the samples down. `bound` of alpha at each sample is lowered where needed.
 SlowedDown slow_down_from(const std::vector<double>& times,
                           const std::vector<MotionState3>& samples, const KinematicLimits& limits,
                           std::vector<double>& bound) {
@@ -245,25 +246,25 @@ SlowedDown slow_down_from(const std::vector<double>& times,
   const double reach = std::min(0.2, (times.back() - times.front()) / 4);
   for (int round = 0; round < 200; ++round) {
     const bool slowed = std::any_of(bound.begin(), bound.end(), [](double b) { return b < 1; });
-    out.alpha = slowed ? mean_around(times, least_around(times, bound, reach), reach)
+    out.alpha = slowed ? mean_around(times, min_around(times, bound, reach), reach)
                        : std::vector<double>(n, 1.0);
     run_through(times, samples, out);
     bool kept = true;
     for (std::size_t k = 0; k < n; ++k) {
-      double share = 1;
+      double excess = 1;
       for (Eigen::Index i = 0; i < samples[k].position.size(); ++i) {
-        share = std::max(share, std::abs(out.samples[k].velocity[i]) / limits.velocity[i]);
+        excess = std::max(excess, std::abs(out.samples[k].velocity[i]) / limits.velocity[i]);
         const double a = std::abs(out.samples[k].acceleration[i]) / limits.acceleration[i];
-        if (a > 1) share = std::max(share, std::sqrt(a));
+        if (a > 1) excess = std::max(excess, std::sqrt(a));
         if (k + 1 == n) continue;
         const double jerk = (out.samples[k + 1].acceleration[i] - out.samples[k].acceleration[i]) /
                             (out.times[k + 1] - out.times[k]);
         if (std::abs(jerk) > limits.jerk[i])
-          share = std::max(share, std::cbrt(std::abs(jerk) / limits.jerk[i]));
+          excess = std::max(excess, std::cbrt(std::abs(jerk) / limits.jerk[i]));
       }
-      if (share <= 1) continue;
+      if (excess <= 1) continue;
       kept = false;
-      bound[k] = std::min(bound[k], 0.995 * out.alpha[k] / share);
+      bound[k] = std::min(bound[k], 0.995 * out.alpha[k] / excess);
     }
     if (kept) return out;
   }

@@ -8,9 +8,10 @@ namespace handsel::detail {
 namespace {
 
 constexpr double kKept =
-    1 - 1e-9;  // of a distance, so that rounding leaves the change of velocity possible
+    1 -
+    1e-9;  // fraction of a distance, so that the change of velocity stays possible despite rounding
 
-/// Distance in which one velocity becomes another, the acceleration 0 at both ends.
+/// Returns the distance of a change of velocity with acceleration 0 at both ends.
 double change_distance(double from, double to, const AxisLimits& limits) noexcept {
   const double change = std::abs(to - from);
   const double lasts = change * limits.jerk >= limits.acceleration * limits.acceleration
@@ -19,11 +20,13 @@ double change_distance(double from, double to, const AxisLimits& limits) noexcep
   return 0.5 * (from + to) * lasts;
 }
 
-/// The largest velocity up to `most` that `from` can become within a distance.
-double reached_within(double from, double most, double distance,
+/// Returns the max velocity, at most `max_velocity`, reachable from `from` within a
+/// distance.
+double reached_within(double from, double max_velocity, double distance,
                       const AxisLimits& limits) noexcept {
-  if (most <= from || change_distance(from, most, limits) <= distance) return most;
-  double low = from, high = most;
+  if (max_velocity <= from || change_distance(from, max_velocity, limits) <= distance)
+    return max_velocity;
+  double low = from, high = max_velocity;
   for (int k = 0; k < 50; ++k) {
     const double middle = 0.5 * (low + high);
     (change_distance(from, middle, limits) <= distance ? low : high) = middle;
@@ -50,14 +53,14 @@ PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
     l.acceleration = std::min(l.acceleration, limits.acceleration[i] / d);
     l.jerk = std::min(l.jerk, limits.jerk[i] / d);
   }
-  LimitScale least;
-  for (const LimitZone& zone : speeds) least = least.lower(zone.scale);
-  const AxisLimits lowest = scaled(l, least);
+  LimitScale min_scale;
+  for (const LimitZone& zone : speeds) min_scale = min_scale.lower(zone.scale);
+  const AxisLimits lowest = scaled(l, min_scale);
   if (!zoned(speeds, l) || duration > rest_to_rest_time(1, lowest)) {
     knots.clear();
     zones.clear();
     duration = 0;
-    if (least != LimitScale{}) zones.push_back({0, least});
+    if (min_scale != LimitScale{}) zones.push_back({0, min_scale});
     AxisProfile profile;
     solve_axis({0, 0, 0}, {1, 0, 0}, lowest, profile);
     knots.reserve(static_cast<std::size_t>(profile.count));
@@ -74,8 +77,8 @@ PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   }
 }
 
-/// In each zone the fastest motion between the velocities at its ends; there the acceleration is 0,
-/// and the velocity is as high as both sides allow and can be left again.
+/// Computes the fastest motion in each zone between the velocities at its ends; there the
+/// acceleration is 0, and the velocity is the max that both zones allow and that can be left again.
 bool PathSegment::zoned(const LimitZones& speeds, const AxisLimits& limits) {
   std::vector<LimitZone> left;
   double begin = 0;
@@ -140,12 +143,12 @@ void PathSegment::part(double begin, double end, AxisProfile& out) const noexcep
 }
 
 LimitScale PathSegment::scale(double begin, double end) const noexcept {
-  LimitScale least;
+  LimitScale min_scale;
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const double ends = k + 1 < zones.size() ? zones[k + 1].begin : duration;
-    if (zones[k].begin <= end && begin <= ends) least = least.lower(zones[k].scale);
+    if (zones[k].begin <= end && begin <= ends) min_scale = min_scale.lower(zones[k].scale);
   }
-  return least;
+  return min_scale;
 }
 
 }  // namespace handsel::detail

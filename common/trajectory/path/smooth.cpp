@@ -15,8 +15,8 @@ namespace {
 using detail::PathSegment;
 using detail::WaypointBlend;
 
-constexpr double kLeastSaving = 1e-4;  // [s]
-constexpr double kFarthest = 1e9;
+constexpr double kMinSaving = 1e-4;     // min saved time of a transition [s]
+constexpr double kMaxCoordinate = 1e9;  // max value of node coordinates and excesses
 constexpr double kPathRounding = 1e-9;
 constexpr std::array<double, 4> kReaches{1.0, 0.7, 0.45, 0.25};
 
@@ -33,31 +33,31 @@ std::string percent(double x) {
   return out.str();
 }
 
-/// Every transition worth trying at a corner, best first; `why` says what stood against the others.
+/// Returns the useful transitions at a waypoint, best first; `why` is the reason if there is none.
 std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, const PathSegment& b,
                                   const SmoothSettings& settings, bool only_best,
                                   std::string& why) {
   std::vector<Candidate> found;
-  double best = kLeastSaving, first_excess = 0;
+  double best = kMinSaving, first_excess = 0;
   const auto keep = [&](const Candidate& c) {
     found.push_back(c);
     best = std::max(best, c.saved());
   };
-  const double most =
+  const double max_shared =
       !settings.overlapping
           ? 0.0
           : std::min({a.duration / 2, b.duration / 2, settings.tau.value_or(a.duration)});
-  double good = 0, bad = most;
+  double good = 0, bad = max_shared;
   for (int k = 10; k >= 1 && good == 0; --k) {
-    const double shared = most * k / 10;
+    const double shared = max_shared * k / 10;
     (corner.overlap_excess(shared, kPathRounding) <= kPathRounding ? good : bad) = shared;
   }
-  for (int k = 0; k < 6 && good > 0 && good < most; ++k) {
+  for (int k = 0; k < 6 && good > 0 && good < max_shared; ++k) {
     const double shared = 0.5 * (bad + good);
     (corner.overlap_excess(shared, kPathRounding) <= kPathRounding ? good : bad) = shared;
   }
-  if (good > kLeastSaving) keep({BlendMethod::overlap, good, good, good, 0});
-  if (!only_best) best = kLeastSaving;
+  if (good > kMinSaving) keep({BlendMethod::overlap, good, good, good, 0});
+  if (!only_best) best = kMinSaving;
   const double reach_a = std::min(settings.tau.value_or(a.slowing), a.duration / 2);
   const double reach_b = std::min(settings.tau.value_or(b.starting), b.duration / 2);
   for (const double reach : kReaches) {
@@ -68,19 +68,19 @@ std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, c
     const auto fits = [&](double T) {
       return corner.three_excess(T, settings.allowed_excess) <= settings.allowed_excess;
     };
-    if (best > kLeastSaving && !fits(stop - best)) continue;
-    const double least = corner.min_duration();
-    if (least <= 0 || stop - least <= best) continue;
-    const double excess = corner.three_excess(least, kFarthest);
+    if (best > kMinSaving && !fits(stop - best)) continue;
+    const double min_duration = corner.min_duration();
+    if (min_duration <= 0 || stop - min_duration <= best) continue;
+    const double excess = corner.three_excess(min_duration, kMaxCoordinate);
     if (reach == kReaches.front()) first_excess = excess;
     if (excess <= settings.allowed_excess && settings.three_segments) {
-      keep({BlendMethod::three_segment, before, after, least, std::max(0.0, excess)});
+      keep({BlendMethod::three_segment, before, after, min_duration, std::max(0.0, excess)});
       continue;
     }
     if (!settings.stretching) continue;
-    double short_of = least, fitting = 0;
+    double short_of = min_duration, fitting = 0;
     for (int k = 1; k <= 10 && fitting == 0; ++k) {
-      const double T = least + (stop - best - least) * k / 10;
+      const double T = min_duration + (stop - best - min_duration) * k / 10;
       (fits(T) ? fitting : short_of) = T;
     }
     if (fitting == 0) continue;
@@ -88,14 +88,14 @@ std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, c
       const double T = 0.5 * (short_of + fitting);
       (fits(T) ? fitting : short_of) = T;
     }
-    if (stop - fitting <= kLeastSaving) continue;
+    if (stop - fitting <= kMinSaving) continue;
     keep({BlendMethod::stretched, before, after, fitting,
-          std::max(0.0, corner.three_excess(fitting, kFarthest))});
+          std::max(0.0, corner.three_excess(fitting, kMaxCoordinate))});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& x, const Candidate& y) { return x.saved() > y.saved(); });
   if (found.empty()) {
-    why = std::min(reach_a, reach_b) <= kLeastSaving
+    why = std::min(reach_a, reach_b) <= kMinSaving
               ? "tau leaves no room"
               : "no transition keeps the limits; three segments exceed them by " +
                     percent(first_excess);
@@ -103,13 +103,13 @@ std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, c
   return found;
 }
 
-/// Looks at a candidate once more, so that the corner holds its segments.
+/// Evaluates a candidate again, so that the blend stores its segments.
 void settle(WaypointBlend& corner, const Candidate& c) {
   if (c.method == BlendMethod::overlap) {
-    corner.overlap_excess(c.before, kFarthest);
+    corner.overlap_excess(c.before, kMaxCoordinate);
   } else {
     corner.place(c.before, c.after);
-    corner.three_excess(c.duration, kFarthest);
+    corner.three_excess(c.duration, kMaxCoordinate);
   }
 }
 
@@ -159,7 +159,7 @@ std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes,
     }
     if (!nodes[k].allFinite())
       return "node " + std::to_string(k) + " has a number that is not finite";
-    if (nodes[k].lpNorm<Eigen::Infinity>() > kFarthest)
+    if (nodes[k].lpNorm<Eigen::Infinity>() > kMaxCoordinate)
       return "node " + std::to_string(k) + " has a number that is too large";
   }
   if (settings.tau && !(*settings.tau >= 0)) return "tau must be a number that is not negative";
@@ -206,7 +206,7 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
   if (!(out.reason = why_bad_nodes(nodes, settings)).empty()) return out;
   if (!(out.reason = why_bad_speeds(speeds, nodes.size())).empty()) return out;
   if (!(out.reason = why_bad_limits(limits, static_cast<int>(nodes[0].size()))).empty()) return out;
-  std::vector<int> node_of;  // that each path segment leads to
+  std::vector<int> node_of;  // node at the end of each path segment
   std::vector<LimitZones> zones;
   for (std::size_t k = 1, last = 0; k < nodes.size(); ++k) {
     if ((nodes[k] - nodes[last]).lpNorm<Eigen::Infinity>() < 1e-12) continue;

@@ -81,7 +81,7 @@ struct SmoothResult {
 /// Says whether the robot may follow this piece of trajectory (all axes of the nodes).
 using BlendIsFree = std::function<bool(const Trajectory& corner)>;
 
-/// Of the transitions possible at a node the one that saves most time and is free. Equal neighbours
+/// Of the transitions possible at a node the free one that saves the max time. Equal neighbours
 /// in `nodes` are taken as one. `speeds`: zones of the path segment to each node but the first, or
 /// empty; a transition keeps the lowest scales of all the zones it reaches into (own method: no
 /// zone is exceeded).

@@ -8,7 +8,7 @@
 namespace handsel::detail {
 
 namespace {
-/// One of the two motions of a blend, from a state, by its jerks.
+/// Integrates one of the two motions of a blend from a state by its jerks.
 void carry(const Blend& blend, AxisState s, Blend::Motion& m) noexcept {
   for (int k = 0; k <= blend.count; ++k) {
     m.velocity[k] = s.velocity;
@@ -70,7 +70,7 @@ void WaypointBlend::place(double before, double after) noexcept {
 double WaypointBlend::min_duration() noexcept {
   BatchArray zero{}, v, a, xf, vf, af, V{}, A{}, J{};
   AxisBatch block;
-  double least = 0;
+  double min_duration = 0;
   for (int first = 0; first < axes_; first += kBatchAxes) {
     const int here = std::min(kBatchAxes, axes_ - first);
     for (int i = 0; i < kBatchAxes; ++i) {
@@ -88,17 +88,17 @@ double WaypointBlend::min_duration() noexcept {
     }
     const std::uint32_t odd =
         batch_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
-    least = std::max(least, *std::max_element(block.minimum, block.minimum + here));
+    min_duration = std::max(min_duration, *std::max_element(block.minimum, block.minimum + here));
     for (std::uint32_t left = odd; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       AxisProblem problem;
       if (problem.init({0, v[i], a[i]}, {xf[i], vf[i], af[i]}, {V[i], A[i], J[i]}) !=
           AxisOutcome::ok)
         return -1;
-      least = std::max(least, problem.minimum());
+      min_duration = std::max(min_duration, problem.minimum());
     }
   }
-  return least;
+  return min_duration;
 }
 
 double WaypointBlend::three_excess(double duration, double enough) noexcept {
