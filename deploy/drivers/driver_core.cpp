@@ -74,7 +74,7 @@ void DriverCore::update(const Measured& measured, double now, double dt) {
     why_ = measured.why;
     side_.hold(measured.position, measured.mode);
     settle();
-  } else if (was_stopped) {  // the arm may stand elsewhere by now
+  } else if (was_stopped) {  // the arm may have moved meanwhile
     side_.hold(measured.position, DriveMode::braked);
     settle();
   }
@@ -88,9 +88,9 @@ void DriverCore::update(const Measured& measured, double now, double dt) {
   follow_set_points(dt);
 }
 
-/// The wire's clock is not the maker's: a cycle may find one set-point more or less than the one
-/// before. What is told now beyond what was to be expected goes into the difference between
-/// reference and set-points, which fades; the reference itself never jumps.
+/// Adopts the set-points. The clocks of both sides differ, so a cycle may receive one set-point
+/// more or fewer. The deviation from the expected position is added to the difference between
+/// reference and set-points, which decays; the reference itself never jumps.
 void DriverCore::follow_set_points(double dt) noexcept {
   const KinematicLimits& guard = model_.guard_limits();
   reference_ = side_.position();

@@ -31,7 +31,7 @@ Place read_common(const std::filesystem::path& folder, const RobotModel& robot,
 
 void read_gripper(const settings::GripperSettings& in, const RobotModel& robot,
                   const TextPlace& place, GripperSettings& out) {
-  constexpr double kMinTravel = 1e-6;  // [m or rad]
+  constexpr double kMinTravel = 1e-6;  // [m] or [rad]
   const auto refuse = [&](const char* key, const std::string& sentence) {
     throw ConfigError(place.of(key) + ": " + sentence);
   };

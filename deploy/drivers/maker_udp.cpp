@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t kCyclic = 0x48434131, kReflex = 0x48524131,
                         kOrder = 0x484f5231;  // first word of each kind
-constexpr std::uint32_t kMostValues = 32, kMostText = 200;
+constexpr std::uint32_t kMaxValues = 32, kMaxText = 200;
 
 class Writer {
  public:
@@ -37,7 +37,7 @@ class Writer {
     return *this;
   }
   Writer& operator<<(const std::string& text) {
-    const auto size = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), kMostText));
+    const auto size = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), kMaxText));
     *this << size;
     bytes_.append(text, 0, size);
     return *this;
@@ -69,7 +69,7 @@ class Reader {
   }
   Reader& operator>>(Vector& v) {
     std::uint32_t size = 0;
-    if (!(*this >> size).good_ || size > kMostValues) return fail();
+    if (!(*this >> size).good_ || size > kMaxValues) return fail();
     v.resize(size);
     for (double& x : v) *this >> x;
     return *this;
@@ -77,7 +77,7 @@ class Reader {
   Reader& operator>>(Vector3& v) { return *this >> v.x() >> v.y() >> v.z(); }
   Reader& operator>>(std::string& text) {
     std::uint32_t size = 0;
-    if (!(*this >> size).good_ || size > kMostText || size > bytes_.size()) return fail();
+    if (!(*this >> size).good_ || size > kMaxText || size > bytes_.size()) return fail();
     text.assign(bytes_.substr(0, size));
     bytes_.remove_prefix(size);
     return *this;
@@ -189,7 +189,7 @@ bool decode(std::string_view datagram, Order& order) {
   Reader in(datagram);
   if (!is(in, kOrder)) return false;
   in >> order.kind >> order.cycle >> order.values;
-  static constexpr std::array<int, 6> kSize{-1, 0, 0, 1, 2, 3};  // of each kind; -1: one an axis
+  static constexpr std::array<int, 6> kSize{-1, 0, 0, 1, 2, 3};  // per kind; -1: one per axis
   const int size = kSize[static_cast<std::size_t>(order.kind)];
   return in.done() && (size < 0 || order.values.size() == size);
 }
@@ -239,7 +239,7 @@ void UdpPort::answer(const std::string& datagram) const {
 
 void UdpPort::send_to(int port, const std::string& datagram) const {
   const sockaddr_in to = here(htons(static_cast<std::uint16_t>(port)));
-  // A datagram nobody takes is one lost: both sides live with that.
+  // An unread datagram counts as lost: both sides tolerate that.
   (void)sendto(socket_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
                sizeof to);
 }

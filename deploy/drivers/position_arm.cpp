@@ -4,9 +4,9 @@ namespace handsel::drivers {
 
 namespace {
 
-constexpr int kLost = 3;  // cycles without a message
+constexpr int kLost = 3;  // cycles without a message until the link is lost
 
-void judge(const CyclicState& s, bool lost, Measured& out) {
+void measure(const CyclicState& s, bool lost, Measured& out) {
   out.by_person = true;
   if (s.safety == Safety::emergency_stop) {
     out.mode = DriveMode::emergency_stop;
@@ -40,7 +40,7 @@ PositionArm::PositionArm(const RobotModel& model, std::vector<int> arm_axes, dou
 
 void PositionArm::cycle(double now) {
   CyclicState s;
-  // A state of another arm counts as none.
+  // A state of another arm is ignored.
   const bool came = link_.receive(s) &&
                     fit({&s.position, &s.velocity, &s.torque, &s.external_torque, &s.interpolated},
                         core_.arm_axes());
@@ -54,15 +54,15 @@ void PositionArm::cycle(double now) {
   }
   if (s.position.size() == 0) return;
   const bool lost = missed_in_a_row_ >= kLost;
-  if (!came && !lost) return;  // ridden out: the next one says how many cycles have passed
+  if (!came && !lost) return;  // tolerated: the next message contains the number of cycles passed
   const double dt = came ? cycle_ * count_.passed(s.cycle) : cycle_;
-  // The arm left commanding by itself: the references start again from where it stands.
+  // The arm left the commanding state by itself: the references restart from its position.
   const bool dropped =
       session_ == Session::commanding_active && (lost || s.session < Session::commanding_active);
   const bool starts =
       !lost && session_ == Session::commanding_wait && s.session == Session::commanding_active;
   session_ = lost ? Session::idle : s.session;
-  judge(s, lost, measured_);
+  measure(s, lost, measured_);
   const std::vector<int>& axes = core_.arm_axes();
   measured_.position = core_.reference();
   scatter(s.position, axes, measured_.position);

@@ -7,7 +7,7 @@ namespace handsel::drivers {
 
 namespace {
 constexpr int kGripperPeriod = 50;     // cycles between two commands to the gripper
-constexpr double kWidthStep = 0.0005;  // [m]
+constexpr double kWidthStep = 0.0005;  // min change of a commanded width [m]
 }  // namespace
 
 double velocity_toward_end(double position, double end, double max_velocity, double deceleration) {
@@ -72,10 +72,10 @@ void ReflexArm::cycle(double now) {
   ReflexState& s = received_;
   const bool came = link_.read(s) && fit({&s.position, &s.velocity, &s.torque, &s.external_torque},
                                          core_.arm_axes());
-  if (came) std::swap(state_, received_);  // a state of another arm counts as none
+  if (came) std::swap(state_, received_);  // a state of another arm is ignored
   lost_ = came ? 0 : lost_ + 1;
   if (state_.position.size() == 0 || (lost_ > 0 && lost_ < settings_.lost_cycles))
-    return;  // ridden out
+    return;  // tolerated
   const double dt = lost_ == 0 ? kCycle * count_.passed(state_.cycle) : kCycle;
   const std::vector<int>& axes = core_.arm_axes();
   measured_.position = core_.reference();
@@ -119,7 +119,7 @@ double ReflexArm::width_of(double position) const {
                     std::min(g.closed_width, g.open_width), std::max(g.closed_width, g.open_width));
 }
 
-/// Set-points of the axis become widths; beyond what the fingers reach, force.
+/// Converts set-points of the axis to widths, and beyond the range of the fingers to forces.
 void ReflexArm::drive_gripper() {
   const GripperSettings& g = settings_.gripper;
   if (++gripper_wait_ < kGripperPeriod) return;

@@ -11,13 +11,13 @@
 
 namespace {
 
-/// "; the nearest: ..." when names are similar to a word, else nothing.
+/// Returns "; the nearest: ..." if names are similar to a word, otherwise nothing.
 std::string nearest_text(const std::string& word, const std::vector<std::string>& names) {
   const std::vector<std::string> nearest = handsel::nearest_names(word, names);
   return nearest.empty() ? "" : "; the nearest: " + handsel::joined(nearest);
 }
 
-/// Throws ConfigError at the first option, from the i-th argument on, that a command does not have.
+/// Throws ConfigError at the first option, from the i-th argument on, that a command lacks.
 void require_known_options(const CLI::App& command, int i, int argc, char** argv) {
   for (; i < argc && std::string(argv[i]) != "--"; ++i) {
     const std::string word = argv[i], name = word.substr(0, word.find('='));
@@ -30,8 +30,8 @@ void require_known_options(const CLI::App& command, int i, int argc, char** argv
   }
 }
 
-/// Follows the words that name commands; throws ConfigError at one that names none, and at an
-/// option that the command does not have.
+/// Follows the words that name commands; throws ConfigError at an unknown one, and at an option
+/// that the command lacks.
 void require_known(const CLI::App& app, int argc, char** argv) {
   const CLI::App* command = &app;
   int i = 1;

@@ -204,8 +204,8 @@ def merge(mesh, other, x, y, z):
 
 def tray():
     length, width, thick = 0.56, 0.22, 0.02
-    apart, R, stem, high = 0.235, 0.035, 0.012, 0.09  # knobs: middles, radius, of what they stand on, above the middle of the plate
-    middle = (high + R - thick / 2) / 2  # of the whole
+    apart, R, stem, high = 0.235, 0.035, 0.012, 0.09  # knobs: distance, radius, stem, height [m]
+    middle = (high + R - thick / 2) / 2  # of the whole object
     mesh = block(length, width, thick)
     start = math.asin(stem / R)
     n = round((math.pi - start) * R / STEP)

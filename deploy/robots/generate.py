@@ -178,7 +178,7 @@ class Hand:
         return out
 
 
-# Wrist to the tip of the middle finger: 0.300 m the robot's, 0.189 m a grown person's of 1.75 m.
+# Wrist to tip of the middle finger: 0.300 m of the robot, 0.189 m of an adult of 1.75 m.
 HUMAN_SCALE = 0.63
 HUMAN_RANGES = {"abduction": (-20, 20), "proximal": (-20, 90), "middle": (0, 90), "rotation": (-10, 100)}
 
@@ -248,7 +248,8 @@ def barrett():
 
 # --- Jido: mobile platform, column, KUKA LWR 4+ mounted sideways, pan-tilt head ----------------------------------------------------------
 ARM_BASE = ((0.165, -0.1105, 0.907), [[0, 1, 0], [0, 0, -1], [-1, 0, 0]])
-# joint, height above the previous joint, axis, limit [deg], velocity [deg/s], torque [Nm], mass of the link [kg], shapes of the link
+# joint, height above the previous one, axis, limit [deg], [deg/s], [Nm], mass of the link [kg],
+# shapes
 ARM = [
     ("arm_a1", 0.11, (0, 0, 1), 170, 110, 176, 2.35, [cylinder(0.068, 0.15, (0, 0, 0.075)), sphere(0.083, (0, 0, 0.2005))]),
     ("arm_a2", 0.2005, (0, -1, 0), 120, 110, 176, 2.35, [cylinder(0.066, 0.2, (0, 0, 0.1))]),
@@ -294,7 +295,7 @@ def jido():
 TORSO_HEIGHT, TORSO_LINK = 0.7055, 0.300
 HEAD = (0.088, 0, 0.2593)
 SHOULDER = (0.088, 0.256, 0.190)
-# The shoulder's joints begin where axes 1 and 2 meet.
+# The shoulder's joints begin at the intersection of axes 1 and 2.
 DUO_ARM = [("arm_a1", 0.0, (0, 0, 1), 170, 110, 176, 2.35, [sphere(0.083)])] + [
     (name, 0.0 if name == "arm_a2" else height, *rest) for name, height, *rest in ARM[1:]]
 DUO_WRIST = {"arm_a5": (-45, 80), "arm_a6": (-45, 135)}
@@ -305,7 +306,8 @@ def duo():
     out = link("base_link", 120, [cylinder(0.30, 0.34, (0, 0, 0.22)), cylinder(0.13, 0.18, (0, 0, 0.48))])
     out += joint("torso_turn", "revolute", "base_link", "torso_base", (0, 0, 0.6), (0, 0, 0), (0, 0, 1), (-140 * DEG, 200 * DEG, 1.0, 400))
     out += link("torso_base", 8, [cylinder(0.11, 0.1, (0, 0, 0.04))])
-    # Each link of the torso is followed by a joint that turns back: the chest stays upright, both angles are measured from the vertical.
+    # Each link of the torso is followed by a counter-rotating joint: the chest stays
+    # upright, both angles are measured from the vertical.
     parent = "torso_base"
     for name, at, lower, upper in (("torso_lower", TORSO_HEIGHT - 0.6, -70, 90), ("torso_upper", TORSO_LINK, -70, 90)):
         out += joint(name, "revolute", parent, f"{name}_link", (0, 0, at), (0, 0, 0), (0, 1, 0), (lower * DEG, upper * DEG, 0.8, 300))
@@ -318,7 +320,7 @@ def duo():
             parent = child
     out += link("chest", 14, [box(0.2, 0.24, 0.3, (0.03, 0, 0.08))])
     for side, prefix, sign in (("right", "", -1), ("left", "left_", 1)):
-        # Axis 1 points outward and 30 degrees up, x of its frame down and inward on the right; the left arm is the mirror image.
+        # Axis 1 points outward and 30 degrees up, x of its frame down and inward; left: mirrored.
         z = (0, sign * math.sqrt(3) / 2, 0.5)
         y = (1, 0, 0)
         x = (y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0])

@@ -7,10 +7,10 @@ namespace handsel::drivers {
 
 namespace {
 
-constexpr int kUnanswered = 3, kSettle = 20, kMirror = 10, kUntold = 20;  // cycles
-constexpr double kPush = 20.0;                                            // [Nm]
-constexpr double kSlack = 1.1;                                            // of the guard limits
-constexpr double kStep = 60.0;  // change of velocity a second [rad/s^2]
+constexpr int kUnanswered = 3, kSettle = 20, kMirror = 10, kMaxWithoutCommand = 20;  // cycles
+constexpr double kPush = 20.0;                                                       // [Nm]
+constexpr double kSlack = 1.1;  // fraction of the guard limits
+constexpr double kStep = 60.0;  // max change of velocity per second [rad/s^2]
 
 }  // namespace
 
@@ -43,8 +43,8 @@ void FakeCyclicArm::end(const std::string& why) {
 
 void FakeCyclicArm::cycle() {
   ++cycle_count_;
-  const bool told = answered_;
-  unanswered_ = told || session_ < Session::commanding_wait ? 0 : unanswered_ + 1;
+  const bool commanded = answered_;
+  unanswered_ = commanded || session_ < Session::commanding_wait ? 0 : unanswered_ + 1;
   answered_ = false;
   const bool may =
       !events.emergency_stop && !events.user_stop && !events.brake && !events.power_off;
@@ -52,16 +52,16 @@ void FakeCyclicArm::cycle() {
   settled_ = may && session_ == Session::monitoring ? settled_ + 1 : 0;
   if (settled_ > kSettle) session_ = Session::monitoring_ready;
   if (session_ == Session::commanding_wait) {
-    if (told && (wanted_ - position_).cwiseAbs().maxCoeff() > 1e-9)
+    if (commanded && (wanted_ - position_).cwiseAbs().maxCoeff() > 1e-9)
       return end("no mirror of the interpolated position");
-    mirrored_ += told ? 1 : 0;
+    mirrored_ += commanded ? 1 : 0;
     if (mirrored_ > kMirror) {
       session_ = Session::commanding_active;
       ++account.sessions;
     }
   }
   if (session_ != Session::commanding_active) return stand();
-  if (!told) return coast();
+  if (!commanded) return coast();
   const std::string why = why_not(wanted_, [&](std::size_t i, double) {
     return kSlack * model_.guard_limits().velocity[axes_[i]];
   });
@@ -91,7 +91,7 @@ void FakeCyclicArm::on(const Order& order) {
 
 namespace {
 
-/// One axis less, the others elsewhere.
+/// Makes values look like those of another arm: one axis less, different positions.
 void make_foreign(Vector& values) {
   values.conservativeResize(values.size() - 1);
   values.array() += 1.0;
@@ -150,7 +150,8 @@ void FakeReflexArm::cycle() {
     return reflex("push on " + model_.axes()[static_cast<std::size_t>(axes_[0])].name);
   if (!was_commanded_) {
     untold_ = speed() > 0.0 ? untold_ + 1 : 0;
-    if (untold_ >= kUntold) return reflex("no command for " + std::to_string(kUntold) + " cycles");
+    if (untold_ >= kMaxWithoutCommand)
+      return reflex("no command for " + std::to_string(kMaxWithoutCommand) + " cycles");
     return coast();
   }
   untold_ = 0;
@@ -170,9 +171,10 @@ void FakeReflexArm::cycle() {
 }
 
 void FakeReflexArm::move_gripper() {
-  const double step = gripper_speed_ * period(), least = std::max(gripper_target_, events.object);
-  width_ = width_ > least ? std::max(least, width_ - step)
-                          : std::min(std::max(gripper_target_, width_), width_ + step);
+  const double step = gripper_speed_ * period(),
+               min_width = std::max(gripper_target_, events.object);
+  width_ = width_ > min_width ? std::max(min_width, width_ - step)
+                              : std::min(std::max(gripper_target_, width_), width_ + step);
   gripping_ =
       events.object > 0.0 && width_ <= events.object + 1e-9 && gripper_target_ < events.object
           ? force_

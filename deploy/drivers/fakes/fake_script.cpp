@@ -27,7 +27,7 @@ bool number(const std::string& text, double& out) {
   return !text.empty() && *end == '\0' && std::isfinite(out);
 }
 
-/// Why not; empty: it is a line.
+/// Reads a line of the script; returns the reason of an error, or an empty text.
 std::string read(const std::string& text, FakeLine& line) {
   std::istringstream in(text);
   std::string when, amount;

@@ -1,5 +1,5 @@
-// A maker's controller that is not there: speaks to a driver over UDP at the arm's own cycle, plays
-// a script, and says at its end what it was told and what it would not have taken.
+// Simulated controller of an arm's maker: exchanges UDP with a driver at the arm's cycle, plays a
+// script, and reports at its end what it was commanded and what it would have refused.
 #include <unistd.h>
 
 #include <atomic>
@@ -39,7 +39,7 @@ void play(FakeArm& arm, FakeScript& script, int driver_port) {
     for (; !late.empty() && late.front().first <= now; late.pop_front())
       port.send_to(driver_port, late.front().second);
     next += from_seconds(arm.period());
-    if (next < now) next = now;  // this machine was held up: no burst afterwards
+    if (next < now) next = now;  // this machine was delayed: no burst of cycles afterwards
     for (Duration left = next - monotonic_now(); left > Duration::zero() && port.wait(left);
          left = next - monotonic_now())
       while (port.receive(datagram))

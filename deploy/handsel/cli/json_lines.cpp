@@ -14,10 +14,10 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t kMaxLine = 16u << 20;  // [bytes]
-constexpr int kMaxDepth = 64;                // of lists and objects: writing them recurses
+constexpr std::size_t kMaxLine = 16u << 20;  // max line length [bytes]
+constexpr int kMaxDepth = 64;  // max depth of lists and objects, as writing is recursive
 
-/// Depth of lists and objects, counted without parsing.
+/// Returns the depth of lists and objects, counted without parsing.
 int depth_of(const std::string& text) {
   int depth = 0, deepest = 0;
   bool in_text = false;

@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Measured once, beside the benchmarks, on 2 vCPU (Zen 4, AVX-512): for where the peer is not
-/// built. docs/trajectory.md says how.
+/// Values of the peer on 2 vCPU (Zen 4, AVX-512), used if the peer is not built; method:
+/// docs/trajectory.md.
 struct Recorded {
   const char *benchmark, *peer;
   double ns;
@@ -33,7 +33,7 @@ constexpr std::array kRecorded{Recorded{"synchronised/rest_to_rest", kRuckig, 32
                                Recorded{"control_tick", kRuckig, 124},
                                Recorded{"smooth_ten_nodes", "MoveIt TOTG (no jerk)", 2.8e6}};
 
-/// Those that take a filter and answer in JSON; the others print what they measure.
+/// Returns whether a benchmark takes a filter and answers in JSON; the others print their results.
 bool has_table(const fs::path& program) { return program.filename() == "bench_trajectory"; }
 
 std::vector<fs::path> programs() {

@@ -70,8 +70,8 @@ CartesianRequest request_of(const json& line, const RobotModel& robot) {
   return request;
 }
 
-/// Robot at the start and the end, what is around it, the path and its nodes in green, TR in black;
-/// a corner that keeps its stop in red (the chapter's Fig. 20).
+/// Draws the robot at start and end, its surroundings, the path and its nodes in green, TR in
+/// black; a node that keeps its stop in red (the chapter's Fig. 20).
 void draw(const std::string& file, int size, const RobotModel& robot, const json& line,
           const CartesianRequest& request, const CartesianMotion& motion) {
   std::vector<Vector3> smooth;

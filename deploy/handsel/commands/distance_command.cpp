@@ -33,7 +33,7 @@ Pose pose_of(const json& pose) {
   return make_pose(vector3(pose, "xyz"), quaternion(pose, "quat_xyzw"));
 }
 
-json judge(const json& pair) {
+json measure_pair(const json& pair) {
   const ShapeDistance d = shape_distance(shape_of(field(pair, "a")), pose_of(field(pair, "Ta")),
                                          shape_of(field(pair, "b")), pose_of(field(pair, "Tb")));
   return {{"collide", d.collide}, {"distance", d.distance}};
@@ -48,7 +48,8 @@ void add_distance_command(CLI::App& app, int& exit_code) {
       R"(A line: {"a": {"type": "sphere|box|cylinder|capsule", "r", "l", "xyz"}, "Ta": {"xyz",
 "quat_xyzw"}, "b": ..., "Tb": ...})");
   distance->add_flag("--json")->description("JSON Lines (always so)");
-  distance->callback([&exit_code] { exit_code = for_each_line(std::cin, std::cout, judge); });
+  distance->callback(
+      [&exit_code] { exit_code = for_each_line(std::cin, std::cout, measure_pair); });
 }
 
 }  // namespace handsel

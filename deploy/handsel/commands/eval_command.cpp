@@ -45,27 +45,27 @@ struct EvalOptions {
 /// Mean period of each behaviour's clock and of each piece of work [s].
 using Periods = std::map<std::string, double>;
 
-/// Share of the way from p_min to p_max, on a logarithmic scale, at which all clocks of the mode
-/// "fixed:SHARE" stand; nullopt: another mode.
-std::optional<double> fixed_share(const std::string& mode) {
+/// Returns the position of all clocks between p_min and p_max, on a logarithmic scale, in the mode
+/// "fixed:SHARE"; nullopt: another mode.
+std::optional<double> fixed_ratio(const std::string& mode) {
   if (!mode.starts_with("fixed:")) return std::nullopt;
   char* end = nullptr;
-  const double share = std::strtod(mode.c_str() + 6, &end);
-  if (end == mode.c_str() + 6 || *end != 0 || !(share >= 0 && share <= 1))
+  const double ratio = std::strtod(mode.c_str() + 6, &end);
+  if (end == mode.c_str() + 6 || *end != 0 || !(ratio >= 0 && ratio <= 1))
     throw ConfigError("--attention is \"" + mode +
                       "\"; what follows fixed: must be a number from 0 to 1");
-  return share;
+  return ratio;
 }
 
-/// How the attention's clocks run: as set ("adaptive"), all at their shortest period ("max"), each
-/// always at the mean period of the adaptive ones ("mean"), at a share of the way to the longest
-/// ("fixed:0.4"), or no attention ("off").
+/// Sets how the attention's clocks run: as set ("adaptive"), all at p_min ("max"), each always at
+/// the mean period of the adaptive ones ("mean"), at a ratio between p_min and p_max ("fixed:0.4"),
+/// or no attention ("off").
 void set_mode(const std::string& mode, const Periods& mean, config::AttentionSettings& settings) {
   settings.set_off(mode == "off");
-  const std::optional<double> share = fixed_share(mode);
-  if (mode != "max" && mode != "mean" && !share) return;
+  const std::optional<double> ratio = fixed_ratio(mode);
+  if (mode != "max" && mode != "mean" && !ratio) return;
   const auto period = [&](const auto& clock, const std::string& name) {
-    if (share) return clock.p_min() * std::pow(clock.p_max() / clock.p_min(), *share);
+    if (ratio) return clock.p_min() * std::pow(clock.p_max() / clock.p_min(), *ratio);
     const auto known = mean.find(name);
     return mode == "max" || known == mean.end()
                ? clock.p_min()
@@ -78,7 +78,8 @@ void set_mode(const std::string& mode, const Periods& mean, config::AttentionSet
   for (auto& work : *settings.mutable_works()) work.set_period(period(work, "work " + work.name()));
 }
 
-/// Sets the law of a clock; the law margin only of behaviours that observe the distance to people.
+/// Sets the adaptation law of a clock; "margin" only for behaviours that observe the distance to
+/// people.
 void set_law(const std::string& law, config::AttentionBehaviour& behaviour) {
   const bool observes_people = behaviour.kind() == config::AVOID ||
                                (behaviour.kind() == config::BY_NAME && behaviour.name() == "avoid");
@@ -88,7 +89,7 @@ void set_law(const std::string& law, config::AttentionBehaviour& behaviour) {
     behaviour.set_law(config::MARGIN);
 }
 
-/// The settings with the attention's law and mode replaced: a copy of the folder, removed with this
+/// Copy of the settings folder with the attention's law and mode replaced; deleted with this
 /// object.
 class DerivedSettings {
  public:
@@ -118,13 +119,13 @@ class DerivedSettings {
   DerivedSettings& operator=(const DerivedSettings&) = delete;
   const std::filesystem::path& folder() const {
     return folder_;
-  }  ///< empty: the settings as they are
+  }  ///< empty: the unchanged settings
 
  private:
   std::filesystem::path folder_;
 };
 
-/// What is compared: a mode and a law.
+/// A condition of the comparison: a mode and a law.
 struct Condition {
   std::string name, mode, law;
   std::shared_ptr<const DerivedSettings> settings;
@@ -157,7 +158,7 @@ void print_table(const TrialTable& table, const std::vector<std::string>& by) {
   std::fputs(table.text(by).c_str(), stderr);
 }
 
-/// The inputs of each trial: a context is loaded once for each robot.
+/// Caches the inputs of trials: a context is loaded once per robot.
 class Contexts {
  public:
   Contexts(std::string scenario, std::string robot, std::filesystem::path settings)
@@ -180,8 +181,8 @@ class Contexts {
   std::map<std::string, NodeContext> loaded_;
 };
 
-/// All conditions of a seed side by side, in an order drawn by the seed: what disturbs a machine,
-/// or a person, disturbs all alike.
+/// Plans all conditions of a seed side by side, in an order drawn by the seed: disturbances of a
+/// machine, or of a person, affect all alike.
 std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Condition>& conditions,
                                std::uint64_t first, int count) {
   std::vector<Trial> trials;
@@ -226,7 +227,8 @@ int jobs_of(const EvalOptions& options) {
                           : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// What the adaptive clocks come to, in trials with seeds of their own: every shard finds the same.
+/// Returns the mean periods of the adaptive clocks, from trials with separate seeds: the same for
+/// every shard.
 Periods mean_periods(const EvalOptions& options, const std::string& law) {
   constexpr std::uint64_t kApart = 1'000'000;
   EvalOptions pilot = options;
@@ -235,7 +237,7 @@ Periods mean_periods(const EvalOptions& options, const std::string& law) {
   pilot.record.clear();
   const std::vector<Condition> adaptive{
       {"adaptive", "adaptive", law, std::make_shared<DerivedSettings>(law, "adaptive", Periods{})}};
-  std::map<std::string, double> looks;
+  std::map<std::string, double> activations;
   double time = 0;
   run_trials(plan_trials(pilot, adaptive, options.seed + kApart, std::min(options.trials, 8)),
              jobs_of(options), [&](const nlohmann::json& line) {
@@ -243,19 +245,21 @@ Periods mean_periods(const EvalOptions& options, const std::string& law) {
                const double duration = line["duration_s"];
                time += duration;
                for (const auto& [behaviour, count] : line["activations_of"].items())
-                 looks[behaviour] += count.get<double>();
+                 activations[behaviour] += count.get<double>();
                for (const auto& [work, period] : line["work_period_s"].items())
-                 if (period.is_number()) looks["work " + work] += duration / period.get<double>();
+                 if (period.is_number())
+                   activations["work " + work] += duration / period.get<double>();
              });
   Periods mean;
-  for (const auto& [what, count] : looks) {
+  for (const auto& [what, count] : activations) {
     mean[what] = time / std::max(1.0, count);
     std::fprintf(stderr, "%-13s every %.3f s when adaptive\n", what.c_str(), mean[what]);
   }
   return mean;
 }
 
-/// Each mode with each law; where no clock adapts the law says nothing, and one is enough.
+/// Returns each mode with each law; without adaptive clocks the law has no effect, and one is
+/// enough.
 std::vector<Condition> conditions_of(const EvalOptions& options) {
   std::vector<Condition> conditions;
   const std::vector<std::string> laws =
@@ -282,7 +286,7 @@ void report(const EvalOptions& options, const Study& study) {
   if (!options.report.empty()) write_study(study, reference, options.report);
 }
 
-/// Lines of trials done before, e.g. by the shards of a batch engine.
+/// Reports lines of earlier trials, e.g. from the shards of a batch system.
 int report_files(const EvalOptions& options) {
   Study study;
   TrialTable table;
@@ -394,7 +398,7 @@ void add_eval_command(CLI::App& app, int& exit_code) {
         for (const char* known : {"adaptive", "max", "mean", "off"})
           if (mode == known) return std::string();
         try {
-          return fixed_share(mode)
+          return fixed_ratio(mode)
                      ? std::string()
                      : "\"" + mode + "\" is none of adaptive, max, mean, off, fixed:SHARE";
         } catch (const ConfigError& error) {

@@ -43,7 +43,7 @@ json line_of(const Choice& choice, std::size_t i) {
   return line;
 }
 
-/// The robot at the grasp and, when there is a goal, where it puts the object.
+/// Draws the robot at the grasp and, if there is a goal, at the placement of the object.
 Picture picture_of(const Stage& stage, const Scene& scene, const GraspRequest& request,
                    const Choice& choice, int size) {
   const Grasp& g = choice.grasps.front();

@@ -145,7 +145,7 @@ int transfer(const TransferOptions& o) {
   request.start = stage.robot->rest_configuration();
   request.max_grasps = o.number;
   settings::GraspPlannerSettings weights;
-  weights.rank_transfer = 3;  // the person before all
+  weights.rank_transfer = 3;  // the person has priority
   const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), weights);
   start = Clock::now();
   const Choice choice =
@@ -222,14 +222,14 @@ void print_plan(const RegraspPlan& plan, const Stage& stage, bool text) {
   for (std::size_t n = 0; n < plan.steps.size(); ++n) {
     const grasp_planner::RegraspStep& s = plan.steps[n];
     const Vector3 p = s.T_world_object.translation();
-    std::string who =
+    std::string hands =
         s.from >= 0 ? arm(s.from) + " (grasp " + std::to_string(id(s.from, s.grasp_from)) + ")"
                     : "";
     if (s.to >= 0)
-      who += (who.empty() ? "" : " to ") + arm(s.to) + " (grasp " +
-             std::to_string(id(s.to, s.grasp_to)) + ")";
-    std::printf("%zu. %-5s %s, object at %.2f %.2f %.2f\n", n + 1, name(s.kind), who.c_str(), p.x(),
-                p.y(), p.z());
+      hands += (hands.empty() ? "" : " to ") + arm(s.to) + " (grasp " +
+               std::to_string(id(s.to, s.grasp_to)) + ")";
+    std::printf("%zu. %-5s %s, object at %.2f %.2f %.2f\n", n + 1, name(s.kind), hands.c_str(),
+                p.x(), p.y(), p.z());
   }
   if (plan.steps.empty())
     std::printf("%s\n", plan.solved ? "nothing has to change" : plan.reason.c_str());

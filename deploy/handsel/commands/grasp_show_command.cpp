@@ -27,7 +27,7 @@ struct ShowOptions : ListOptions {
   double azimuth{0}, elevation{20};
 };
 
-/// Not to be mistaken for one another: the two sides of a grasp, seen past the hand.
+/// Returns the two viewing directions of a grasp, past the hand, that differ clearly.
 std::vector<Vector3> sides(const ShowOptions& o, const Vector3& from) {
   std::vector<Vector3> out;
   const double start = from.head<2>().norm() > 1e-6 ? std::atan2(from.y(), from.x()) : 0.0,

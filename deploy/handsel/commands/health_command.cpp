@@ -18,20 +18,21 @@ struct HealthOptions {
   std::string component;
 };
 
-/// Listens to nothing but health: this runs beside every process of a deployment, again and again.
+/// Subscribes to health only, as this runs repeatedly beside every process of a deployment.
 int ask(const HealthOptions& options) {
   catch_interrupts();
   DdsBus bus({.component = "handsel",
               .domain = static_cast<std::uint32_t>(options.domain),
               .health = false});
-  Snapshot heard;
+  Snapshot received;
   bus.subscribe<ComponentHealth>([&](const ComponentHealth& health, const Receipt& receipt) {
-    heard.health[health.component] = {.ever = true, .sample = health, .arrival = receipt.arrival};
+    received.health[health.component] = {
+        .ever = true, .sample = health, .arrival = receipt.arrival};
   });
   bus.every(from_seconds(0.02), [](TimePoint) {});
   const auto lacking = [&] {
-    if (options.component.empty()) return not_ready(heard);
-    const std::string why = why_not_ready(heard, options.component);
+    if (options.component.empty()) return not_ready(received);
+    const std::string why = why_not_ready(received, options.component);
     return why.empty() ? std::vector<std::string>{}
                        : std::vector<std::string>{options.component + " (" + why + ")"};
   };
@@ -45,7 +46,7 @@ int ask(const HealthOptions& options) {
   std::string text;
   for (const std::string& one : lacking()) text += (text.empty() ? "" : ", ") + one;
   std::printf("not ready on DDS domain %d: %s\n", options.domain, text.c_str());
-  return heard.health.empty() ? 3 : 1;
+  return received.health.empty() ? 3 : 1;
 }
 
 }  // namespace

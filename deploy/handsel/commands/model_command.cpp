@@ -23,7 +23,7 @@ bool is_urdf(const std::string& robot) {
   return robot.ends_with(".urdf") || robot.ends_with(".xml");
 }
 
-/// A URDF file, a description file or the name of a robot.
+/// Loads a URDF file, a description file or the robot of a name.
 RobotModel load_any(const std::string& robot, Meshes meshes) {
   if (is_urdf(robot)) return RobotModel::load_urdf(robot, {}, meshes);
   return RobotModel::load(robot_description(robot));
@@ -65,18 +65,18 @@ void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
     }
 }
 
-/// In some posture of a pinching hand the pads' directions are opposite.
+/// Returns whether the pads of a pinching hand oppose each other in some configuration.
 bool pads_face(const HandModel& hand) {
   std::vector<Pose> T;
   for (int i = 0; i <= 10; ++i) {
     hand.model().forward(
         hand.lower_contact() + 0.1 * i * (hand.upper_contact() - hand.lower_contact()), T);
-    const auto way = [&](const Finger& finger) {
+    const auto direction = [&](const Finger& finger) {
       return Vector3(
           T[static_cast<std::size_t>(hand.model().link_index(finger.tip_link))].linear() *
           finger.pad->T_tip_pad.linear().col(2));
     };
-    if (way(hand.fingers()[0]).dot(way(hand.fingers()[1])) < -0.985) return true;
+    if (direction(hand.fingers()[0]).dot(direction(hand.fingers()[1])) < -0.985) return true;
   }
   return false;
 }
@@ -140,7 +140,7 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
 
 namespace {
 
-/// Further arms: their hands' descriptions and joints.
+/// Checks the hand descriptions and joints of further arms.
 void check_other_arms(const std::filesystem::path& description, const RobotModel& robot,
                       std::vector<std::string>& lacks) {
   for (const Manipulator& m : manipulators(description, robot)) {

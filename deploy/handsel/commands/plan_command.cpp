@@ -26,7 +26,7 @@ using namespace command;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kCartesianChecks = 1e5;  // a second: each branch of the goal has its share of them
+constexpr double kCartesianChecks = 1e5;  // per second; divided among the branches of the goal
 
 struct Options {
   std::string robot, srdf, group, planner{"auto"}, space{"joint"};
@@ -153,7 +153,7 @@ class Batch {
       throw LineError("\"axis\" of \"upright\" must not be zero");
   }
 
-  /// Leaves the axes of the path in the problem.
+  /// Stores the axes of the path in the problem.
   path_planner::Result in_the_cartesian_space(const json& item, HumanCost& cost,
                                               path_planner::Problem& problem,
                                               const path_planner::Hooks& hooks) {
@@ -187,7 +187,7 @@ class Batch {
         path_planner::plan_cartesian(robot_, world_, cost, asked, {}, hooks), problem.axes);
   }
 
-  /// Why no posture reaches the goals, or empty.
+  /// Returns the reason if no configuration reaches the goals, or an empty text.
   std::string read_goals(const json& item, path_planner::Problem& problem) {
     const json& goals = field(item, "goals");
     if (!goals.is_array() || goals.empty())

@@ -49,10 +49,11 @@ int record(const RecordOptions& options) {
   return recorder.file().messages() > 0 ? 0 : 1;
 }
 
-/// A robot must not be told two states, a system not two sights: who feeds it already goes first.
+/// Refuses a replay of topics that have a live writer: a robot must not receive two states, a
+/// system not two observations.
 void require_silence(DdsBus& bus, const std::vector<std::string>& topics) {
   bus.run_until([] { return interrupted(); },
-                std::chrono::milliseconds(1500));  // until everybody is discovered
+                std::chrono::milliseconds(1500));  // until all participants are discovered
   const std::set<std::string> fed(topics.begin(), topics.end());
   for (const DomainEndpoint& end : bus.discovered_domain().endpoints) {
     const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;

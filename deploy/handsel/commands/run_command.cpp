@@ -38,8 +38,8 @@ struct TemporaryFile {
   }
 };
 
-/// The scenario with its first person played from a recording, as a file of its own. Each process
-/// draws from it what varies.
+/// Writes the scenario with its first person played from a recording into a separate file. Each
+/// process draws the random values from it.
 std::filesystem::path with_recording(const std::string& name, const std::string& recording) {
   config::Scenario scenario;
   load_text_proto(scenario_file(name), scenario);
@@ -50,7 +50,7 @@ std::filesystem::path with_recording(const std::string& name, const std::string&
                                         ? std::filesystem::absolute(recording)
                                         : std::filesystem::path(recording);
   sim::load_recording(
-      sim::resolve_recording(own, sim::data_root()));  // one that cannot be played starts nothing
+      sim::resolve_recording(own, sim::data_root()));  // an invalid recording starts nothing
   scenario.mutable_people(0)->set_recording(own.string());
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("handsel-" + std::to_string(getpid()) + ".txtpb");
@@ -88,7 +88,7 @@ int run(RunOptions& options) {
   catch_interrupts();
   const config::Scenario scenario =
       read_scenario(scenario_file(options.system.scenario), options.system.seed);
-  scenario_goals(scenario);  // a scenario that cannot be performed starts nothing
+  scenario_goals(scenario);  // a scenario without a valid task starts nothing
   const std::string shown = options.system.scenario;
   if (!options.report.empty())
     write_report(options.report, nlohmann::json{{"success", false}, {"failure", "did not end"}});
@@ -132,7 +132,7 @@ int run(RunOptions& options) {
   system.wait(std::chrono::hours(24), [&] { return performer.finished(); });
   if (!performer.finished()) performer.abort("interrupted");
   mark(performer.succeeded() ? "done" : "failed");
-  session.listen(from_seconds(0.3));  // the last health samples
+  session.listen(from_seconds(0.3));  // receives the last health samples
   session.observer().on_event({});
 
   for (const ProcessStatus& process : system.launcher().processes()) {

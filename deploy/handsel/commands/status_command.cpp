@@ -11,7 +11,7 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kFirstLook = std::chrono::milliseconds(900);
+constexpr Duration kDiscoveryTime = std::chrono::milliseconds(900);
 
 struct StatusOptions {
   int domain{0};
@@ -22,7 +22,7 @@ int show(const StatusOptions& options) {
   catch_interrupts();
   Session session(options.domain);
   session.require_system();
-  session.listen(kFirstLook);
+  session.listen(kDiscoveryTime);
   const bool json = json_wanted(options.json);
   SystemStatus status;
   do {

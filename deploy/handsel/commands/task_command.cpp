@@ -17,7 +17,7 @@
 namespace handsel {
 namespace {
 
-/// The plan as a tree, one line a task or an action.
+/// Returns the plan as a tree, one line per task or action.
 std::string tree_text(const std::vector<PlanStep>& tree) {
   constexpr std::array kMarks = {"[ ] ", "[>] ", "[x] ", "[!] ", "[-] "};
   std::string out;
@@ -30,8 +30,8 @@ std::string tree_text(const std::vector<PlanStep>& tree) {
   return out;
 }
 
-/// Shows the tree on stderr whenever it changes, under what else happens: in place on a terminal,
-/// else only lines that are new.
+/// Shows the tree on stderr whenever it changes, below the events: in place on a terminal,
+/// otherwise only new lines.
 class TreeView {
  public:
   void show(const TaskStatus& status) {
@@ -41,8 +41,8 @@ class TreeView {
     shown_ = text;
     draw();
   }
-  void tell(const std::string& event) {
-    if (event.starts_with("task ")) return;  // the tree shows it
+  void report(const std::string& event) {
+    if (event.starts_with("task ")) return;  // the tree contains it
     erase();
     std::fprintf(stderr, "%s\n", event.c_str());
     if (in_place_) draw();
@@ -60,11 +60,11 @@ class TreeView {
     }
     std::istringstream lines(shown_);
     for (std::string line; std::getline(lines, line);)
-      if (told_.insert(line).second) std::fprintf(stderr, "%s\n", line.c_str());
+      if (reported_.insert(line).second) std::fprintf(stderr, "%s\n", line.c_str());
   }
   const bool in_place_{progress_wanted()};
   std::string shown_;
-  std::set<std::string> told_;
+  std::set<std::string> reported_;
 };
 
 nlohmann::json tree_json(const std::vector<PlanStep>& tree) {
@@ -83,7 +83,7 @@ struct TaskOptions {
   TaskGoal goal;
 };
 
-/// Follows the goal to its end; Ctrl-C cancels it.
+/// Performs the goal to its end; Ctrl-C cancels it.
 int perform(const TaskOptions& options) {
   catch_interrupts();
   Session session(options.domain);
@@ -98,11 +98,11 @@ int perform(const TaskOptions& options) {
     return found == session.snapshot().tasks.end() ? nullptr : &found->second;
   };
   TreeView view;
-  session.observer().on_event([&view](const TimelineEvent& event) { view.tell(event.text); });
+  session.observer().on_event([&view](const TimelineEvent& event) { view.report(event.text); });
   TimePoint sent = session.bus().now();
   const auto over = [&] {
     if (status()) view.show(*status());
-    // A supervisor that was started anew is told again; it takes the task up where the world is.
+    // The goal is sent again to a restarted supervisor, which resumes from the state of the world.
     const TimePoint now = session.bus().now();
     if (status() && !is_over(status()->state) &&
         now - session.snapshot().task.arrival >= kTaskSilence && now - sent >= kTaskSilence) {
@@ -139,15 +139,15 @@ int perform(const TaskOptions& options) {
   return status() && status()->state == TaskState::succeeded ? 0 : 1;
 }
 
-/// About the running task, the robot or the system: pause, resume, cancel, acknowledge, speed.
-/// Prints what holds the robot afterwards.
-int tell(const TaskOptions& options) {
+/// Sends a request about the running task, the robot or the system: pause, resume, cancel,
+/// acknowledge, speed. Then prints the causes that hold the robot.
+int send_request(const TaskOptions& options) {
   catch_interrupts();
   Session session(options.domain);
   session.require_system();
   TaskGoal goal = options.goal;
   goal.id = session.new_task_id();
-  session.listen(from_seconds(0.3));  // the newest status of the running task is transient local
+  session.listen(from_seconds(0.3));  // the latest status of the running task is transient local
   const Seen<TaskStatus> before = session.snapshot().task;
   const bool about_task = goal.kind == TaskKind::cancel;
   if (about_task && (!before.ever || is_over(before.sample.state))) {
@@ -179,7 +179,7 @@ int tell(const TaskOptions& options) {
   return 0;
 }
 
-/// Says who was cleared, or why nobody was.
+/// Prints who was cleared, or the reason why no one was.
 int clear_person(const TaskOptions& options) {
   catch_interrupts();
   Session session(options.domain);
@@ -219,7 +219,7 @@ int clear_person(const TaskOptions& options) {
   return done ? 0 : 1;
 }
 
-/// One of the targets must be given.
+/// Adds the options of a target, one of which is required.
 void add_drive_options(CLI::App& command, TaskGoal& goal) {
   CLI::Option_group* target = command.add_option_group("target", "where to");
   target->add_option("--object", goal.object, "object, to where the arm reaches it");
@@ -302,12 +302,12 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   add_drive_options(*drive.first, drive.second->goal);
   add(*task, exit_code, "pause",
       "stops the robot with limited jerk until a person resumes, whatever restarts",
-      TaskKind::pause, tell);
+      TaskKind::pause, send_request);
   add(*task, exit_code, "resume", "ends a pause, and the wait after a stop of the robot",
-      TaskKind::resume, tell);
-  add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, tell);
+      TaskKind::resume, send_request);
+  add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, send_request);
   add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault or stop",
-      TaskKind::acknowledge, tell);
+      TaskKind::acknowledge, send_request);
 
   auto clear_lost =
       add(*task, exit_code, "clear-person", "says that a person SPARK has lost sight of is gone",
@@ -316,7 +316,7 @@ void add_task_commands(CLI::App& app, int& exit_code) {
       ->add_option("person", clear_lost->goal.human, "who; without, everybody lost");
 
   auto speed =
-      add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, tell);
+      add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, send_request);
   CLI::App* command = app.get_subcommand("speed");
   command
       ->add_option_function<double>(

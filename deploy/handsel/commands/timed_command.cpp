@@ -81,9 +81,9 @@ int run_timed(const TimedOptions& options) {
     json corners = json::array(), speeds = json::array();
     for (const Refusal& corner : result.reply.corners)
       corners.push_back({{"what", corner.what}, {"reason", corner.reason}});
-    for (const LimitZones& leg : result.speeds) {
+    for (const LimitZones& zones : result.speeds) {
       speeds.push_back(json::array());
-      for (const LimitZone& zone : leg)
+      for (const LimitZone& zone : zones)
         speeds.back().push_back(
             {zone.end, zone.scale.velocity, zone.scale.acceleration, zone.scale.jerk});
     }

@@ -81,14 +81,14 @@ int rate(const TopicOptions& options) {
   Session session(options.domain);
   std::uint64_t count = 0;
   TimePoint first{}, last{};
-  Duration longest{0}, shortest = Duration::max();
+  Duration max_gap{0}, min_gap = Duration::max();
   session.bus().subscribe_any(type,
                               [&](const void*, const Receipt& receipt) {
                                 if (count++ == 0) {
                                   first = receipt.arrival;
                                 } else {
-                                  longest = std::max(longest, receipt.arrival - last);
-                                  shortest = std::min(shortest, receipt.arrival - last);
+                                  max_gap = std::max(max_gap, receipt.arrival - last);
+                                  min_gap = std::min(min_gap, receipt.arrival - last);
                                 }
                                 last = receipt.arrival;
                               },
@@ -104,13 +104,13 @@ int rate(const TopicOptions& options) {
     std::printf("%s\n", nlohmann::json{{"topic", type.row().topic},
                                        {"rate_hz", hz},
                                        {"samples", count},
-                                       {"min_gap_s", to_seconds(shortest)},
-                                       {"max_gap_s", to_seconds(longest)}}
+                                       {"min_gap_s", to_seconds(min_gap)},
+                                       {"max_gap_s", to_seconds(max_gap)}}
                             .dump()
                             .c_str());
   } else {
     std::printf("%s: %.1f Hz, gaps %.1f to %.1f ms over %llu samples\n", type.row().topic, hz,
-                1e3 * to_seconds(shortest), 1e3 * to_seconds(longest),
+                1e3 * to_seconds(min_gap), 1e3 * to_seconds(max_gap),
                 static_cast<unsigned long long>(count));
   }
   return 0;

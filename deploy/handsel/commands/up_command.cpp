@@ -31,7 +31,7 @@ void add_up_command(CLI::App& app, int& exit_code) {
     std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s; logs in %s\n",
                  system.launcher().processes().size(), options->domain, options->scenario.c_str(),
                  system.log_directory().c_str());
-    // A part of a system has nobody to blame for what runs elsewhere: it waits.
+    // A part of a system waits, as it cannot check components started elsewhere.
     const auto took = system.wait_ready(options->whole() ? kReadyTimeout
                                                          : Duration(std::chrono::hours(24 * 365)));
     if (took) {

@@ -33,9 +33,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr Duration kEnter = std::chrono::seconds(5);  // for one participant, on a busy machine
-constexpr Duration kMeet = std::chrono::seconds(3);   // for all to hear each other
-constexpr Duration kLook = std::chrono::milliseconds(800);
+constexpr Duration kEnter = std::chrono::seconds(5);  // until one has entered, on a busy machine
+constexpr Duration kMeet = std::chrono::seconds(3);   // until all have received each other
+constexpr Duration kListenTime = std::chrono::milliseconds(800);
 constexpr Duration kSpeak = std::chrono::milliseconds(50);
 constexpr const char* kDefaultRemedy =
     "correct it, or unset CYCLONEDDS_URI: Handsel then uses deploy/dds/loopback.xml";
@@ -48,8 +48,8 @@ double wall_minus_monotonic() {
          static_cast<double>(wall.tv_nsec - monotonic.tv_nsec) * 1e-9;
 }
 
-/// The first that the transport said on stderr (but that it does without multicast), without its
-/// time, thread and process; else the last line.
+/// Returns the first complaint of the transport on stderr (except about multicast), without its
+/// time, thread and process; otherwise the last line.
 std::string complaint(const std::string& said) {
   std::istringstream lines(said);
   std::string last;
@@ -64,7 +64,8 @@ std::string complaint(const std::string& said) {
   return last;
 }
 
-/// One process that speaks on the domain until it is ended; reports "in" once it has entered.
+/// Starts a process that publishes on the domain until it is ended; reports "in" once it has
+/// entered.
 Probe speaker(int domain, std::uint64_t meeting, std::uint64_t number) {
   return Probe([=](const Probe::Report& report) {
     DdsBus bus(
@@ -78,18 +79,18 @@ Probe speaker(int domain, std::uint64_t meeting, std::uint64_t number) {
   });
 }
 
-/// Delay between stamp and arrival by this machine's wall clock; the least one is free of queues.
+/// Delay between stamp and arrival by this machine's wall clock; the min one is free of queueing.
 struct Offset {
   std::uint64_t samples{};
-  double least{std::numeric_limits<double>::infinity()};
+  double min_delay{std::numeric_limits<double>::infinity()};
   void add(Stamp stamp, TimePoint arrival) {
     ++samples;
-    least = std::min(least, to_seconds(arrival.time_since_epoch()) + wall_minus_monotonic() -
-                                to_seconds(Duration(stamp)));
+    min_delay = std::min(min_delay, to_seconds(arrival.time_since_epoch()) +
+                                        wall_minus_monotonic() - to_seconds(Duration(stamp)));
   }
 };
 
-/// Writers of each topic with one writer: name, and whether the table lets it write there.
+/// Returns the writers of each topic with one writer: name, and whether the table allows them.
 Json writers_of(const DomainView& view) {
   Json out = Json::object();
   for (const DomainEndpoint& end : view.endpoints) {
@@ -98,7 +99,7 @@ Json writers_of(const DomainView& view) {
     const std::string name =
         (end.owner.component.empty() ? "process " + end.owner.process : end.owner.component) +
         " (pid " + std::to_string(end.owner.pid) + " on " + end.owner.host + ")";
-    // The lane has a writer of its own only while it hands over a command.
+    // The ROS 2 data path has a separate writer only while it hands over a command.
     if (row == &TopicOf<TrajectoryCommand>::row && end.owner.component == "ros2_lane") continue;
     out[row->topic].push_back(
         {{"who", name}, {"may", end.unmatched.empty() && may_write(*row, end.owner.component)}});
@@ -106,14 +107,14 @@ Json writers_of(const DomainView& view) {
   return out;
 }
 
-/// What one observer sees of the domain in a second or two.
-class Look {
+/// Observation of the domain by one participant during one or two seconds.
+class DomainObservation {
  public:
-  Look(const DoctorOptions& options, std::uint64_t meeting, std::size_t speakers)
+  DomainObservation(const DoctorOptions& options, std::uint64_t meeting, std::size_t speakers)
       : options_(options), meeting_(meeting), speakers_(speakers), session_(options.domain) {
     DdsBus& bus = session_.bus();
     bus.subscribe<StateVerdict>([this](const StateVerdict& verdict, const Receipt&) {
-      if (verdict.id.client == meeting_) heard_.insert(verdict.id.number);
+      if (verdict.id.client == meeting_) received_.insert(verdict.id.number);
     });
     bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt& receipt) {
       clocks_[health.component].add(health.stamp, receipt.arrival);
@@ -133,11 +134,11 @@ class Look {
   Json operator()() {
     const double before = wall_minus_monotonic();
     const TimePoint begin = monotonic_now();
-    const bool met = session_.wait(kMeet, [this] { return heard_.size() >= speakers_; });
+    const bool met = session_.wait(kMeet, [this] { return received_.size() >= speakers_; });
     const double took = to_seconds(monotonic_now() - begin);
-    session_.listen(kLook);
-    const double looked = to_seconds(monotonic_now() - begin);
-    Json out{{"received", heard_.size()},
+    session_.listen(kListenTime);
+    const double observed = to_seconds(monotonic_now() - begin);
+    Json out{{"received", received_.size()},
              {"met", met},
              {"took", took},
              {"jump", wall_minus_monotonic() - before}};
@@ -146,17 +147,17 @@ class Look {
     out["troubles"] = status.troubles;
     out["left_out"] = status.left_out;
     out["clocks"] = Json::object();
-    for (const auto& [component, offset] : clocks_) out["clocks"][component] = offset.least;
+    for (const auto& [component, offset] : clocks_) out["clocks"][component] = offset.min_delay;
     out["inputs"] = Json::array();
     for (const Input& input : inputs_) {
       out["inputs"].push_back(
           {{"what", input.what},
            {"topic", input.row->topic},
            {"wanted", input.row->rate},
-           {"rate", static_cast<double>(input.status->received) / looked},
+           {"rate", static_cast<double>(input.status->received) / observed},
            {"rejected", input.status->rejected},
            {"last_rejection", input.status->last_rejection},
-           {"least", input.offset->samples ? Json(input.offset->least) : Json()}});
+           {"least", input.offset->samples ? Json(input.offset->min_delay) : Json()}});
     }
     out["sources"] = sources_;
     out["bases"] = Json::object();
@@ -187,12 +188,12 @@ class Look {
     std::shared_ptr<Offset> offset = std::make_shared<Offset>();
   };
   template <class M>
-  void watch(const char* what, std::function<void(const M&)> look) {
+  void watch(const char* what, std::function<void(const M&)> handle) {
     auto offset = std::make_shared<Offset>();
-    const SubscriptionStatus& status =
-        session_.bus().subscribe<M>([this, offset, look](const M& message, const Receipt& receipt) {
+    const SubscriptionStatus& status = session_.bus().subscribe<M>(
+        [this, offset, handle](const M& message, const Receipt& receipt) {
           offset->add(message.stamp, receipt.arrival - halts_.at(receipt.arrival));
-          look(message);
+          handle(message);
         });
     inputs_.push_back({what, &TopicOf<M>::row, &status, offset});
   }
@@ -201,7 +202,7 @@ class Look {
   std::uint64_t meeting_;
   std::size_t speakers_;
   Session session_;
-  std::set<std::uint64_t> heard_;
+  std::set<std::uint64_t> received_;
   SimulatorHalts halts_;
   std::map<std::string, Offset> clocks_;
   std::vector<Input> inputs_;
@@ -246,43 +247,44 @@ std::string holders_of_indices(const DoctorOptions& options, int count) {
   return text;
 }
 
-/// Not every process that a system needs could enter the domain.
+/// Returns the finding that not every process of a system could enter the domain.
 Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, std::size_t entered,
                     std::size_t wanted, const std::string& held_before, const std::string& said) {
   const std::string what = complaint(said),
                     no_multicast = said.find("not multicast-capable") == std::string::npos
                                        ? ""
                                        : ", and the interface has no multicast";
-  const std::string share = (entered == 0 ? "no process"
-                                          : "only " + std::to_string(entered) + " of " +
-                                                std::to_string(wanted) + " processes") +
-                            " can enter " + domain_text(options.domain) + ": ";
+  const std::string prefix = (entered == 0 ? "no process"
+                                           : "only " + std::to_string(entered) + " of " +
+                                                 std::to_string(wanted) + " processes") +
+                             " can enter " + domain_text(options.domain) + ": ";
   if (said.find("free participant index") == std::string::npos) {
     if (what.find("join") != std::string::npos) {
       return {"DDS", Verdict::bad,
-              share + "it cannot join the multicast group of its settings (" + what + ")",
+              prefix + "it cannot join the multicast group of its settings (" + what + ")",
               "set General/AllowMulticast to false and name <Peer address=\"localhost\"/> under "
               "Discovery/Peers, as "
               "deploy/dds/loopback.xml does"};
     }
     const bool interface = what.find("interface") != std::string::npos;
-    return {"DDS", Verdict::bad, share + what,
+    return {"DDS", Verdict::bad, prefix + what,
             interface ? "bring the interface up (ip link set lo up), or name another one in the "
                         "DDS configuration"
                       : kDefaultRemedy};
   }
   if (static_cast<std::size_t>(dds.max_auto_index) >= wanted) {
     return {"DDS", Verdict::bad,
-            share + "all " + std::to_string(dds.max_auto_index) +
+            prefix + "all " + std::to_string(dds.max_auto_index) +
                 " participant indices are in use" +
                 (held_before.empty() ? "" : " by " + held_before),
             "end the processes that hold them, or choose another domain with --domain"};
   }
-  return {"DDS", Verdict::bad,
-          share + "MaxAutoParticipantIndex is " + std::to_string(dds.max_auto_index) + no_multicast,
-          "set Discovery/MaxAutoParticipantIndex to 60" +
-              (dds.source.empty() ? std::string() : " in " + dds.source) +
-              ", or unset CYCLONEDDS_URI: deploy/dds/loopback.xml does"};
+  return {
+      "DDS", Verdict::bad,
+      prefix + "MaxAutoParticipantIndex is " + std::to_string(dds.max_auto_index) + no_multicast,
+      "set Discovery/MaxAutoParticipantIndex to 60" +
+          (dds.source.empty() ? std::string() : " in " + dds.source) +
+          ", or unset CYCLONEDDS_URI: deploy/dds/loopback.xml does"};
 }
 
 Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const Json& seen,
@@ -320,7 +322,7 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
   if (!dds.error.empty()) return out;
 
   const bool held = domain_is_held(
-      options.domain);  // then its processes have their places, and one more is a fair sample
+      options.domain);  // the processes of the system are already in, and one more is a fair sample
   const std::size_t wanted = held ? 1 : kProcesses.size();
   const std::string held_before = holders_of_indices(options, dds.max_auto_index);
   const auto meeting = static_cast<std::uint64_t>(getpid());
@@ -336,13 +338,13 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
   if (entered < wanted) {
     out.push_back(not_entered(options, dds, entered, wanted, held_before, said));
     if (entered == 0) return out;
-    speakers.pop_back();  // its place is for the one who looks
+    speakers.pop_back();  // frees a place for the observer
   }
 
   Probe looker([&](const Probe::Report& report) {
-    report(Look(options, meeting, speakers.size())().dump());
+    report(DomainObservation(options, meeting, speakers.size())().dump());
   });
-  const auto answer = looker.line(kEnter + kMeet + kLook);
+  const auto answer = looker.line(kEnter + kMeet + kListenTime);
   for (const Probe& probe : speakers) probe.end();
   if (!answer) {
     if (entered == wanted)

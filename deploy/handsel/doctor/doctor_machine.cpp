@@ -21,7 +21,7 @@
 namespace handsel {
 namespace {
 
-constexpr double kLittleRoom = 50e6, kEnoughRoom = 500e6;  // [bytes]
+constexpr double kLittleRoom = 50e6, kEnoughRoom = 500e6;  // free space: bad, note below [bytes]
 constexpr Duration kCommandTimeout = std::chrono::seconds(5);
 
 Finding check_size() {
@@ -34,7 +34,7 @@ Finding check_size() {
           "use a machine with two cores and 2 GB or more, the least that was tried"};
 }
 
-/// Tries in a process of its own what a real-time process does at its start.
+/// Tries in a separate process what a real-time process does at its start.
 std::vector<Finding> check_realtime() {
   Probe probe([](const Probe::Report& report) {
     sched_param parameter{};

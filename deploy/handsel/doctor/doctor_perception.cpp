@@ -28,16 +28,16 @@ using Json = nlohmann::json;
 
 constexpr Duration kObservationTime = std::chrono::milliseconds(2500);
 constexpr Duration kStart =
-    std::chrono::milliseconds(600);  // until those on the domain have found each other
+    std::chrono::milliseconds(600);  // until all participants are discovered
 constexpr Duration kChildTimeout = std::chrono::seconds(20);
-constexpr std::size_t kLikeness = 3;  // letters by which a name may differ
+constexpr std::size_t kLikeness = 3;  // max edit distance of similar names
 
-/// A message of the table read from whoever writes its topic: without the deadline and the equality
-/// of types components ask for. What is malformed is told.
+/// Reads a message of the table from any writer of its topic, without the deadline and the type
+/// equality that components require; reports malformed samples.
 class Lenient final : public MessageType {
  public:
-  using Told = std::function<void(const std::string& why, bool whole)>;
-  Lenient(const MessageType& type, Told on_malformed)
+  using OnMalformed = std::function<void(const std::string& why, bool whole)>;
+  Lenient(const MessageType& type, OnMalformed on_malformed)
       : type_(type), row_(type.row()), on_malformed_(std::move(on_malformed)) {
     row_.profile = Profile::sensor;
     row_.deadline = 0;
@@ -69,7 +69,7 @@ class Lenient final : public MessageType {
  private:
   const MessageType& type_;
   TopicRow row_;
-  Told on_malformed_;
+  OnMalformed on_malformed_;
 };
 
 std::string plain(std::string_view name) {
@@ -80,7 +80,7 @@ std::string plain(std::string_view name) {
   return out;
 }
 
-/// Letters to change, add or leave out.
+/// Returns the edit distance: letters to change, add or omit.
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
@@ -106,7 +106,7 @@ bool meant(const DomainEndpoint& endpoint, const TopicRow& row) {
          distance(topic, plain(row.topic)) <= kLikeness;
 }
 
-std::string who(const DomainEndpoint& endpoint) {
+std::string writer_text(const DomainEndpoint& endpoint) {
   const DomainParticipant& owner = endpoint.owner;
   const std::string name = !owner.component.empty() ? owner.component
                            : !owner.process.empty() ? owner.process
@@ -125,37 +125,40 @@ Finding bad(const std::string& subject, const std::string& text, const std::stri
   return {subject, Verdict::bad, text, remedy};
 }
 
-/// Writers that nobody of the system can hear, and why. `heard`: how many the doctor itself hears
-/// on the topic.
-void judge_writers(const DomainView& view, const TopicRow& row, int heard,
-                   std::vector<Finding>& out) {
+/// Reports writers that no component can receive, with the reason. `received`: number of writers on
+/// the topic that the doctor itself receives.
+void check_writers_of(const DomainView& view, const TopicRow& row, int received,
+                      std::vector<Finding>& out) {
   const std::string type = std::string("handsel::") + row.type;
   std::vector<const DomainEndpoint*> right;
   for (const DomainEndpoint& endpoint : view.endpoints) {
     if (!endpoint.writes) continue;
     if (meant(endpoint, row)) {
       out.push_back(bad(
-          "topic", who(endpoint) + " writes the topic " + endpoint.topic + ", which nobody reads",
+          "topic",
+          writer_text(endpoint) + " writes the topic " + endpoint.topic + ", which nobody reads",
           std::string("the topic is ") + row.topic + ", its type " + type));
     }
     if (endpoint.topic != row.topic) continue;
     if (endpoint.type != type) {
-      out.push_back(bad("type",
-                        who(endpoint) + " writes " + row.topic + " with the type " + endpoint.type,
-                        "the type is " + type));
+      out.push_back(
+          bad("type",
+              writer_text(endpoint) + " writes " + row.topic + " with the type " + endpoint.type,
+              "the type is " + type));
       continue;
     }
     for (const std::string& policy : endpoint.unmatched)
-      out.push_back(
-          bad("QoS", "nobody hears " + who(endpoint) + " on " + row.topic + ": its " + policy,
-              "profile sensor: best effort, volatile, keep last 1, deadline 0.2 s, no partition"));
+      out.push_back(bad(
+          "QoS", "nobody hears " + writer_text(endpoint) + " on " + row.topic + ": its " + policy,
+          "profile sensor: best effort, volatile, keep last 1, deadline 0.2 s, no partition"));
     if (endpoint.unmatched.empty()) right.push_back(&endpoint);
   }
-  if (heard >= static_cast<int>(right.size())) return;
+  if (received >= static_cast<int>(right.size())) return;
   for (const DomainEndpoint* endpoint : right)
     if (!is_ours(*endpoint)) {
       out.push_back(
-          bad("IDL", who(*endpoint) + " writes " + type + " of another shape than this version's",
+          bad("IDL",
+              writer_text(*endpoint) + " writes " + type + " of another shape than this version's",
               "build it against the IDL of this version (idl/perception.idl, interface version in "
               "`handsel --version`)"));
     }
@@ -169,8 +172,7 @@ bool has_reader(const DomainView& view, const TopicRow& row) {
                      });
 }
 
-/// Where the robot is and how far it reaches, from the scenario's descriptions; SPARK counts in the
-/// same way.
+/// Returns pose and reach of the robot from the scenario's descriptions, as SPARK computes them.
 PerceptionGround ground_of(const DoctorOptions& options) {
   PerceptionGround ground;
   const std::uint64_t seed = SystemOptions{}.seed;
@@ -199,12 +201,12 @@ std::vector<Finding> look(const DoctorOptions& options) {
     halts.announced(clock, receipt.arrival);
   });
   bool counts = false;
-  std::set<std::string> heard;
+  std::set<std::string> received;
   const auto watch = [&]<class M>(const Lenient& type, std::string topic,
                                   M*) -> const SubscriptionStatus& {
     return bus.subscribe_any(type,
                              [&, topic](const void* message, const Receipt& receipt) {
-                               heard.insert(topic);
+                               received.insert(topic);
                                if (counts)
                                  review.on(*static_cast<const M*>(message), receipt.arrival,
                                            bus.stamp_now() - halts.at(receipt.arrival).count());
@@ -218,7 +220,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
   bus.every(std::chrono::milliseconds(20), [](TimePoint) {});
   const TimePoint begin = bus.now();
   bus.run_until(
-      [&] { return interrupted() || (heard.size() == 2 && bus.now() - begin > kStart / 3); },
+      [&] { return interrupted() || (received.size() == 2 && bus.now() - begin > kStart / 3); },
       kStart);
   counts = true;
   bus.run_until([] { return interrupted(); }, kObservationTime);
@@ -231,7 +233,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
        {std::tuple{&TopicOf<HumanObservation>::row, &of_people, "people"},
         std::tuple{&TopicOf<ObjectObservation>::row, &of_objects, "objects"}}) {
     const std::size_t before = out.size();
-    judge_writers(view, *row, status->writers, out);
+    check_writers_of(view, *row, status->writers, out);
     reader = reader || has_reader(view, *row);
     if (status->received + status->rejected > 0 || out.size() > before) continue;
     const bool writer = std::any_of(view.endpoints.begin(), view.endpoints.end(),
@@ -248,7 +250,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
   }
   for (Finding& finding : silent) {
     if (silent.size() == 1)
-      finding.verdict = Verdict::note;  // people alone, or objects alone, may be all that is meant
+      finding.verdict = Verdict::note;  // people alone, or objects alone, may be intended
     out.push_back(std::move(finding));
   }
   for (Finding& finding : review.findings()) out.push_back(std::move(finding));

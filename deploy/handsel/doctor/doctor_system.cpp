@@ -24,7 +24,7 @@
 namespace handsel {
 namespace {
 
-/// `load` returns what to say when all is well.
+/// Runs `load`, which returns the text of a good finding.
 Finding attempt(const std::string& subject, const std::function<std::string()>& load) {
   try {
     return {subject, Verdict::good, load(), ""};
@@ -94,7 +94,7 @@ Finding check_calibration() {
     char today[16];
     std::strftime(today, sizeof today, "%Y-%m-%d", std::gmtime(&now));
     std::string stale;
-    const auto judge = [&](const std::string& what, const std::string& measured) {
+    const auto add_age = [&](const std::string& what, const std::string& measured) {
       const auto days = spark::days_between(measured, today);
       if (!days) return;
       if (*days < -1)
@@ -105,8 +105,8 @@ Finding check_calibration() {
                  std::to_string(static_cast<int>(*days)) + " days ago";
     };
     for (const auto& [name, source] : calibration.sources())
-      judge("source " + name, source.measured);
-    for (const auto& [name, robot] : calibration.robots()) judge("robot " + name, robot.measured);
+      add_age("source " + name, source.measured);
+    for (const auto& [name, robot] : calibration.robots()) add_age("robot " + name, robot.measured);
     if (!stale.empty())
       return {"calibration", Verdict::note, stale, "measure again, and write the date to " + file};
     const std::size_t count = calibration.sources().size();

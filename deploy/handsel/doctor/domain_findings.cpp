@@ -14,19 +14,19 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kOffset =
-    0.05;  // of clocks [s]; more than any transit on one machine or a local network
-constexpr double kFuture = 0.01;  // a measurement from so far ahead cannot be [s]
-constexpr double kOld = 1.0;      // older measurements than any sensor's latency [s]
-constexpr double kJump = 0.005;   // of the wall clock against the monotonic one while looked at [s]
+    0.05;  // max difference of clocks [s]; exceeds any transit on one machine or a local network
+constexpr double kFuture = 0.01;  // max time of a measurement in the future [s]
+constexpr double kOld = 1.0;      // exceeds the latency of any sensor [s]
+constexpr double kJump = 0.005;   // max step of the wall clock against the monotonic one [s]
 constexpr double kBaseOff = 0.01,
-                 kBaseTurned = 0.01;  // of the robot's base from its calibration [m], [rad]
+                 kBaseTurned = 0.01;  // max deviation of the base from calibration [m], [rad]
 
-/// check_perception looks closer at people and objects.
+/// Returns whether check_perception checks the topic of people or objects in more detail.
 bool left_to_perception(const DoctorOptions& options, const std::string& topic) {
   return options.perception && topic != TopicOf<RobotState>::row.topic;
 }
 
-void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
+void check_clocks(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   const double jump = seen["jump"];
   if (std::abs(jump) > kJump) {
     out.push_back({"clocks", Verdict::bad,
@@ -67,9 +67,9 @@ void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Fi
   }
 }
 
-/// The inputs asked for must come, at half their rate or more and well formed; others are only
-/// mentioned when they are malformed.
-void judge_inputs(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
+/// Checks that required inputs arrive at half their rate or more and well formed; others are
+/// reported only if malformed.
+void check_inputs(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   for (const Json& input : seen["inputs"]) {
     const std::string what = input["what"], topic = input["topic"];
     const double rate = input["rate"], wanted = input["wanted"];
@@ -98,8 +98,9 @@ void judge_inputs(const DoctorOptions& options, const Json& seen, std::vector<Fi
   }
 }
 
-/// What the calibration says against what comes. Its own mistakes are told with the descriptions.
-void judge_calibration(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
+/// Compares the calibration with received poses. Its own errors are reported with the descriptions.
+void compare_calibration(const DoctorOptions& options, const Json& seen,
+                         std::vector<Finding>& out) {
   const std::string file = resource("config/calibration.txtpb");
   spark::Calibration calibration;
   try {
@@ -107,16 +108,16 @@ void judge_calibration(const DoctorOptions& options, const Json& seen, std::vect
   } catch (const std::exception&) {
     return;
   }
-  const std::set<std::string> heard = seen["sources"];
+  const std::set<std::string> received = seen["sources"];
   const std::size_t before = out.size();
-  for (const std::string& source : heard)
+  for (const std::string& source : received)
     if (!calibration.sources().empty() && !calibration.sources().contains(source))
       out.push_back({"calibration", Verdict::bad,
                      "source " + source + " publishes, and is not in " + file +
                          ": taken to speak in frame world",
                      "say there where it stands, or that it speaks_in WORLD"});
   for (const auto& [name, source] : calibration.sources())
-    if (options.perception && !heard.contains(name))
+    if (options.perception && !received.contains(name))
       out.push_back(
           {"calibration", Verdict::missing,
            "source " + name + " of " + file + " says nothing on " + domain_text(options.domain),
@@ -134,14 +135,14 @@ void judge_calibration(const DoctorOptions& options, const Json& seen, std::vect
                                 name.c_str(), off, turned * 180 / M_PI, file.c_str()),
                    "measure it again, or correct what its driver reports as T_world_base"});
   }
-  if (out.size() == before && (!heard.empty() || !seen["bases"].empty()) &&
+  if (out.size() == before && (!received.empty() || !seen["bases"].empty()) &&
       !(calibration.sources().empty() && calibration.robots().empty()))
     out.push_back({"calibration", Verdict::good,
                    "what comes on " + domain_text(options.domain) + " is as the file says", ""});
 }
 
-/// A topic with one writer must have no other, and none that the table does not name.
-void judge_writers(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
+/// Checks that a topic with one writer has no other, and none that the table does not name.
+void check_writers(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   const std::size_t before = out.size();
   for (const auto& [topic, writers] : seen["writers"].items()) {
     std::string names;
@@ -167,8 +168,8 @@ void judge_writers(const DoctorOptions& options, const Json& seen, std::vector<F
                    "no topic with one writer has another on " + domain_text(options.domain), ""});
 }
 
-void judge_company(const DoctorOptions& options, const Json& seen, bool held,
-                   std::vector<Finding>& out) {
+void check_other_systems(const DoctorOptions& options, const Json& seen, bool held,
+                         std::vector<Finding>& out) {
   std::string commanders;
   for (const Json& commander : seen["commanders"])
     commanders += (commanders.empty() ? "" : ", ") + commander["who"].get<std::string>();
@@ -223,11 +224,11 @@ std::string domain_text(int domain) { return "domain " + std::to_string(domain);
 
 void add_domain_findings(const DoctorOptions& options, const nlohmann::json& seen, bool held,
                          std::vector<Finding>& out) {
-  judge_clocks(options, seen, out);
-  judge_inputs(options, seen, out);
-  judge_calibration(options, seen, out);
-  judge_writers(options, seen, out);
-  judge_company(options, seen, held, out);
+  check_clocks(options, seen, out);
+  check_inputs(options, seen, out);
+  compare_calibration(options, seen, out);
+  check_writers(options, seen, out);
+  check_other_systems(options, seen, held, out);
 }
 
 }  // namespace handsel

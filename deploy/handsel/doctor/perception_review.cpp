@@ -14,15 +14,15 @@
 namespace handsel {
 namespace {
 
-constexpr double kSlowest = 10, kFastest = 300;  // [Hz]
-constexpr double kSilence = 0.2;                 // [s] the robot stops
-constexpr double kOld = 0.25, kFuture = 0.01;    // [s]
-constexpr double kOffset = 1.0;                  // [s] no sensor is that late
-constexpr double kJitter = 0.05;                 // [s]
-constexpr double kLeastConfidence = 0.05;        // as SPARK
-constexpr double kTrunk = 0.37;                  // waist to head as a share of the stature
-constexpr double kFar = 10;                      // [m]
-constexpr std::size_t kEnough = 10;              // samples to judge habits by
+constexpr double kSlowest = 10, kFastest = 300;  // plausible rates [Hz]
+constexpr double kSilence = 0.2;                 // silence that stops the robot [s]
+constexpr double kOld = 0.25, kFuture = 0.01;    // max age, max time in the future [s]
+constexpr double kOffset = 1.0;                  // exceeds the delay of any sensor [s]
+constexpr double kJitter = 0.05;                 // max jitter [s]
+constexpr double kMinReviewConfidence = 0.05;    // as in SPARK
+constexpr double kTrunk = 0.37;                  // waist to head, ratio to the stature
+constexpr double kFar = 10;                      // max distance of observed things [m]
+constexpr std::size_t kEnough = 10;              // min samples for statistics
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -31,7 +31,7 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-double share(std::vector<double> values, double q) {
+double quantile_of(std::vector<double> values, double q) {
   if (values.empty()) return 0;
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
@@ -39,11 +39,11 @@ double share(std::vector<double> values, double q) {
   return *at;
 }
 
-std::string join(const std::set<std::string>& names, std::size_t most = 4) {
+std::string join(const std::set<std::string>& names, std::size_t max_names = 4) {
   std::string text;
   std::size_t n = 0;
   for (const std::string& name : names) {
-    if (++n > most) return text + ", ...";
+    if (++n > max_names) return text + ", ...";
     text += (text.empty() ? "" : ", ") + name;
   }
   return text;
@@ -55,7 +55,7 @@ Finding bad(const std::string& subject, const std::string& text, const std::stri
 
 const Vector3* joint_of(const ObservedPerson& person, const char* name) {
   for (const ObservedJoint& joint : person.joints)
-    if (joint.name == name && joint.confidence >= kLeastConfidence) return &joint.position;
+    if (joint.name == name && joint.confidence >= kMinReviewConfidence) return &joint.position;
   return nullptr;
 }
 
@@ -69,7 +69,7 @@ bool same(const std::vector<ObservedPerson>& a, const std::vector<ObservedPerson
       });
 }
 
-/// What a stamp that is no nanoseconds of the system clock may be.
+/// Returns the probable unit of a stamp that is no nanoseconds of the system clock.
 std::string unit_of_stamp(Stamp stamp, Stamp now) {
   constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
       {{1e9, "seconds"}, {1e6, "milliseconds"}, {1e3, "microseconds"}}};
@@ -131,7 +131,7 @@ double SampleTimes::rate() const {
          std::max(1e-9, arrivals_.back() - arrivals_.front());
 }
 
-double SampleTimes::median_age() const { return share(ages_, 0.5); }
+double SampleTimes::median_age() const { return quantile_of(ages_, 0.5); }
 
 std::vector<Finding> SampleTimes::findings(const std::string& publisher,
                                            const std::string& what) const {
@@ -152,7 +152,7 @@ std::vector<Finding> SampleTimes::findings(const std::string& publisher,
              2) {
     out.push_back(bad("rate",
                       format("%s publishes %s irregularly: up to %.2f s pass without",
-                             publisher.c_str(), what.c_str(), share(gaps, 1)),
+                             publisher.c_str(), what.c_str(), quantile_of(gaps, 1)),
                       "publish at an even rate, also while nobody is there; the robot stops after "
                       "0.2 s of silence"));
   }
@@ -163,7 +163,7 @@ std::vector<Finding> SampleTimes::findings(const std::string& publisher,
         "set stamp to the time of the measurement, in ns of the system clock (dds_time())"));
   }
   if (ages_.empty()) return out;
-  const double age = median_age(), spread = share(ages_, 0.95) - age;
+  const double age = median_age(), spread = quantile_of(ages_, 0.95) - age;
   if (last_ < 100'000'000'000'000'000) {
     out.push_back(
         bad("stamp",
@@ -226,7 +226,7 @@ void PerceptionReview::add_person(Bodies& bodies, const ObservedPerson& person) 
       bodies.unknown_joints.insert(joint.name);
     else
       ++bodies.known_joints;
-    bodies.unsure += joint.confidence < kLeastConfidence;
+    bodies.unsure += joint.confidence < kMinReviewConfidence;
   }
   const Vector3 *head = joint_of(person, "head"), *waist = joint_of(person, "waist");
   if (head && waist && (*head - *waist).norm() > 1e-9) {
@@ -350,7 +350,7 @@ void PerceptionReview::check_source(const std::string& source, const Bodies& bod
     out.push_back(
         {"people", Verdict::good,
          format("%s sees %zu, about %.2f m tall, %.1f m from the robot's base", source.c_str(),
-                bodies.max_at_once, share(bodies.statures, 0.5), bodies.nearest),
+                bodies.max_at_once, quantile_of(bodies.statures, 0.5), bodies.nearest),
          ""});
 }
 
@@ -360,7 +360,7 @@ void PerceptionReview::check_frame(const std::string& source, const Bodies& bodi
       "publish positions in frame \"world\": metres, z up, the floor at z = 0, the robot's base "
       "where its description says";
   if (!bodies.statures.empty()) {
-    const double stature = share(bodies.statures, 0.5);
+    const double stature = quantile_of(bodies.statures, 0.5);
     const auto [factor, unit] = sim::unit_of(stature);
     if (factor != 1) {
       out.push_back(bad("frame",
@@ -372,7 +372,7 @@ void PerceptionReview::check_frame(const std::string& source, const Bodies& bodi
     std::array<std::vector<double>, 3> up;
     for (const Vector3& direction : bodies.up)
       for (int i = 0; i < 3; ++i) up[static_cast<std::size_t>(i)].push_back(direction[i]);
-    const Vector3 middle(share(up[0], 0.5), share(up[1], 0.5), share(up[2], 0.5));
+    const Vector3 middle(quantile_of(up[0], 0.5), quantile_of(up[1], 0.5), quantile_of(up[2], 0.5));
     if (middle.z() < 0.5) {
       const bool down = middle.y()<-0.5, y_up = middle.y()> 0.5, head_down = middle.z() < -0.5;
       out.push_back(bad("frame",
@@ -386,7 +386,7 @@ void PerceptionReview::check_frame(const std::string& source, const Bodies& bodi
     }
   }
   if (!bodies.lowest.empty()) {
-    const double floor = share(bodies.lowest, 0.5);
+    const double floor = quantile_of(bodies.lowest, 0.5);
     if (floor < -0.15 || floor > 0.45) {
       out.push_back(
           bad("frame",

@@ -20,7 +20,7 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kEndPatience = std::chrono::seconds(1);
+constexpr Duration kEndTimeout = std::chrono::seconds(1);
 
 int milliseconds(Duration d) {
   return static_cast<int>(
@@ -74,9 +74,9 @@ Probe::Probe(Probe&& other) noexcept
 Probe::~Probe() {
   if (pid_ < 0) return;
   end();
-  const TimePoint deadline = monotonic_now() + kEndPatience;
+  const TimePoint deadline = monotonic_now() + kEndTimeout;
   while (line(deadline - monotonic_now())) {
-  }  // its end closes the pipe
+  }  // closes the pipe
   if (monotonic_now() >= deadline) kill(pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
   close(reports_);

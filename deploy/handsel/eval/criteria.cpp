@@ -10,18 +10,17 @@
 namespace handsel {
 namespace {
 
-constexpr double kNear = 0.40;      // [m] a person nearer than this is to be reacted to
-constexpr double kCarried = 0.05;   // [m] a shorter way says nothing
-constexpr double kToward = 0.1;     // [m/s]
-constexpr double kSlower = 0.9;     // of the speed factor before
-constexpr double kLate = 0.2;       // [s]
-constexpr double kGivenUp = 1.0;    // [s] no reaction: counts as this
-constexpr double kStill = 0.05;     // [m/s] a joint slower than this does not move
-constexpr double kTruthStep = 0.1;  // [s] a longer silence of the truth counts as no more
-constexpr double kClose = 0.5;      // [m] within which closing speeds count
-constexpr double kPassing = 2.0;    // [m] within which it matters whether the person sees the robot
-constexpr double kJump =
-    0.1;  // [m] between two truths: what is excepted has changed, nobody moved so far
+constexpr double kNear = 0.40;             // max distance of a person that requires a reaction [m]
+constexpr double kCarried = 0.05;          // min path length of interest [m]
+constexpr double kToward = 0.1;            // min closing speed [m/s]
+constexpr double kSlower = 0.9;            // fraction of the previous speed factor
+constexpr double kLate = 0.2;              // max reaction time [s]
+constexpr double kGivenUp = 1.0;           // value of a missing reaction [s]
+constexpr double kStill = 0.05;            // max speed of a joint at rest [m/s]
+constexpr double kMaxTruthInterval = 0.1;  // max interval of ground truth that counts [s]
+constexpr double kClose = 0.5;             // max distance at which closing speeds count [m]
+constexpr double kPassing = 2.0;  // max distance at which visibility to the person counts [m]
+constexpr double kJump = 0.1;     // min jump of ground truth by a changed exemption [m]
 constexpr Duration kBefore = std::chrono::milliseconds(500);
 
 constexpr const char* kWorks[] = {"people", "objects", "forecast", "cost_map", "replan"};
@@ -36,14 +35,14 @@ constexpr const char* kRuns[][2] = {
 constexpr std::uint32_t kForPeople = bit(Cause::attention_slow) | bit(Cause::separation) |
                                      bit(Cause::forecast_collision) | bit(Cause::cost_ahead);
 
-double quantile(std::vector<double> values, double share) {
+double quantile(std::vector<double> values, double fraction) {
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) -
+  return values[static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(values.size()))) -
                 1];
 }
 
-/// Returns the level angle between the front of a person and a point, world [m]: 0 in front, pi
-/// behind [rad]; nullopt: the point is at the person's middle.
+/// Returns the horizontal angle between the front of a person and a point, world [m]: 0 in front,
+/// pi behind [rad]; nullopt if the point is at the person's centre.
 std::optional<double> angle_from_front(const Person& person, const Vector3& p) {
   const Vector3 to_point = p - find_joint(person, "torso")->position,
                 front = torso_axes(person).col(0);
@@ -53,8 +52,7 @@ std::optional<double> angle_from_front(const Person& person, const Vector3& p) {
   return std::acos(std::clamp(a.dot(b) / lengths, -1.0, 1.0));
 }
 
-/// Of the person: how fast their fastest joint is, and how fast the nearest to `p` comes nearer to
-/// it [m/s].
+/// Speed of the person's fastest joint, and closing speed of the joint nearest to `p` [m/s].
 struct PersonMotion {
   double fastest{}, toward{};
 };
@@ -86,7 +84,7 @@ Criteria::Criteria(Bus& bus, LocalNetwork& network) : network_(network) {
     running_ = active.trajectory != 0;
     speed_factor_ = running_ ? active.speed_factor : 0.0;
     std::erase_if(speed_samples_,
-                  [&](const SpeedSample& look) { return r.arrival - look.at > kBefore; });
+                  [&](const SpeedSample& sample) { return r.arrival - sample.at > kBefore; });
     speed_samples_.push_back({r.arrival, speed_factor_});
     settle(r.arrival);
   });
@@ -116,7 +114,7 @@ void Criteria::on(const ExecutionStatus& status, TimePoint) {
 
 void Criteria::on(const GroundTruth& ground_truth, TimePoint now) {
   if (last_) {
-    const double step = std::clamp(ground_truth.sim_time - last_->sim_time, 0.0, kTruthStep);
+    const double step = std::clamp(ground_truth.sim_time - last_->sim_time, 0.0, kMaxTruthInterval);
     const PersonMotion person =
         motion(last_->person, ground_truth.person, status_.nearest_on_robot, step);
     const bool moves = person.fastest > kStill;
@@ -132,11 +130,11 @@ void Criteria::on(const GroundTruth& ground_truth, TimePoint now) {
       closing_speed_ = std::max(closing_speed_, nearer / step);
     const bool entered = ground_truth.separation < kNear && last_->separation >= kNear;
     if (entered && !waiting_ && running_ && ground_truth.robot_moving && person.toward > kToward) {
-      double most = (status_.causes & kForPeople) != 0
-                        ? 1.0
-                        : speed_factor_;  // that it would have with nobody there
-      for (const SpeedSample& look : speed_samples_) most = std::max(most, look.speed_factor);
-      if (most > 0.1) waiting_ = Reaction{now, most};
+      double max_factor =
+          (status_.causes & kForPeople) != 0 ? 1.0 : speed_factor_;  // value without people nearby
+      for (const SpeedSample& sample : speed_samples_)
+        max_factor = std::max(max_factor, sample.speed_factor);
+      if (max_factor > 0.1) waiting_ = Reaction{now, max_factor};
       settle(now);
     }
   }
@@ -177,7 +175,7 @@ void Criteria::watch_passing(const GroundTruth& ground_truth) {
   person.joints = ground_truth.person;
   const std::optional<double> angle = angle_from_front(person, status_.nearest_on_robot);
   if (is_nearer && angle && *angle > M_PI / 2 && ground_truth.separation < kPassing)
-    unseen_approach_ += std::min(ground_truth.sim_time - last_->sim_time, kTruthStep);
+    unseen_approach_ += std::min(ground_truth.sim_time - last_->sim_time, kMaxTruthInterval);
   if (!is_nearest) return;
   nearest_ = ground_truth.separation;
   if (angle) nearest_angle_ = angle;

@@ -42,7 +42,7 @@ class Criteria {
   /// - `legibility`: straight distance of the object that the robot carried to a person over the
   ///   length of its path, (0, 1]; null: it carried nothing there
   /// - `nearest_angle_rad`: level angle between the front of the person and the robot's nearest
-  ///   point at the least separation while the robot moved: 0 in front, pi behind; null: it did not
+  ///   point at the min separation while the robot moved: 0 in front, pi behind; null: it did not
   /// - `unseen_approach_s`: for how long the robot, nearer than 2 m, came nearer to a person from
   ///   behind (by the angle above more than 90 degrees)
   /// - `max_tilt_rad`: largest angle between up and the z axis of the object while the robot alone
@@ -81,7 +81,7 @@ class Criteria {
   std::optional<Vector3> carried_from_;  // where the robot alone began to carry it
   double carried_{};                     // distance moved since [m]
   std::optional<double> discomfort_, legibility_, max_tilt_;
-  std::optional<double> nearest_;        // least separation while the robot moved [m]
+  std::optional<double> nearest_;        // min separation while the robot moved [m]
   std::optional<double> nearest_angle_;  // at that separation [rad]
   double unseen_approach_{};             // [s]
   std::array<double, 5> rates_{};        // sums of advised rates [Hz]

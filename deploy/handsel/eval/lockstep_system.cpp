@@ -24,7 +24,7 @@ NodeContext system_context(const std::string& scenario, const std::string& robot
   const config::Scenario drawn = read_scenario(context.scenario, seed);
   for (const config::ObjectPlacement& object : drawn.objects())
     if (context.objects(object.model()) == nullptr)
-      ObjectModel::load(object_description(object.model()));  // says what is wrong with it
+      ObjectModel::load(object_description(object.model()));  // reports errors of the description
   return context;
 }
 

@@ -179,10 +179,10 @@ std::string summary(const nlohmann::json& report) {
   if (!oracle["contact_share"].is_null())
     text += format("hold    %.1f s in the robot's hand, %.0f %% of it by contact alone\n",
                    oracle["held_s"].get<double>(), 100 * oracle["contact_share"].get<double>());
-  const Json& share = report["limit_ratio"];
+  const Json& ratio = report["limit_ratio"];
   text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed",
-                 100 * share["v"].get<double>(), 100 * share["a"].get<double>(),
-                 100 * share["j"].get<double>());
+                 100 * ratio["v"].get<double>(), 100 * ratio["a"].get<double>(),
+                 100 * ratio["j"].get<double>());
   text += "; " + std::to_string(oracle["limit_violations"].get<std::uint64_t>()) + " violations\n";
   text += report["min_separation_m"].is_null()
               ? std::string("nearest nobody came near\n")

@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 struct Measure {
   const char* name;
   int decimals;
-  bool of_success;  // told of trials that succeeded only
+  bool of_success;  // reported for successful trials only
 };
 constexpr Measure kMeasures[] = {{"activations_share", 3, false},
                                  {"cpu_chain_s", 3, false},
@@ -48,8 +48,9 @@ std::optional<double> value(const Json& line, const Measure& measure) {
   if (measure.of_success && !line.value("success", false)) return std::nullopt;
   const std::string name = measure.name;
   if (name == "activations_share") {
-    const double most = line.value("activations_at_pmin", 0.0);
-    return most > 0 ? std::optional(line["activations"].get<double>() / most) : std::nullopt;
+    const double max_activations = line.value("activations_at_pmin", 0.0);
+    return max_activations > 0 ? std::optional(line["activations"].get<double>() / max_activations)
+                               : std::nullopt;
   }
   if (name == "looks") {
     if (!line.contains("runs")) return std::nullopt;
@@ -169,16 +170,17 @@ std::vector<Json> Study::comparison(const std::string& reference) const {
       }
       const int n1 = static_cast<int>(base->second.size()), n2 = static_cast<int>(trials.size());
       const int s1 = successes(base->second), s2 = successes(trials);
-      Json share = head;
-      share.update({{"measure", "success"},
-                    {"mean", static_cast<double>(s1) / n1},
-                    {"mean_against", static_cast<double>(s2) / n2},
-                    {"low_of", {wilson_interval(s1, n1).first, wilson_interval(s2, n2).first}},
-                    {"high_of", {wilson_interval(s1, n1).second, wilson_interval(s2, n2).second}},
-                    {"difference", static_cast<double>(s1) / n1 - static_cast<double>(s2) / n2},
-                    {"p", mcnemar(only_first, only_second)},
-                    {"pairs", pairs}});
-      out.push_back(share);
+      Json success_row = head;
+      success_row.update(
+          {{"measure", "success"},
+           {"mean", static_cast<double>(s1) / n1},
+           {"mean_against", static_cast<double>(s2) / n2},
+           {"low_of", {wilson_interval(s1, n1).first, wilson_interval(s2, n2).first}},
+           {"high_of", {wilson_interval(s1, n1).second, wilson_interval(s2, n2).second}},
+           {"difference", static_cast<double>(s1) / n1 - static_cast<double>(s2) / n2},
+           {"p", mcnemar(only_first, only_second)},
+           {"pairs", pairs}});
+      out.push_back(success_row);
       for (const Measure& measure : kMeasures) {
         std::vector<double> first, second;
         for (const auto& [seed, line] : base->second) {

@@ -35,7 +35,7 @@ std::string row(const std::string& name, const Tally& tally) {
   return text;
 }
 
-/// The values of one heading of a trial: one text, several, or none for a number.
+/// Returns the values of one heading of a trial: one text, several, or none for a number.
 std::vector<std::string> values_of(const nlohmann::json& drawn) {
   std::vector<std::string> values;
   if (drawn.is_string()) values.push_back(drawn.get<std::string>());

@@ -38,7 +38,7 @@ std::string failure_kind(const Performer& performer, const GroundTruth& ground_t
   return "task_" + last.state;
 }
 
-/// What distinguishes the person of the first task; empty: nobody, or a person of no scenario.
+/// Returns the traits of the person of the first task; empty without a person of the scenario.
 Json traits_of(const NodeContext& context, const config::Scenario& scenario) {
   if (scenario.tasks().empty() || scenario.tasks(0).human().empty()) return {};
   const sim::SimSettings settings = sim::load_settings(context.settings);
@@ -63,7 +63,7 @@ Json traits_of(const NodeContext& context, const config::Scenario& scenario) {
   return {};
 }
 
-/// What the seed drew, of a scenario with draws; null otherwise.
+/// Returns the values drawn by the seed of a scenario with draws; null otherwise.
 Json drawn_of(const NodeContext& context) {
   const DrawnScenario drawn = draw_scenario(context.scenario, context.seed);
   if (drawn.variants.empty() && drawn.tops.empty()) return {};
@@ -72,7 +72,7 @@ Json drawn_of(const NodeContext& context) {
   try {
     if (Json traits = traits_of(context, drawn.scenario); !traits.is_null()) out["person"] = traits;
   } catch (const std::exception&) {
-    // A scene that cannot be set up is the failure of the trial, which names the reason.
+    // A scene that cannot be set up is reported as the failure of the trial, with its reason.
   }
   return out;
 }
@@ -234,9 +234,9 @@ bool run_trials(const std::vector<Trial>& trials, int jobs,
                 const std::function<void(const nlohmann::json&)>& on_line) {
   std::vector<Worker> running;
   std::map<std::size_t, Json> done;
-  std::size_t next = 0, told = 0;
+  std::size_t next = 0, reported = 0;
   bool clean = true;
-  while (told < trials.size()) {
+  while (reported < trials.size()) {
     while (next < trials.size() && running.size() < static_cast<std::size_t>(jobs))
       running.push_back(start_worker(trials, next++));
     std::vector<pollfd> fds;
@@ -254,10 +254,10 @@ bool run_trials(const std::vector<Trial>& trials, int jobs,
       done[running[i].trial] = finish_worker(running[i], trials, clean);
       running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    for (auto line = done.find(told); line != done.end(); line = done.find(told)) {
+    for (auto line = done.find(reported); line != done.end(); line = done.find(reported)) {
       on_line(line->second);
       done.erase(line);
-      ++told;
+      ++reported;
     }
   }
   return clean;

@@ -16,7 +16,7 @@ struct TrialOptions {
   std::string scenario;  ///< name or file, copied into the line
   /// Mode of the attention and law of its clocks, for the line.
   std::string attention{"adaptive"}, clock_law{"linear"};
-  std::string condition, participant;  ///< of a study; empty: the attention's mode; nobody
+  std::string condition, participant;  ///< of a study; empty: the attention's mode; none
   std::size_t order{};                 ///< number among the trials asked for, from 1; 0: none
   bool hash_outputs{};  ///< adds "output_hash": of every value every component sent, and when
   std::string record;   ///< file that every sample is recorded into; empty: none

@@ -20,7 +20,7 @@ void report_mesh(const Graspable& object) {
     std::fprintf(stderr, "mesh: %s\n", s.c_str());
 }
 
-/// Frames are dealt out to the cores.
+/// Distributes the frames over the cores.
 GraspList on_all_cores(const Listed& with, const GraspListSettings& settings) {
   const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   const std::uint64_t frames = frame_count(*with.hand_geometry, *with.object, settings);

@@ -37,7 +37,7 @@ TableRow table_row(const std::string& hand, const ListOptions& options, bool fit
       try {
         object = object_of(o);
       } catch (const ConfigError&) {
-        o.scale *= 1e-3;  // in millimetres
+        o.scale *= 1e-3;  // from millimetres
         object = object_of(o);
       }
       Eigen::AlignedBox3d box;
@@ -54,9 +54,10 @@ TableRow table_row(const std::string& hand, const ListOptions& options, bool fit
     if (row.grasps > 0) row.best = listed.list.grasps.front().grasp.quality;
     for (const std::string& s : sentences(listed.object->findings()))
       row.findings += (row.findings.empty() ? "" : " ") + s;
-    const auto most = std::max_element(listed.list.reasons.begin() + 1, listed.list.reasons.end());
-    row.reason = std::to_string(*most) + ": " +
-                 reason_text(static_cast<FrameReason>(most - listed.list.reasons.begin()));
+    const auto most_frequent =
+        std::max_element(listed.list.reasons.begin() + 1, listed.list.reasons.end());
+    row.reason = std::to_string(*most_frequent) + ": " +
+                 reason_text(static_cast<FrameReason>(most_frequent - listed.list.reasons.begin()));
   } catch (const ConfigError& e) {
     row.reason = e.what();
   }

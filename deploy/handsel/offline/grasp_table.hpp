@@ -24,8 +24,8 @@ struct TableRow {
 /// Factor that makes an object of these extents one for this hand: 1 when its middle extent is
 /// between 0.15 and 0.75 of the hand's opening, else what makes it half the opening.
 double fitting_scale(const Vector3& extents, double opening);
-/// Returns the distance between thumb and the farthest other fingertip, ready to enclose; of two
-/// pads their widest gap [m].
+/// Returns the distance between thumb and the most distant other fingertip, ready to enclose; of
+/// two pads their widest gap [m].
 double opening_of(const grasp_planner::HandGeometry& hand_geometry);
 
 /// `options.object` is the object; with `fit` it is scaled for the hand.

@@ -15,13 +15,13 @@
 namespace handsel {
 namespace {
 
-constexpr int kResolution = 48;                // cells along the longest side
-constexpr std::size_t kMaxTriangles = 20'000;  // more are simplified: twelve processes read them
-constexpr double kMinSide = 0.005, kMaxSide = 1.5;  // [m] of the longest side of what a hand lifts
-constexpr double kMinSideInMillimetres = 20;  // smaller ones may as well be centimetres or inches
-constexpr double kConvex = 0.97;              // of the hull's volume: one part will do
-constexpr double kMinCavity = 0.1;            // of the hull's volume that a container holds
-constexpr double kFullTilt = 0.35;            // [rad] as of the project's full mug
+constexpr int kResolution = 48;                     // cells along the longest side
+constexpr std::size_t kMaxTriangles = 20'000;       // max of one mesh, as twelve processes read it
+constexpr double kMinSide = 0.005, kMaxSide = 1.5;  // longest side of objects that a hand lifts [m]
+constexpr double kMinSideInMillimetres = 20;  // smaller meshes may be in centimetres or inches [mm]
+constexpr double kConvex = 0.97;              // min fill of the hull by one part, ratio of volumes
+constexpr double kMinCavity = 0.1;  // min volume of a container's cavity, ratio to the hull's
+constexpr double kFullTilt = 0.35;  // as of the project's full mug [rad]
 constexpr double kUprightCosine = 0.999;
 
 struct Extent {
@@ -39,7 +39,7 @@ Extent extent_of(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Metres a unit of the file, by the longest side.
+/// Returns metres per unit of the file, estimated from the longest side.
 double found_scale(double side, std::vector<std::string>& notes) {
   if (side >= kMinSide && side <= kMaxSide) return 1;
   if (side >= kMinSideInMillimetres && side <= 1000 * kMaxSide) {
@@ -67,7 +67,7 @@ void turn(TriangleMesh& mesh, const Eigen::Quaterniond& by) {
   for (Vector3& v : mesh.vertices) v = by * v;
 }
 
-/// Mass properties of the solid cells, for surfaces with holes.
+/// Returns mass properties of the solid cells, for surfaces with holes.
 MassProperties mass_of_cells(const VoxelGrid& grid) {
   MassProperties out;
   std::vector<Vector3> centres;
@@ -149,7 +149,8 @@ class Maker {
       const Eigen::Quaterniond by = upright_by(axes().at(wishes_.up));
       return apply(by);
     }
-    // A container, else a way to stand, decides; z wins where both ways are possible.
+    // A container, otherwise a stable placement, decides; z has precedence if both directions are
+    // possible.
     const double hull = volume_of(convex_hull(mesh_.vertices));
     TriangleMesh with_y = mesh_;
     turn(with_y, upright_by(Vector3::UnitY()));
@@ -179,8 +180,8 @@ class Maker {
     out_.moved = true;
   }
 
-  /// Observations give the pose of the origin: one far outside the object would turn a small error
-  /// of orientation into a large one of place.
+  /// Moves the origin to the centre. Observations contain the pose of the origin: if that is far
+  /// outside the object, a small error of orientation becomes a large error of position.
   void centre() {
     const Extent box = extent_of(mesh_);
     const Vector3 off = box.middle();
@@ -237,7 +238,7 @@ class Maker {
     out_.model.parts.insert(out_.model.parts.begin(), hollow);
   }
 
-  /// Whether water stands within two cells of a part.
+  /// Returns whether water stands within two cells of a part.
   static bool touches(const VoxelGrid& grid, const ConvexPart& part,
                       const std::vector<int>& water) {
     const std::set<int> cells(part.cells.begin(), part.cells.end());

@@ -21,7 +21,7 @@ void write_bytes(const fs::path& file, const std::string& bytes) {
     throw ConfigError("cannot write " + file.string() + "; --out names another place");
 }
 
-/// A binary STL.
+/// Returns a binary STL.
 std::string stl_of(const TriangleMesh& mesh) {
   std::string out(80, ' ');
   const auto add = [&](const auto& value) {
@@ -52,7 +52,7 @@ std::string xyz_text(const Vector3& v) {
   return "x: " + digits(v.x()) + " y: " + digits(v.y()) + " z: " + digits(v.z());
 }
 
-/// Roll, pitch and yaw of a rotation.
+/// Returns roll, pitch and yaw of a rotation [rad].
 Vector3 rpy_of(const Eigen::Matrix3d& R) {
   return {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
           std::atan2(R(1, 0), R(0, 0))};
@@ -132,7 +132,7 @@ class Writer {
     if (const auto* cylinder = std::get_if<Cylinder>(&placed.shape))
       return text + "cylinder { radius: " + digits(cylinder->radius) +
              " length: " + digits(cylinder->length) + " }";
-    // The loader multiplies parts by `scale`, as the mesh.
+    // The loader scales parts by `scale`, as it does the mesh.
     TriangleMesh hull = *std::get<MeshPtr>(placed.shape);
     const bool scaled = !made_.moved && is_drawn(files_.mesh);
     for (Vector3& v : hull.vertices) v /= scaled ? made_.scale : 1;

@@ -17,11 +17,11 @@ using google::protobuf::Reflection;
 using google::protobuf::TextFormat;
 using Places = TextFormat::ParseInfoTree;
 
-/// A place in the settings: by index, as sources name them, and by name, as people do.
+/// A place in the settings: by index, as in sources, and by name, for display.
 struct Place {
   std::string by_index, by_name;
-  const Places* places{};  ///< of the shipped text; nullptr: an overlay's alone
-  std::string source;      ///< of the entry of a list that an overlay added; empty: none
+  const Places* places{};  ///< positions in the shipped text; nullptr: only in an overlay
+  std::string source;      ///< source of a list entry that an overlay added; empty: none
 };
 
 class Lister {

@@ -19,7 +19,7 @@ KinematicLimits limits_in(const json& line) {
   return {vector_of(line, "vmax"), vector_of(line, "amax"), vector_of(line, "jmax")};
 }
 
-/// Numbers near the ends of the range of a double give answers that are none.
+/// Rejects numbers near the limits of a double, which give invalid results.
 void require_finite(const Trajectory& trajectory) {
   const MotionState3 end = final_state(trajectory);
   if (!std::isfinite(trajectory.duration()) || !end.position.allFinite() ||
@@ -119,10 +119,10 @@ json smooth_line(const json& line) {
 }
 
 json sample_line(const json& line, double period) {
-  constexpr double kMostSamples = 1e6;
+  constexpr double kMaxSamples = 1e6;
   const Trajectory trajectory = trajectory_in(line);
   const SegmentTable table(trajectory);
-  if (table.duration() / period > kMostSamples)
+  if (table.duration() / period > kMaxSamples)
     throw LineError("more than a million samples; take a longer --period");
   MotionState3 state = trajectory.at(0);
   json out{{"t", json::array()}, {"p", json::array()}, {"v", json::array()}, {"a", json::array()}};

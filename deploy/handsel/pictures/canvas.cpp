@@ -8,12 +8,12 @@
 namespace handsel {
 namespace {
 
-constexpr int kFine = 3;  // samples along each side of a point of the picture
+constexpr int kFine = 3;  // samples along each side of a pixel
 constexpr int kRound = 28;
 
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// Rings of points about z: radius and height of each; closed at both ends.
+/// Adds a surface of revolution about z: radius and height of each ring; closed at both ends.
 void lathe(const std::vector<std::pair<double, double>>& profile, std::vector<Vector3>& vertices,
            Triangles& triangles) {
   for (const auto& [radius, z] : profile) {
@@ -119,12 +119,12 @@ void Canvas::put(const Piece& piece, std::vector<Sample>& samples) const {
   const Eigen::Vector3f &p = piece.corners[0], &q = piece.corners[1], &r = piece.corners[2];
   const float area = (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
   if (!(std::abs(area) > 1e-9F)) return;
-  const auto least = [&](int k) { return std::min({p[k], q[k], r[k]}); };
-  const auto most = [&](int k) { return std::max({p[k], q[k], r[k]}); };
-  const int x0 = std::max(0, static_cast<int>(std::ceil(least(0) - 0.5F))),
-            x1 = std::min(width_ - 1, static_cast<int>(most(0)));
-  const int y0 = std::max(0, static_cast<int>(std::ceil(least(1) - 0.5F))),
-            y1 = std::min(height_ - 1, static_cast<int>(most(1)));
+  const auto min_of = [&](int k) { return std::min({p[k], q[k], r[k]}); };
+  const auto max_of = [&](int k) { return std::max({p[k], q[k], r[k]}); };
+  const int x0 = std::max(0, static_cast<int>(std::ceil(min_of(0) - 0.5F))),
+            x1 = std::min(width_ - 1, static_cast<int>(max_of(0)));
+  const int y0 = std::max(0, static_cast<int>(std::ceil(min_of(1) - 0.5F))),
+            y1 = std::min(height_ - 1, static_cast<int>(max_of(1)));
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       const float px = static_cast<float>(x) + 0.5F, py = static_cast<float>(y) + 0.5F;

@@ -10,9 +10,9 @@
 namespace handsel {
 namespace {
 
-constexpr double kBehind = -1.0, kBefore = 2.0, kTop = 2.2;  // [m]
-constexpr double kScale = 120, kGap = 46, kMargin = 44;      // [px a metre], [px]
-// From no cost to the highest: lightness falls evenly, so that it reads in grey too.
+constexpr double kBehind = -1.0, kBefore = 2.0, kTop = 2.2;  // extent of the plane [m]
+constexpr double kScale = 120, kGap = 46, kMargin = 44;      // [px/m], [px], [px]
+// From no cost to the max: lightness decreases evenly, so that the picture also works in grey.
 constexpr std::array kRamp = {"#f7fbf2", "#e0f0d9", "#c4e5c4", "#a2d9b4", "#7ac9b0", "#55b4b6",
                               "#3f9bbb", "#3b7fb4", "#3f61a3", "#3f4587", "#332a5f"};
 
@@ -31,7 +31,7 @@ struct Panel {
   std::function<double(const CostParts&)> cost;
 };
 
-/// The plane: its point (x before the person, z above the floor) and back.
+/// Conversion between points of the plane (x in front of the person, z above the floor) and pixels.
 struct Plane {
   explicit Plane(const Person& person) {
     const SimplifiedBody body = simplified_body(person);

@@ -12,9 +12,9 @@ namespace {
 
 using namespace grasp_planner;
 
-constexpr double kConeLength = 0.03;  // [m]
+constexpr double kConeLength = 0.03;  // length of a cone [m]
 constexpr Colour kObject = {200, 196, 182}, kLine = {60, 60, 60};
-constexpr double kFinest = 0.0025;  // [m] edges of triangles coloured by curvature
+constexpr double kFinest = 0.0025;  // min edge of triangles coloured by curvature [m]
 
 Colour curvature_colour(double c) {
   const auto part = [](double v) {
@@ -23,7 +23,7 @@ Colour curvature_colour(double c) {
   return {part(1 - 2 * c), part(1 - std::abs(2 * c - 1)), part(2 * c - 1)};
 }
 
-/// Halves the longest edge until all are short.
+/// Halves the longest edge until none exceeds `max_edge` [m].
 void cut(const Vector3& a, const Vector3& b, const Vector3& c, double longest,
          std::vector<std::array<Vector3, 3>>& out) {
   const double ab = (b - a).norm(), bc = (c - b).norm(), ca = (a - c).norm();
@@ -85,8 +85,8 @@ void draw_force_ellipsoids(Canvas& canvas, const HandGeometry& hand_geometry, co
   for (const Contact& c : grasp.contacts) {
     const Eigen::Matrix3Xd J = hand_geometry.chains[c.finger].jacobian(T_hand_step[c.finger]);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(Eigen::Matrix3d(J * J.transpose()));
-    // Of the forces that unit efforts give: semi-axes 1 / sqrt(eigenvalue); a direction without
-    // movement is cut at eight times the least.
+    // Ellipsoid of the forces of unit efforts: semi-axes 1 / sqrt(eigenvalue), limited to eight
+    // times the min, as a direction without motion has an infinite one.
     const Vector3 force =
         eigen.eigenvalues().cwiseMax(eigen.eigenvalues()[2] / 64).cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d R = grasp.T_object_hand.linear() * eigen.eigenvectors();
@@ -155,7 +155,7 @@ void draw_candidates(Canvas& canvas, const HandGeometry& hand_geometry,
   std::vector<std::uint32_t> points;
   for (std::size_t f = 0; f < hand_geometry.chains.size(); ++f) {
     search.candidates(static_cast<int>(f), T_object_hand, points);
-    // A point that several fingers cover wears their colours side by side.
+    // A point covered by several fingers shows their colours side by side.
     for (const std::uint32_t i : points) {
       const SurfacePoint& p = object.points()[i];
       const double turn = 1.5707963 * static_cast<double>(f);

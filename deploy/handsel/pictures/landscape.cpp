@@ -17,9 +17,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kCell = 0.02;  // of the landscape
+constexpr double kCell = 0.02;  // cell size of the landscape
 constexpr int kCells = 101, kLayers = 3;
-constexpr double kScale = 300;  // [points a unit]
+constexpr double kScale = 300;  // [px/unit]
 
 struct Hill {
   double x, y, height, width;

@@ -23,7 +23,7 @@ Eigen::AlignedBox3d around(const Vector3& middle, double half) {
   return {Vector3(middle.array() - half), Vector3(middle.array() + half)};
 }
 
-/// One picture below or beside another.
+/// Copies a picture into another at x0, y0 [px].
 void paste(Picture& onto, const Picture& one, int x0, int y0) {
   for (int y = 0; y < one.height(); ++y) {
     for (int x = 0; x < one.width(); ++x) onto.dot(x0 + x, y0 + y, one.at(x, y));

@@ -26,7 +26,7 @@ struct DrawnRobot {
   const RobotModel& robot;  ///< Its model.
   const Vector& q;          ///< All axes [rad].
 };
-/// The person who takes the object, with the hand that is to hold it.
+/// The receiver of the object, with the hand that will hold it.
 struct DrawnReceiver {
   const Person& person;                     ///< World frame.
   const grasp_planner::HandGeometry& hand;  ///< Shape of the hand.

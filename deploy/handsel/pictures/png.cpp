@@ -25,12 +25,12 @@ void chunk(std::string& out, const std::string& kind, const std::string& data) {
   put32(out, crc(kind + data));
 }
 
-/// zlib with stored blocks.
+/// Returns a zlib stream of stored blocks.
 std::string stored(const std::string& data) {
-  constexpr std::size_t kMost = 65535;
+  constexpr std::size_t kMaxBlock = 65535;
   std::string out = "\x78\x01";
-  for (std::size_t from = 0; from < data.size(); from += kMost) {
-    const std::size_t size = std::min(kMost, data.size() - from);
+  for (std::size_t from = 0; from < data.size(); from += kMaxBlock) {
+    const std::size_t size = std::min(kMaxBlock, data.size() - from);
     out += static_cast<char>(from + size == data.size());
     for (const std::size_t word : {size, ~size}) {
       out += static_cast<char>(word & 0xff);
@@ -64,7 +64,7 @@ std::string Picture::png() const {
   std::string header, rows;
   put32(header, static_cast<std::uint32_t>(width_));
   put32(header, static_cast<std::uint32_t>(height_));
-  header += {8, 2, 0, 0, 0};  // eight bits, red green blue
+  header += {8, 2, 0, 0, 0};  // eight bits, RGB
   for (int y = 0; y < height_; ++y) {
     rows += '\0';
     for (int x = 0; x < width_; ++x)

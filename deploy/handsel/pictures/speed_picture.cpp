@@ -6,7 +6,7 @@
 namespace handsel {
 namespace {
 
-constexpr int kLooks = 400;
+constexpr int kCurveSamples = 400;
 constexpr double kWide = 560, kHigh = 150, kLeft = 46, kTop = 34, kGap = 52;  // [px]
 
 template <class... Values>
@@ -33,8 +33,8 @@ SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axe
   Vector q = rest;
   double gone = 0;
   Vector last = trajectory.at(0).position;
-  for (int k = 0; k <= kLooks; ++k) {
-    const MotionState3 state = trajectory.at(trajectory.duration() * k / kLooks);
+  for (int k = 0; k <= kCurveSamples; ++k) {
+    const MotionState3 state = trajectory.at(trajectory.duration() * k / kCurveSamples);
     gone += (state.position - last).norm();
     last = state.position;
     q(axes) = state.position;
@@ -44,7 +44,7 @@ SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axe
     curve.allowed.push_back(sample.factor.velocity);
     curve.speed.push_back((state.velocity.cwiseAbs().array() / limits.array()).maxCoeff());
   }
-  for (double& way : curve.progress) way /= gone > 0 ? gone : 1;
+  for (double& progress : curve.progress) progress /= gone > 0 ? gone : 1;
   return curve;
 }
 

@@ -11,7 +11,7 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kFlush = std::chrono::milliseconds(500);  // what a sudden end may cost
+constexpr Duration kFlush = std::chrono::milliseconds(500);  // max loss at a sudden end
 
 }  // namespace
 

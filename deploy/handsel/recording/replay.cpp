@@ -17,10 +17,10 @@ std::vector<std::string> input_topics() {
 
 namespace {
 
-/// Reads the whole file, so that nothing is sent of one that is damaged further on.
+/// Reads the whole file first, so that nothing of a damaged file is sent.
 void require_sound(const std::filesystem::path& file) {
   constexpr std::int64_t kMaxLength =
-      30ll * 24 * 3600 * 1'000'000'000;  // [ns] a month: beyond, the time of a message is wrong
+      30ll * 24 * 3600 * 1'000'000'000;  // one month [ns]; larger times of a message are wrong
   mcap::Reader reader(file);
   mcap::Message message;
   std::int64_t begin = -1;
@@ -86,7 +86,7 @@ void Replay::send(Stamp began) {
   std::string why = "its bytes are no such sample";
   bool sent = codec_.decode(*channel.type, sample_.data, channel.wire.get());
   if (sent) {
-    // A measurement stays as old at its sending as it was.
+    // A measurement keeps the age that it had when it was sent.
     const Stamp stamp = channel.type->stamp(channel.wire.get());
     const Stamp age = stamp >= 0 && stamp < sample_.time ? sample_.time - stamp : 0;
     channel.type->set_stamp(channel.wire.get(), began + static_cast<Stamp>(1e9 * due()) - age);

@@ -132,7 +132,7 @@ class LineParser {
   std::string word() const { return position_ < words_.size() ? words_[position_] : std::string(); }
   std::string take() { return position_ < words_.size() ? words_[position_++] : std::string(); }
   [[noreturn]] void fail(const std::string& what) const {
-    constexpr std::size_t kMaxComplaint = 700;  // [bytes] a wrong word is quoted whole
+    constexpr std::size_t kMaxComplaint = 700;  // max length; a wrong word is quoted [bytes]
     throw ConfigError(where_ + printable(what, kMaxComplaint));
   }
 
@@ -160,7 +160,7 @@ class LineParser {
     while (position_ < words_.size()) step_.words.push_back(take());
     if (position_ == before) fail("the line ends where " + wanted + " should follow");
   }
-  /// Takes kind and object of a task, then pairs of a preposition and a name.
+  /// Reads kind and object of a task, then pairs of a preposition and a name.
   void take_task() {
     take_rest("a kind of task");
     for (std::size_t i = 2; i < step_.words.size(); i += 2) {

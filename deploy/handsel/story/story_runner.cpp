@@ -14,7 +14,7 @@
 namespace handsel {
 namespace {
 
-/// A line of the story did not come true.
+/// Thrown if the condition of a line of the story does not become true.
 struct Unfulfilled {
   std::string why;
 };
@@ -30,15 +30,15 @@ bool does_something(StepKind kind) {
          kind != StepKind::listen;
 }
 
-/// What also held before the disturbance: it must hold when its line is reached, a moment of it on
-/// the way is not enough.
+/// Returns whether a condition also held before the disturbance: it must hold when its line is
+/// reached; a moment before that is not sufficient.
 bool is_calm(const Condition& condition) {
   return condition.kind == ConditionKind::rest || condition.kind == ConditionKind::ready ||
          (condition.kind == ConditionKind::mode && condition.subject == name(Mode::normal));
 }
 
-/// Returns whether the hand of a group of joints has grasped something. Throws ConfigError where
-/// the robot has no such hand.
+/// Returns whether the hand of a group of joints has grasped something. Throws ConfigError if the
+/// robot has no such hand.
 bool has_grasped(const ExecutionStatus& execution, const std::string& group) {
   if (group == "hand") return execution.hand == HandState::grasped;
   std::string known = "hand";
@@ -170,7 +170,7 @@ void StoryRunner::send_task(const StoryStep& step) {
   task_time_ = origin_ = goal_sent_ = now();
 }
 
-/// A supervisor that was started anew is told the task again.
+/// Sends the task again to a restarted supervisor.
 void StoryRunner::remind() {
   const Snapshot& snapshot = system_->session().snapshot();
   const auto task = snapshot.tasks.find(task_id_);
@@ -189,8 +189,8 @@ void StoryRunner::send_control(const StoryStep& step) {
   TaskGoal goal{.id = system_->session().new_task_id(), .kind = kinds.at(step.words[0])};
   if (step.words.size() > 1) goal.value = std::atof(step.words[1].c_str()) / 100.0;
   if (!system_->session().send(goal)) throw Unfulfilled{"the supervisor does not listen"};
-  if (goal.kind == TaskKind::cancel) return;  // the task that ends is the answer
-  // What a person asks for counts from its answer on: only then would it survive the death of the
+  if (goal.kind == TaskKind::cancel) return;  // the cancelled task itself is the answer
+  // A request of a person counts from its acknowledgement on: only then it survives the end of the
   // supervisor.
   const auto& tasks = system_->session().snapshot().tasks;
   const auto answered = [&] {

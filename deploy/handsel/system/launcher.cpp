@@ -47,10 +47,10 @@ struct Launcher::Child {
   int pid_fd{-1};
   int starts{0};
   Backoff backoff;
-  TimePoint since{};               // started, or ended
-  std::string hung{};              // why it was killed
-  std::string why{};               // it ended
-  std::optional<TimePoint> due{};  // when it is started again
+  TimePoint since{};               // time of the start or the end
+  std::string hung{};              // reason of the kill
+  std::string why{};               // reason of the end
+  std::optional<TimePoint> due{};  // time of the restart
 };
 
 Launcher::Launcher(LauncherOptions options) : options_(std::move(options)) {
@@ -77,8 +77,8 @@ void Launcher::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-// The parent-death signal follows the thread that forked: this thread starts every child and lives
-// as long as they do.
+// The parent-death signal follows the forking thread: this thread starts every child and lives as
+// long as they do.
 void Launcher::watch() {
   {
     std::lock_guard lock(mutex_);
@@ -101,10 +101,10 @@ void Launcher::watch() {
   stop_children();
 }
 
-/// Until the next start [ms].
+/// Returns the time until the next start [ms].
 int Launcher::poll_time() const {
-  constexpr Duration kLongest = std::chrono::seconds(1);
-  Duration left = kLongest;
+  constexpr Duration kMaxWait = std::chrono::seconds(1);
+  Duration left = kMaxWait;
   for (const Child& child : children_)
     if (child.due) left = std::min(left, *child.due - monotonic_now());
   return static_cast<int>(std::max(left, Duration{}) / std::chrono::milliseconds(1)) + 1;
@@ -271,7 +271,7 @@ std::filesystem::path lock_file(int domain) {
 }  // namespace
 
 bool domain_is_held(int domain) {
-  const int fd = open(lock_file(domain).c_str(), O_RDONLY | O_CLOEXEC);  // it may be another user's
+  const int fd = open(lock_file(domain).c_str(), O_RDONLY | O_CLOEXEC);  // maybe of another user
   if (fd < 0) return false;
   const bool held = flock(fd, LOCK_SH | LOCK_NB) != 0;
   close(fd);

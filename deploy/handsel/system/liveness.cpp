@@ -31,7 +31,7 @@ Life Liveness::assess(const LifeSigns& signs) {
   const bool stopped = stopped_since_ && signs.now - *stopped_since_ >= settings_.hung_after;
   const bool kept =
       signs.state == 't' ||
-      signs.state == 'D';  // to kill what a debugger or a device keeps is wrong, or does nothing
+      signs.state == 'D';  // killing a process held by a debugger or a device fails or is wrong
   const Duration silence = signs.now - last_.now;
   const Duration idle = silence - growth(last_.own_delay, signs.own_delay) -
                         growth(last_.main_delay, signs.main_delay);

@@ -29,7 +29,7 @@ struct LifeSigns {
   /// debugger, Z ended.
   char state{'S'};
   Duration main_delay{};  ///< how long its main thread has waited for a processor since its start
-  /// The same summed over steps: in each, of the thread that waited longest.
+  /// The same summed over steps: in each, the max over threads.
   Duration total_delay{};
   Duration own_delay{};  ///< how long the listener for heartbeats could not listen
 };

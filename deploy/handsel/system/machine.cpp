@@ -47,7 +47,7 @@ RunningProcess describe(pid_t pid) {
   return out;
 }
 
-/// Inodes of the sockets bound to a port, of IPv4 and IPv6.
+/// Returns the inodes of the sockets bound to a port, of IPv4 and IPv6.
 std::set<std::string> inodes_of(const std::string& table, int port) {
   constexpr const char* kListening = "0A";
   std::set<std::string> inodes;

@@ -9,8 +9,8 @@ namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr Duration kResend = std::chrono::seconds(1);
-constexpr Duration kOraclePatience =
-    std::chrono::seconds(5);  // the oracle wants the person to carry it alone for 1 s
+constexpr Duration kOracleTimeout =
+    std::chrono::seconds(5);  // the oracle requires that the person carries it alone for 1 s
 constexpr double kDefaultTimeout = 60.0;
 constexpr std::array kKinds = {
     TaskKind::give, TaskKind::receive, TaskKind::pick, TaskKind::place, TaskKind::clear,
@@ -127,8 +127,8 @@ void Performer::note_step(const TaskStatus& status, TimePoint now) {
 void Performer::follow(TimePoint now) {
   const auto& tasks = observer_.snapshot().tasks;
   const auto found = tasks.find(goals_[current_].id);
-  // Until a supervisor answers; and one that was started anew knows nothing of the task, and takes
-  // it up where the world is.
+  // Sends the task until a supervisor answers; a restarted one does not know the task and resumes
+  // from the state of the world.
   const Seen<TaskStatus>& newest = observer_.snapshot().task;
   const bool silent = found == tasks.end() || now - newest.arrival >= kTaskSilence;
   if (silent && now - last_sent_ >= kResend) {
@@ -178,7 +178,7 @@ void Performer::verify(TimePoint now) {
     outcome.success = true;
     return conclude(now);
   }
-  if (supervisor_says && now - verify_begin_ < kOraclePatience) return;
+  if (supervisor_says && now - verify_begin_ < kOracleTimeout) return;
   if (supervisor_says) {
     outcome.reason =
         !ground_truth.ever            ? "no word from the simulator's oracle"

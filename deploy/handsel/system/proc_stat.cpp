@@ -9,7 +9,7 @@
 namespace handsel {
 namespace {
 
-/// Second number of a schedstat file [ns].
+/// Returns the second number of a schedstat file: the run delay [ns].
 Duration run_delay(const std::string& file) {
   std::ifstream in(file);
   long long running = 0, waiting = 0;
@@ -25,17 +25,17 @@ Duration main_thread_delay(pid_t pid) {
 
 Duration ThreadDelay::update(pid_t pid) {
   std::map<pid_t, Duration> now;
-  Duration longest{};
-  std::error_code error;  // threads end while they are listed
+  Duration max_delay{};
+  std::error_code error;  // threads may end during the listing
   std::filesystem::directory_iterator entry("/proc/" + std::to_string(pid) + "/task", error), end;
   for (; !error && entry != end; entry.increment(error)) {
     const pid_t thread = std::atoi(entry->path().filename().c_str());
     const Duration delay = now[thread] = run_delay(entry->path() / "schedstat");
     if (const auto before = before_.find(thread); before != before_.end())
-      longest = std::max(longest, delay - before->second);
+      max_delay = std::max(max_delay, delay - before->second);
   }
   before_ = std::move(now);
-  return total_ += longest;
+  return total_ += max_delay;
 }
 
 }  // namespace handsel

@@ -9,7 +9,7 @@
 
 namespace handsel {
 
-/// How long the main thread has waited for a processor so far; zero when the kernel does not tell.
+/// Time the main thread has waited for a processor so far; zero if the kernel does not report it.
 Duration main_thread_delay(pid_t pid);
 
 /// How long the threads of a process have waited for a processor: in each step the one that waited

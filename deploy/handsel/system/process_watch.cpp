@@ -11,8 +11,8 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kCheckPeriod = std::chrono::milliseconds(100);  // that of the heartbeats
-constexpr std::uint64_t kSpeakEvery = 2;                           // checks
+constexpr Duration kCheckPeriod = std::chrono::milliseconds(100);  // period of the heartbeats
+constexpr std::uint64_t kSpeakEvery = 2;                           // checks per report
 constexpr Duration kLately = 5 * kCheckPeriod;
 
 std::string seconds(Duration time) {
@@ -44,7 +44,8 @@ void ProcessWatch::on_health(const ComponentHealth& health) {
 }
 
 /// Returns whether most processes are silent at once: then the listener, the transport or the
-/// machine is at fault. A stopped process (SIGSTOP) does not count; its silence is its own.
+/// machine is at fault. A stopped process (SIGSTOP) does not count, as its silence has a known
+/// cause.
 bool ProcessWatch::majority_is_silent(TimePoint now) const {
   std::size_t expected = 0, beating = 0;
   for (const auto& [name, process] : watched_) {
@@ -104,13 +105,13 @@ void ProcessWatch::assess(const ProcessStatus& process, TimePoint now) {
 }
 
 void ProcessWatch::speak_for(const ProcessStatus& process) {
-  constexpr std::size_t kLongest = 255;  // idl/system.idl
+  constexpr std::size_t kMaxReason = 255;  // bound in idl/system.idl
   ComponentHealth health;
   health.component = process.name;
   health.state = HealthState::stopping;
   health.reason = "restart " + std::to_string(process.restarts + 1) + " in " +
                   seconds(process.wait) + "; it " + process.why;
-  if (health.reason.size() > kLongest) health.reason.resize(kLongest);
+  if (health.reason.size() > kMaxReason) health.reason.resize(kMaxReason);
   health.uptime = 0.0;
   out_->publish(health);
 }

@@ -14,7 +14,8 @@
 
 namespace handsel {
 
-// The safety lane: observation, occupied volume, guard, set-points, robot side.
+// Returns whether a process belongs to the safety path: observation, occupied volume, guard,
+// set-points, robot side.
 bool is_realtime(std::string_view process) {
   return process == "sim" || process == "spark" || process == "trajectory_controller";
 }
@@ -34,10 +35,10 @@ void require_processes(const std::vector<std::string>& names) {
   }
 }
 
-/// Returns whether the simulator gives the pace unless the environment says otherwise: not where a
-/// source from outside, whose time does not stand still, is read.
+/// Returns whether the simulator grants time unless the environment defines it: not if an external
+/// source is read, whose time does not wait.
 bool is_paced_by_simulator(const SystemOptions& options) {
-  if (std::getenv("HANDSEL_SIM_TIME") != nullptr) return false;  // the processes read it themselves
+  if (std::getenv("HANDSEL_SIM_TIME") != nullptr) return false;  // the processes read the variable
   if (!options.whole() || options.ros2) return false;
   const config::Scenario scenario = read_scenario(scenario_file(options.scenario), options.seed);
   return std::none_of(scenario.people().begin(), scenario.people().end(),

@@ -36,7 +36,7 @@ Session::Session(int domain)
       goals_(bus_.advertise<TaskGoal>()),
       next_task_(std::random_device{}()) {
   bus_.every(from_seconds(0.02),
-             [](TimePoint) {});  // so that conditions are asked again when nothing arrives
+             [](TimePoint) {});  // conditions are checked again even if nothing arrives
 }
 
 bool Session::wait(Duration limit, const std::function<bool()>& done) {

@@ -17,7 +17,7 @@ ProcessLine line_of(const std::string& component, const Snapshot& snapshot, Time
   if (found == snapshot.health.end()) return line;
   const ComponentHealth& health = found->second.sample;
   const bool not_running =
-      health.state == HealthState::stopping && health.pid == 0;  // its launcher speaks for it
+      health.state == HealthState::stopping && health.pid == 0;  // reported by its launcher
   line.state = now - found->second.arrival > kSilent ? "silent"
                : not_running                         ? "restarting"
                                                      : name(health.state);

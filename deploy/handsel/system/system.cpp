@@ -21,7 +21,8 @@ SystemOptions checked(SystemOptions options) {
   system_processes(options);
   if (options.web_port >= 0)
     setenv("HANDSEL_WEB_PORT", std::to_string(options.web_port).c_str(), 1);
-  // Large pages: reading meshes fills buffers of 16 MB, page by page a third of the time to start.
+  // Large pages: reading meshes fills buffers of 16 MB; page by page this takes a third of the
+  // start.
   setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
   return options;
 }
@@ -115,14 +116,15 @@ std::optional<Duration> System::wait_ready(Duration limit) {
     }
     return missing;
   };
-  // Time in which a process waited for a processor does not count, and the limit begins anew with
-  // every process that becomes ready: of two systems on one processor each starts more slowly.
+  // Time in which a process waits for a processor does not count, and the limit restarts with every
+  // process that becomes ready: of two systems on one processor each starts more slowly.
   std::map<std::string, ThreadDelay> delays;
   const auto starved = [&] {
-    Duration longest{};
+    Duration max_delay{};
     for (const ProcessStatus& process : launcher_.processes())
-      if (process.pid > 0) longest = std::max(longest, delays[process.name].update(process.pid));
-    return longest;
+      if (process.pid > 0)
+        max_delay = std::max(max_delay, delays[process.name].update(process.pid));
+    return max_delay;
   };
   std::size_t fewest = lacking().size();
   TimePoint end = begin + limit;

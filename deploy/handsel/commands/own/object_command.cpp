@@ -24,8 +24,8 @@ struct NewOptions {
 
 const std::map<std::string, double> kUnits{{"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}, {"m", 1}};
 
-/// Reads a mesh in the unit of its file: the reader takes no file larger than 100 m, and a file in
-/// millimetres may be.
+/// Reads a mesh in the unit of its file: the reader rejects meshes above 100 m, which a file in
+/// millimetres may seem to be.
 TriangleMesh mesh_in_own_unit(const fs::path& file) {
   constexpr double kSmaller = 1e-3;
   try {
@@ -92,7 +92,7 @@ int make(NewOptions& options) {
       object_name(options.name.empty() ? fs::path(options.mesh) : fs::path(options.name + ".x"));
   files.description = description_of(options, files.name);
   const std::vector<fs::path> written = write_object(made, files);
-  ObjectModel::load(files.description);  // reads as everybody will
+  ObjectModel::load(files.description);  // checks that the written description can be read
   for (const std::string& note : made.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   print_summary(made, files.name);
   std::printf("  written in %.1f s: %s and %zu more file%s\n",
