@@ -28,8 +28,8 @@ bool queued(Profile profile) {
 bool kept(Profile profile) { return profile == Profile::state || profile == Profile::latch; }
 
 struct Description {
-  std::string folder;  ///< "robots/jido", empty when the robot's URDF is not, or not as it is,
-                       ///< among the resources
+  std::string folder;  ///< for example "robots/jido"; empty if the robot's URDF is not among the
+                       ///< resources, or not unchanged
   config::RobotDescription robot;
 };
 
@@ -44,7 +44,7 @@ Description describe(const RobotModel& robot, const fs::path& resources) {
   return out;
 }
 
-/// The URDF as a viewer can use it: meshes by their address here.
+/// Returns the URDF for viewers: meshes by their address on this server.
 std::string robot_description(const RobotModel& robot, const Description& description,
                               const fs::path& resources) {
   if (description.folder.empty()) return drawn_urdf(robot);
@@ -55,7 +55,7 @@ std::string robot_description(const RobotModel& robot, const Description& descri
                             "filename=\"package://handsel/" + description.folder + "/$1\"");
 }
 
-/// An object of the page: the address of its mesh, none when empty.
+/// Returns an object of the page with the address of its mesh; empty if there is none.
 Json drawn(const config::ObjectDescription& object, const std::string& address) {
   Json one = Json::object();
   if (!address.empty()) one["mesh"] = address;
@@ -100,10 +100,10 @@ std::vector<OwnMesh> own_meshes(const fs::path& resources) {
       std::string kind = mesh.extension().string();
       std::transform(kind.begin(), kind.end(), kind.begin(),
                      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      const bool is_drawn = kind == ".stl" || kind == ".obj";  // what the page reads
+      const bool is_drawn = kind == ".stl" || kind == ".obj";  // formats the page can read
       out.push_back(
           {file, mesh, is_drawn ? "/assets/own/" + std::to_string(out.size()) + kind : ""});
-    } catch (const ConfigError&) {  // not loaded by anybody
+    } catch (const ConfigError&) {  // an invalid description that no component uses
     }
   }
   return out;

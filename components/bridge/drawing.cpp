@@ -16,8 +16,8 @@ struct Shade {
 constexpr Shade kRobot{0.92, 0.55, 0.16, 1}, kPerson{0.35, 0.55, 0.85, 0.9},
     kLost{0.35, 0.55, 0.85, 0.35}, kObject{0.85, 0.3, 0.3, 1}, kUnknown{0.8, 0.5, 0.75, 1},
     kMislaid{0.85, 0.3, 0.3, 0.35}, kFurniture{0.6, 0.58, 0.54, 1};
-constexpr int kFades = 1;            // [s]
-constexpr double kSurePlace = 0.02;  // an object more uncertain than this is drawn pale [m]
+constexpr int kFades = 1;            // time until an entity vanishes without an update [s]
+constexpr double kSurePlace = 0.02;  // max uncertainty of an object drawn solid, not pale [m]
 
 void set(const Vector3& from, foxglove::Vector3& to) {
   to.set_x(from.x());
@@ -87,7 +87,7 @@ void add_shape(foxglove::SceneEntity& entity, const Pose& pose, const Shape& sha
   } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     add_capsule(entity, pose, capsule->radius, capsule->length, shade);
   } else if (const MeshPtr& mesh = std::get<MeshPtr>(shape); mesh && !mesh->vertices.empty()) {
-    Eigen::AlignedBox3d bounds;  // the meshes themselves come with the URDF
+    Eigen::AlignedBox3d bounds;  // box around the mesh, which itself comes with the URDF
     for (const Vector3& vertex : mesh->vertices) bounds.extend(vertex);
     Pose T = pose;
     T.translation() += pose.linear() * bounds.center();
@@ -95,7 +95,7 @@ void add_shape(foxglove::SceneEntity& entity, const Pose& pose, const Shape& sha
   }
 }
 
-/// A frame whose z axis runs from a to b, in their middle.
+/// Returns a frame centred between a and b, with its z axis from a to b.
 Pose between(const Vector3& a, const Vector3& b) {
   Pose T = Pose::Identity();
   T.translation() = (a + b) / 2;

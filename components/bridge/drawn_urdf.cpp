@@ -8,7 +8,7 @@
 namespace handsel::bridge {
 namespace {
 
-/// Fixed axes x, y, z, as URDF wants them.
+/// Returns the rotations about fixed axes x, y, z, as in URDF.
 Vector3 roll_pitch_yaw(const Eigen::Matrix3d& R) {
   const double across = std::hypot(R(0, 0), R(1, 0)), pitch = std::atan2(-R(2, 0), across);
   if (across < 1e-9) return {std::atan2(-R(1, 2), R(1, 1)), pitch, 0};
@@ -89,7 +89,7 @@ class Writer {
          << "\"/>";
     Pose T = j.T_parent_joint;
     if (!moves && j.kind == JointKind::prismatic)
-      T.translate(Vector3(j.mimic_offset * j.axis));  // held there
+      T.translate(Vector3(j.mimic_offset * j.axis));  // the joint is fixed there
     if (!moves && j.kind != JointKind::prismatic && j.kind != JointKind::fixed)
       T.rotate(Eigen::AngleAxisd(j.mimic_offset, j.axis));
     origin(T);

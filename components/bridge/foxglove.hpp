@@ -77,7 +77,7 @@ class Hub {
   /// Keeps the newest sample of each instance (64 at most; others are not kept) where the channel
   /// asks for that; removes an instance that is gone.
   void keep(const Sample& sample);
-  /// Nobody reads the channel any more: what is kept would grow old.
+  /// Drops the kept samples of a channel without readers, as they would become stale.
   void forget(std::size_t channel) { kept_[channel].clear(); }
   /// Returns the kept samples of a channel by instance; empty where nothing is kept.
   const std::map<std::uint64_t, Sample>& kept(std::size_t channel) const { return kept_[channel]; }

@@ -89,7 +89,7 @@ void HttpConnection::send(Response<Body> response, bool keep) {
                     });
 }
 
-/// The head alone, with the length the body would have.
+/// Sends the header only, with the length that the body would have.
 void HttpConnection::send_head(Status status, unsigned version, const char* type,
                                std::uint64_t length, bool keep) {
   auto response = make<http::empty_body>(status, version, type, {});

@@ -4,6 +4,6 @@
 #include "components/bridge/node.hpp"
 
 int main(int argc, char** argv) {
-  setpriority(PRIO_PROCESS, 0, 2);  // every thread started from here inherits this
+  setpriority(PRIO_PROCESS, 0, 2);  // inherited by every thread started from here
   return handsel::run_process<handsel::bridge::Node>(argc, argv, "bridge");
 }

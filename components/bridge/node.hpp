@@ -34,7 +34,7 @@ class Node {
   Site site_;
   Catalogue catalogue_;
   std::string config_;
-  /// By place in the table of topics; null: nobody watches.
+  /// By place in the table of topics; null: no viewer.
   std::vector<std::unique_ptr<RawReader>> readers_;
   SystemGraph graph_;
   Drawing drawing_;

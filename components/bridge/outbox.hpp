@@ -28,7 +28,7 @@ struct Frame {
 };
 
 struct OutboxSettings {
-  /// Answers and announcements that may wait; more mean that nobody reads.
+  /// Answers and announcements that may wait; more mean that the client does not read.
   std::size_t max_controls{1024};
   /// Samples of one queued subscription that may wait; the oldest goes first.
   std::size_t max_queued{64};

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 using Error = boost::system::error_code;
 
-constexpr int kMaxBatches = 64;  // that wait for the server's thread
+constexpr int kMaxBatches = 64;  // max batches that wait for the server's thread
 
 }  // namespace
 
@@ -42,7 +42,8 @@ struct Server::Impl {
         const std::size_t open = state.connections.size() + state.clients.size();
         const auto connection = std::make_shared<HttpConnection>(std::move(socket), state);
         if (open >= 8u * state.settings.max_clients) {
-          ++state.counters.refused_connections;  // not even answered: an answer takes a place too
+          ++state.counters.refused_connections;  // refused without an answer, as that would occupy
+                                                 // a connection
         } else {
           state.connections.insert(connection);
           if (open >= 4u * state.settings.max_clients) {

@@ -47,7 +47,7 @@ struct ServerState {
   void report(const std::string& kind, const std::string& what);
   /// Makes the counters visible to other threads.
   void publish_counters();
-  /// Updates `wanted` from the subscriptions of all clients and drops samples nobody wants.
+  /// Updates `wanted` from the subscriptions of all clients and drops unwanted samples.
   void update_wanted();
 };
 

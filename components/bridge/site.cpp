@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kAssets = "/assets/";
 constexpr std::string_view kPackage = "package://handsel/";
-constexpr std::size_t kLongestPath = 512;
+constexpr std::size_t kMaxPath = 512;
 
 const std::map<std::string, const char*> kTypes{
     {".html", "text/html; charset=utf-8"},
@@ -47,9 +47,9 @@ std::string extension_of(const fs::path& file) {
   return extension;
 }
 
-/// Relative, of plain names only: no way out of a folder can be written.
+/// Returns whether a path is relative and of plain names only, so that it stays inside its folder.
 bool canonical(std::string_view path) {
-  if (path.empty() || path.size() > kLongestPath) return false;
+  if (path.empty() || path.size() > kMaxPath) return false;
   bool begins = true;
   for (const char c : path) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||

@@ -9,7 +9,7 @@ namespace handsel::bridge {
 namespace {
 
 constexpr Duration kSilent =
-    std::chrono::seconds(3);  // then a component is no longer shown as alive
+    std::chrono::seconds(3);  // after which a component no longer counts as alive
 
 }  // namespace
 

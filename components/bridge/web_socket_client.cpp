@@ -12,8 +12,8 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 
-constexpr std::size_t kMaxMessage = 64 * 1024;  // of a client [bytes]
-constexpr int kSendBuffer = 512 * 1024;         // of the kernel [bytes]: old when a client is slow
+constexpr std::size_t kMaxMessage = 64 * 1024;  // max size of a message of a client [bytes]
+constexpr int kSendBuffer = 512 * 1024;         // kernel buffer [bytes]; stale if a client is slow
 
 TimePoint monotonic() {
   return TimePoint(
@@ -55,7 +55,7 @@ void WebSocketClient::open(const http::request<http::empty_body>& request,
   });
 }
 
-/// Sends what waits, one message at a time.
+/// Sends the waiting messages one by one.
 void WebSocketClient::flush() {
   count();
   if (!accepted_ || ended_ || writing_) return;
@@ -115,8 +115,8 @@ void WebSocketClient::read() {
   });
 }
 
-/// Beast ends a broken conversation itself and says so, unless the client does not answer that in
-/// time.
+/// Closes the connection of a protocol error. Beast does so and sends the reason itself, unless the
+/// client does not answer in time.
 void WebSocketClient::end_after_error(Error error) {
   const bool went = error == websocket::error::closed || error == asio::error::eof ||
                     error == asio::error::connection_reset || error == asio::error::broken_pipe;
@@ -136,7 +136,7 @@ void WebSocketClient::cut(const std::string& why) {
 void WebSocketClient::close(websocket::close_code code, const std::string& why) {
   ++state_.counters.cut_clients;
   state_.report("cut", "a client is cut: " + why);
-  writing_ = true;  // nothing else is sent
+  writing_ = true;  // no other message is sent
   stall_.expires_after(milliseconds(state_.settings.stall_timeout));
   stall_.async_wait([self = shared_from_this()](Error error) {
     if (!error) self->end();
@@ -144,7 +144,7 @@ void WebSocketClient::close(websocket::close_code code, const std::string& why) 
   ws_.async_close({code, why.substr(0, 120)}, [self = shared_from_this()](Error) { self->end(); });
 }
 
-/// Adds what the viewer counted since the last time.
+/// Adds the viewer's counts since the last call.
 void WebSocketClient::count() {
   state_.counters.refused_messages += viewer_.refused() - refused_;
   refused_ = viewer_.refused();

@@ -1,8 +1,8 @@
-// What the page cannot read from DDS: /config.json of the bridge.
+// Values that the page cannot read from DDS: /config.json of the bridge.
 export interface Config {
   robot: string;
   scenario: string;
-  urdf: string;        // where it is, or empty: then it is in urdf_text
+  urdf: string;        // its address; empty: the text is in urdf_text
   urdf_text?: string;
   axes: string[];
   tool_link: string;

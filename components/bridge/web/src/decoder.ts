@@ -1,4 +1,5 @@
-// CDR bytes to objects by the IDL text a channel came with: the same for live and recorded samples.
+// Decodes CDR bytes to objects by the IDL text of their channel: the same for live and recorded
+// samples.
 import { IDLMessageDefinition, parseIDL } from "@foxglove/omgidl-parser";
 import { MessageReader } from "@foxglove/omgidl-serialization";
 

@@ -1,4 +1,4 @@
-// Short texts over the 3-D view that keep out of each other's way.
+// Short texts over the 3-D view, placed without overlap.
 import * as THREE from "three";
 
 interface Label { element: HTMLElement; at: THREE.Vector3 }

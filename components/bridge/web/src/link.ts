@@ -1,4 +1,5 @@
-// The connection to the bridge: subscribes, keeps the newest sample of each topic, decodes only what is looked at, reconnects.
+// The connection to the bridge: subscribes, keeps the newest sample of each topic, decodes only
+// used topics, reconnects.
 import { Channel, FoxgloveClient, MessageData, SubscriptionId } from "@foxglove/ws-protocol";
 import { Decoder } from "./decoder";
 import { ComponentHealth, kTopics, TopicName, Topics } from "./messages";
@@ -21,7 +22,7 @@ export class Link {
     this.open();
   }
 
-  // The newest sample; undefined until one has come.
+  // Returns the newest sample; undefined before the first one.
   newest<T extends TopicName>(topic: T): Topics[T] | undefined {
     const slot = this.slots.get(topic);
     if (!slot) return undefined;
@@ -33,7 +34,7 @@ export class Link {
     return slot.message as Topics[T] | undefined;
   }
 
-  // [s] since the newest sample arrived; infinite when none has.
+  // Returns the time since the newest sample arrived [s]; infinite before the first one.
   age(topic: TopicName): number {
     const slot = this.slots.get(topic);
     return slot && slot.count > 0 ? (performance.now() - slot.at) / 1000 : Infinity;

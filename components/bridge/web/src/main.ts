@@ -1,14 +1,15 @@
-// The page: newest samples in, tables and a 3-D view out. Draws on change, at most 30 times a second.
+// The page: shows the newest samples in tables and a 3-D view. Draws on change, at most 30 times a
+// second.
 import { Config, loadConfig } from "./config";
 import { Link } from "./link";
 import { Panels } from "./panels";
 import { Part, Region, World } from "./world";
 
-const kFrame = 33, kTables = 200;  // [ms] least time between pictures, between updates of the tables
-const kRest = 5, kLongest = 500;   // times as long as the last picture took until the next; [ms] at most
+const kFrame = 33, kTables = 200;  // min time between pictures, between updates of the tables [ms]
+const kRest = 5, kLongest = 500;   // pause as a multiple of the last picture's time; its max [ms]
 const kNoWebGl = "This browser cannot draw the 3-D view (WebGL is missing or switched off); everything else on this page works.";
 
-// For whoever looks from outside.
+// State for external observers, such as tests.
 export interface PageState {
   connected: boolean;
   webgl: boolean;
@@ -83,7 +84,7 @@ async function start(): Promise<void> {
   }
   document.getElementById("frame")?.addEventListener("click", () => world?.frame());
   setInterval(() => {
-    tablesAt = 0;  // ages grow although nothing comes
+    tablesAt = 0;  // ages grow without new samples
     wake();
   }, 500);
 

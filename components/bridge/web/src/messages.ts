@@ -1,4 +1,5 @@
-// What the page reads of each message. The wire's schema decides what is in a sample; these are the fields used here (units: idl/).
+// The fields of messages that the page uses (units: idl/). The wire's schema defines the content of
+// a sample.
 export interface Vector3 { x: number; y: number; z: number }
 export interface Quaternion extends Vector3 { w: number }
 export interface Pose { position: Vector3; orientation: Quaternion }
@@ -95,7 +96,7 @@ export interface ActionStatus {
 
 export interface ComponentHealth {
   component: string;
-  pid: number;  // 0: it does not run, and its launcher speaks for it
+  pid: number;  // 0: not running, reported by its launcher
   state: number;
   reason: string;
   cpu: number;

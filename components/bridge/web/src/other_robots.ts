@@ -1,11 +1,11 @@
-// Other robots around, as the capsules that they report about themselves.
+// Other robots nearby, as the capsules that they report.
 import * as THREE from "three";
 import { OtherRobot } from "./messages";
 import { kCylinder, kSphere, span, vector } from "./shapes";
 
 const kMaxParts = 4 * 128;  // four robots of 128 parts each, the bound of the message
 const kColour = 0x8b8f98;
-const kSeen = 2e-3;         // [m] smaller steps are not drawn
+const kSeen = 2e-3;         // min step that is redrawn [m]
 
 export class OtherRobots {
   readonly group = new THREE.Group();

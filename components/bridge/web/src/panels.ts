@@ -2,8 +2,8 @@
 import { Link } from "./link";
 import { nearness } from "./nearness";
 
-const kSilent = 0.6;    // [s] without a sign of life
-const kNobody = 1e8;    // [m] distances beyond mean that nobody is there
+const kSilent = 0.6;    // max time without a heartbeat [s]
+const kNobody = 1e8;    // larger distances mean that no person is present [m]
 const kDrives: Record<string, string> = { enabled: "drives on", braked: "brakes closed", off: "drives off" };
 
 type Cell = string | { text: string; kind?: string; share?: number };
@@ -19,7 +19,7 @@ function put(id: string, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-// A bar from 0 to 1.
+// Returns a bar from 0 to 1.
 function bar(element: HTMLElement, share: number, kind = ""): void {
   const fill = (element.firstElementChild as HTMLElement | null) ?? element.appendChild(document.createElement("i"));
   element.className = `bar ${kind}`;
@@ -47,9 +47,9 @@ function rows(id: string, cells: Cell[][]): void {
   });
 }
 
-const kDeepest = 6; // that the tree of a plan is indented
+const kDeepest = 6; // max indentation of the tree of a plan
 
-// Names the person an action waits for.
+// Returns the name of the person for whom an action waits.
 function phaseText(word: string, human: string): string {
   if (!human) return word;
   if (word === "waiting for person") return `waiting for ${human} to come within reach`;
@@ -180,7 +180,8 @@ export class Panels {
     rows("health", sorted.map(({ message: h, at }) => {
       const silent = (now - at) / 1000 > kSilent;
       const said = this.link.word("HealthState", h.state);
-      const word = silent ? "silent" : said === "stopping" && h.pid === 0 ? "restarting" : said;  // its launcher speaks for it
+      // Reported by the launcher while the process is restarting.
+      const word = silent ? "silent" : said === "stopping" && h.pid === 0 ? "restarting" : said;
       const rate = h.topics.reduce((sum, topic) => sum + topic.rate, 0);
       const misses = h.topics.reduce((sum, topic) => sum + Number(topic.deadline_misses), 0);
       const rejected = h.topics.reduce((sum, topic) => sum + Number(topic.rejected), 0);

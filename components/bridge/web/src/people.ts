@@ -1,14 +1,14 @@
-// People as rounded limbs between their REP-155 joints, and where they look.
+// People as rounded limbs between their REP-155 joints, with their gaze.
 import * as THREE from "three";
 import { Person } from "./messages";
 import { dispose, kCylinder, kSphere, Rod, span, vector } from "./shapes";
 
-const kLost = 0.25;       // [s] not seen for longer: drawn faint
-const kGazeLength = 0.9;  // [m]
-const kSeen = 2e-3;       // [m] smaller steps of a joint are not drawn
+const kLost = 0.25;       // min time without an observation after which a person is drawn faint [s]
+const kGazeLength = 0.9;  // length of the gaze ray [m]
+const kSeen = 2e-3;       // min step of a joint that is redrawn [m]
 const kSkin = 0xd9a078, kShirt = 0x2f7f86, kTrousers = 0x3d4663;
 
-// Radii as shares of the stature; a look, not the volumes kept clear (those are the controller's).
+// Radii as ratios to the stature, for display only; the controller computes its own volumes.
 const kLimbs: [string, string, number, number][] = [
   ["neck", "head", 0.03, kSkin],
   ["l_shoulder", "r_shoulder", 0.042, kShirt], ["neck", "torso", 0.06, kShirt], ["torso", "waist", 0.068, kShirt],

@@ -1,4 +1,4 @@
-// The robot from its URDF, and where its tool goes.
+// The robot from its URDF, and the future path of its tool.
 import * as THREE from "three";
 import URDFLoader, { URDFRobot } from "urdf-loader";
 import { Config } from "./config";
@@ -7,16 +7,16 @@ import { dispose, kSphere, setPose } from "./shapes";
 import { sample } from "./soft_motion";
 
 const kPathPoints = 72;
-const kSeen = 2e-4;  // [rad] smaller steps of an axis are not drawn
+const kSeen = 2e-4;  // min step of an axis that is redrawn [rad]
 const kShades = { base: 0x55606e, light: 0xe9ecef, accent: 0xe8871e, hand: 0x343b45 };
 
 export class Robot {
   readonly group = new THREE.Group();
   readonly path = new THREE.Group();
-  // What is drawn now: the stamp of its sample and the angle of each axis as the model has it.
+  // The state drawn now: stamp of its sample and angle of each axis of the model.
   stamp = 0n;
   private readonly model: URDFRobot;
-  private readonly ghost: URDFRobot;  // never drawn: looks ahead along the trajectory
+  private readonly ghost: URDFRobot;  // never drawn: computes the tool path
   private drawn: number[] = [];
   private trajectory = 0n;
   private tube: THREE.Mesh<THREE.TubeGeometry, THREE.MeshLambertMaterial[]> | undefined;
@@ -30,12 +30,12 @@ export class Robot {
     loader.parseVisual = false;
     this.ghost = loader.parse(urdf);
     for (const robot of [this.model, this.ghost])
-      for (const joint of Object.values(robot.joints)) joint.ignoreLimits = true;  // what was measured is shown
+      for (const joint of Object.values(robot.joints)) joint.ignoreLimits = true;  // as measured
     this.paint();
     this.group.add(this.model);
   }
 
-  // True when something visible moved.
+  // Returns true if something visible moved.
   show(state: RobotState): boolean {
     let changed = setPose(this.group, state.T_world_base);
     const axes = this.config.axes;
@@ -48,12 +48,12 @@ export class Robot {
     return true;
   }
 
-  // Angle of each axis in the drawn model [rad].
+  // Returns the angle of each axis in the drawn model [rad].
   angles(): Record<string, number> {
     return Object.fromEntries(this.config.axes.map((axis) => [axis, this.model.joints[axis]?.angle ?? NaN]));
   }
 
-  // True when the path or how far along it the arm is changed.
+  // Returns true if the path, or the arm's progress along it, has changed.
   showPath(active: ActiveTrajectory | undefined): boolean {
     const moving = active !== undefined && active.trajectory !== 0n && active.rest.axes.length > 0 && this.moves(active);
     if (!moving) {

@@ -1,4 +1,4 @@
-// Small three.js parts that several things are drawn with.
+// Small three.js parts of several drawn objects.
 import * as THREE from "three";
 import { Pose, Vector3 } from "./messages";
 
@@ -36,7 +36,7 @@ export class Rod {
   }
 }
 
-// True when the object moved more than `far` [m] or turned more than about `far` [rad].
+// Returns true if the object moved more than `far` [m] or turned more than about `far` [rad].
 export function setPose(object: THREE.Object3D, pose: Pose, far = 3e-4): boolean {
   const { position: p, orientation: q } = pose;
   const moved = Math.abs(object.position.x - p.x) + Math.abs(object.position.y - p.y) + Math.abs(object.position.z - p.z);

@@ -1,12 +1,12 @@
-// Positions along a soft motion: each axis a series of cubic segments.
+// Positions along a jerk-limited trajectory: each axis is a series of cubic segments.
 import { AxisTrajectory } from "./messages";
 
-// Total time [s].
+// Returns the total time [s].
 export function duration(axis: AxisTrajectory): number {
   return axis.segments.reduce((sum, segment) => sum + segment.duration, 0);
 }
 
-// Positions at `count` + 1 equal steps from the start to the end of the motion.
+// Returns the positions at `count` + 1 equal time steps from start to end.
 export function sample(axis: AxisTrajectory, count: number): number[] {
   const total = duration(axis), out: number[] = [];
   let p = axis.start_position, v = axis.start_velocity, a = axis.start_acceleration, begin = 0, k = 0;

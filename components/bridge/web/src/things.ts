@@ -7,9 +7,9 @@ import { Config } from "./config";
 import { PrimitiveKind, Scene, SceneBox, SceneObject } from "./messages";
 import { dispose, kSphere, setPose } from "./shapes";
 
-const kFloor = "floor";  // the page has its own
-const kUnknownSize = 0.04;  // [m] radius of what has no mesh
-const kSurePlace = 0.02;    // [m] an object more uncertain than this is drawn pale
+const kFloor = "floor";  // the page draws its own floor
+const kUnknownSize = 0.04;  // radius of an object without a mesh [m]
+const kSurePlace = 0.02;    // max uncertainty of an object drawn solid, not pale [m]
 const kObject = 0xd6336c, kUnknown = 0xb06ab3, kWood = 0xdcc39b, kEdge = 0xa08259;
 
 async function loadMesh(url: string): Promise<THREE.BufferGeometry> {
@@ -29,7 +29,7 @@ async function loadMesh(url: string): Promise<THREE.BufferGeometry> {
   return toCreasedNormals(mergeVertices(geometry), 0.6);
 }
 
-// One metre in each direction; along z.
+// One metre in each direction; axis along z.
 const kCube = new THREE.BoxGeometry(1, 1, 1), kCan = new THREE.CylinderGeometry(0.5, 0.5, 1, 32).rotateX(Math.PI / 2),
       kBall = new THREE.SphereGeometry(0.5, 32, 16);
 

@@ -11,7 +11,7 @@ import { Robot } from "./robot";
 import { kSphere, Rod, vector } from "./shapes";
 import { Things } from "./things";
 
-const kNobody = 1e8;  // [m] distances beyond mean that nobody is there
+const kNobody = 1e8;  // larger distances mean that no person is present [m]
 const kView = new THREE.Vector3(0.12, -1, 0.36);
 const kCalm = 0x12a150, kNear = 0xd97706, kTooNear = 0xdc2626;
 
@@ -20,7 +20,7 @@ export interface Region { x: number; y: number; width: number; height: number }
 
 export class World {
   frames = 0;
-  cost = 0;  // [ms] the last picture took
+  cost = 0;  // duration of the last picture [ms]
   readonly robot: Robot;
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
@@ -45,7 +45,8 @@ export class World {
     const context = canvas.getContext("webgl2", { antialias: !software, powerPreference: "low-power" });
     if (!context) throw new Error("no WebGL");
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
-    // Without a GPU the pictures are drawn by the processor on which the robot's control may run: shadows, half of the work, are left out.
+    // Without a GPU the processor draws, which may also run the robot's control: no shadows then,
+    // which are half of the work.
     this.renderer.shadowMap.enabled = !software;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.floor.visible = !software;
@@ -73,7 +74,7 @@ export class World {
     this.theme();
   }
 
-  // Takes the newest samples; true when the picture would change.
+  // Takes the newest samples; returns true if the picture would change.
   update(link: Link): boolean {
     const state = link.newest("handsel/robot_state"), scene = link.newest("handsel/scene"), humans = link.newest("handsel/human_state");
     let changed = state ? this.robot.show(state) : false;
@@ -99,7 +100,7 @@ export class World {
     this.frames += 1;
   }
 
-  // False while the last picture is still being drawn.
+  // Returns false while the last picture is being drawn.
   ready(): boolean {
     if (!this.fence) return true;
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
@@ -110,7 +111,7 @@ export class World {
     return true;
   }
 
-  // Puts robot, people and furniture into the middle of the view.
+  // Centres the view on robot, people and furniture.
   frame(): void {
     this.scene.updateMatrixWorld(true);
     const box = new THREE.Box3();
@@ -124,7 +125,7 @@ export class World {
     this.camera.position.copy(middle).add(direction);
     this.camera.lookAt(middle);
     this.camera.updateMatrixWorld(true);
-    // The least distance at which every corner of the box is in view.
+    // Returns the min distance at which every corner of the box is in view.
     const inverse = this.camera.matrixWorldInverse.copy(this.camera.matrixWorld).invert();
     const tall = Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2), wide = tall * this.camera.aspect;
     let back = 0;
@@ -137,7 +138,7 @@ export class World {
     this.touch();
   }
 
-  // Where a part is in the page [CSS pixels]; undefined when it is not there or out of view.
+  // Returns the position of a part in the page [CSS pixels]; undefined if absent or out of view.
   region(name: Part): Region | undefined {
     const box = new THREE.Box3();
     if (name === "robot") box.setFromObject(this.robot.group, true);
@@ -155,7 +156,7 @@ export class World {
     return { x: view.x + flat.min.x, y: view.y + flat.min.y, width: flat.max.x - flat.min.x, height: flat.max.y - flat.min.y };
   }
 
-  // Leaves parts out of the picture, so that what is drawn can be told from what is behind it.
+  // Hides parts, so that a test can distinguish them from their background.
   hide(names: Part[]): void {
     this.robot.group.visible = !names.includes("robot");
     this.people.group.visible = !names.includes("person");
@@ -240,7 +241,7 @@ function drawsInSoftware(): boolean {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-// A square grid that fades out toward its rim.
+// Returns a square grid that fades out toward its edge.
 function gridLines(half: number, step: number): THREE.BufferGeometry {
   const points: number[] = [], shades: number[] = [];
   const add = (x: number, y: number): void => {
