@@ -14,7 +14,8 @@ void require(bool good, const char* sentence) {
   if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
 }
 
-/// On a path on which contacts are allowed the hand would shift what it reaches for.
+/// Returns whether a retreat may leave the path: not if contacts are allowed, as the hand would
+/// shift the object to grasp.
 bool may_retreat_beside(const CommandQueue& path) noexcept {
   return path.current().allowed_contacts.empty();
 }
@@ -44,7 +45,7 @@ SupervisorSettings supervisor_settings(const ControllerSettings& s) {
           s.timeouts};
 }
 
-/// Returns whether a motion of the platform runs.
+/// Returns whether the platform moves.
 bool moves_platform(const AxisGroups& groups, const ArmMotion& arm, const SetPoints& set_points) {
   const auto of_platform = [&groups](std::uint32_t axis) {
     return groups.part(static_cast<int>(axis)) == Part::platform;
@@ -54,8 +55,8 @@ bool moves_platform(const AxisGroups& groups, const ArmMotion& arm, const SetPoi
          set_points.any_moves(groups.platform());
 }
 
-/// Returns the mass that meets a person beside that of the arm: what is held, and the platform
-/// where that moves [kg].
+/// Returns the mass that adds to that of the arm in a contact: the held load, and the platform if
+/// it moves [kg].
 double contact_load(double held, double platform, const AxisGroups& groups, const ArmMotion& arm,
                     const SetPoints& set_points) {
   return platform > 0.0 && moves_platform(groups, arm, set_points) ? held + platform : held;
@@ -103,7 +104,7 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bo
   contact_.update(state.external_torque, inputs_.robot.since(sampled), resting, in_handover);
   inputs_.permission.set(state.mode);
   if (!inputs_.robot.set(state, sampled, age, new_writer)) return;
-  // The configuration of a robot side that has just come up is the first set-point.
+  // The first set-point is the configuration of the robot side once that is available.
   const bool at_reference = !settings_.dry_run && follower_.reference().reported(state);
   Vector position = at_reference ? state.reference.position : state.position;
   for (int axis = 0; axis < groups_.size(); ++axis)
@@ -172,7 +173,7 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   }
   commands_.accept(command.id);
   if (!joins) supervisor_.begin_motion(now);
-  // A path is evaluated before its first step; from rest it begins with no more than may be.
+  // A path is evaluated before its first step; from rest it begins with at most the allowed factor.
   lookahead_.evaluate_all(lookahead_inputs(now), !joins);
   arm_.begin_with(std::max(0.0, wanted_factor(now)));
   return {};
@@ -213,8 +214,8 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   const GuardVerdict& guard = lookahead_.verdict();
   const double wanted = trajectory_controller::wanted_factor(speed_settings(settings_), inputs_,
                                                              trajectory, guard, now);
-  // Back along the path only from rest: a motion that turns round takes longer to stop.
-  constexpr double kStands = 1e-3;
+  // Runs backward on the path only from rest: a motion that reverses takes longer to stop.
+  constexpr double kStands = 1e-3;  // max speed factor at rest
   return arm_.speed_factor() > kStands ? std::max(0.0, wanted) : wanted;
 }
 
@@ -234,8 +235,8 @@ void Controller::supervise(TimePoint now, bool late) noexcept {
   commands_.step();
 }
 
-/// A stop along the path may take longer than the axes need: then it is ended beside the path, in
-/// the time that is promised.
+/// Steps the arm. A stop along the path that takes longer than the promised time is completed
+/// beside the path.
 void Controller::step_arm(TimePoint now) noexcept {
   const Mode mode = supervisor_.mode();
   const MotionState3& sent = set_points_.sent();
@@ -257,7 +258,7 @@ void Controller::step_arm(TimePoint now) noexcept {
 }
 
 bool Controller::step(TimePoint now, bool late) noexcept {
-  constexpr int kFingerInterval = 10;  // [cycles] between evaluations of the limit of fingers
+  constexpr int kFingerInterval = 10;  // cycles between evaluations of the finger limit
   inputs_.robot.begin_cycle(now);
   if (!inputs_.robot.ready()) return false;
   ++cycles_;
@@ -295,7 +296,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   if (new_state && !arm_.running()) lookahead_.place_links(sent);
   const HandsInputs of_hands{robot, people, lookahead_.links(), new_state, arm_.movers().moved(),
                              mode,  clamped};
-  // What the arm feels changes with what a hand holds.
+  // The measured contact torques change with the load of the hand.
   if (hands_.step(of_hands, now, set_points_.next())) contact_.reset();
   inputs_.robot.mark_used();
   head_.step(mode < Mode::hold, arm_.movers().moved(), set_points_.next());

@@ -76,7 +76,7 @@ struct ControllerSettings {
   double head_dead_band{0.03};   ///< the head turns only for more than this [rad]
   double look_ahead{0.15};       ///< the guard also checks the path this much later [s]
   double look_far_ahead{0.45};   ///< and this much later: about the time of a stop [s]
-  double ahead_min_factor{0.6};  ///< least speed factor assumed until then
+  double ahead_min_factor{0.6};  ///< min speed factor assumed until then
   SpeedRiseSettings rise;        ///< of the speed factor after people have slowed the arm
   int late_limit{5};             ///< late cycles in a row: Hold
   std::vector<Wall> walls;       ///< never passed: virtual walls and the sides of the workspace

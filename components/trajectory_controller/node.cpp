@@ -9,7 +9,7 @@ namespace handsel::trajectory_controller {
 namespace {
 constexpr Duration kReportPeriod = std::chrono::milliseconds(20);
 constexpr Duration kReasonPeriod = std::chrono::seconds(
-    1);  // of the reason in this process' health: how long a source is silent changes
+    1);  // min period of the reason in ComponentHealth, which contains a changing time
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)

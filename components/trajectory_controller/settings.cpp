@@ -48,7 +48,7 @@ StopProofSettings read_stop_proof(const settings::ControllerStopProof& in,
   return s;
 }
 
-/// Whether limits that belong together are in order.
+/// Checks the consistency of related limits.
 void check_together(const settings::TrajectoryControllerSettings& in, const SettingsText& text) {
   constexpr double kMinStep = 1e-6;  // [s]
   if (!(in.forecast_slow >= in.forecast_hold + kMinStep))

@@ -180,7 +180,7 @@ bool ArmMotion::rejoin(const MotionState3& sent) noexcept {
 
 void ArmMotion::step(ArmOrder order, double wanted, SetPoints& set_points) noexcept {
   MotionState3& next = set_points.next();
-  // Hands and head have seen by now where their axes came to rest.
+  // Hands and head have already adopted the positions at which their axes came to rest.
   if (state_ == ArmState::at_rest && goal_ != PathGoal::rejoin) movers_.drop_further_axes();
   if (running()) {
     if (order == ArmOrder::stop) {
@@ -206,7 +206,7 @@ void ArmMotion::step(ArmOrder order, double wanted, SetPoints& set_points) noexc
   if (state_ == ArmState::stopping && resting) state_ = ArmState::at_rest;
 }
 
-/// The set-point of the path after its step; at its end the arm is at rest.
+/// Writes the set-point of the path after its step; at the end of the path the arm is at rest.
 void ArmMotion::write_path(MotionState3& next) noexcept {
   queue_.find(runner_.time());
   const MotionState3& state = runner_.state();

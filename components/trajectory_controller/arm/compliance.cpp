@@ -7,7 +7,7 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr int kEvery = 10;  // [cycles] between choices of how to move
+constexpr int kEvery = 10;  // cycles between two choices of the motion
 
 }  // namespace
 
@@ -29,10 +29,10 @@ Compliance::Compliance(const ComplianceSettings& settings, const RobotModel& rob
   effects_.assign(links_.size(), Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(joints)));
 }
 
-/// Chooses the velocity at which the links near a person move straight away from that person, as
-/// well as the axes can (damped least squares); not downward: what the robot works on is below. The
-/// nearer a link, the more it counts. The guard lets only links that go clearly away move near a
-/// person, so one velocity for the nearest point alone would be refused.
+/// Chooses the velocity that moves the links near a person straight away from that person, as far
+/// as the axes can (damped least squares), but not downward, toward the work surface. Nearer links
+/// weigh more. The guard allows only links that clearly retreat to move near a person, so a
+/// velocity chosen for the nearest point alone would be refused.
 void Compliance::aim_away(const ComplianceInputs& in) noexcept {
   retreat_velocity_.setZero();
   if (in.nearest.link < 0) return;
@@ -68,14 +68,15 @@ void Compliance::aim_away(const ComplianceInputs& in) noexcept {
         settings_.retreat_speed * gradient_[static_cast<Eigen::Index>(i)] / largest;
 }
 
-/// Each new demand for rest is answered by rest first; a push that lasts then moves the arm again.
+/// Returns whether the arm has to come to rest first: each new demand for rest is met before a push
+/// that lasts moves the arm again.
 bool Compliance::waits_for_rest(const ComplianceInputs& in) noexcept {
-  constexpr std::uint32_t kHeld = 1U;  // Hold or Stop itself: the bit of no cause
+  constexpr std::uint32_t kHeld = 1U;  // mode Hold or Stop itself; the bit belongs to no cause
   constexpr std::uint32_t kSilence =
       bit(Cause::robot_state_silent) | bit(Cause::human_state_silent);
   constexpr std::uint32_t kDemands =
       kSilence | bit(Cause::drive_not_enabled) | bit(Cause::awaits_person);
-  // A contact ends the permission as well, so the word of the supervisor counts.
+  // A contact revokes the permission as well, so the permission of the supervisor decides.
   const bool permitted = in.inputs.permission.gate().allowed();
   const std::uint32_t always = permitted ? kHeld : kHeld | bit(Cause::no_go);
   const bool held = in.verdict.mode >= Mode::hold;
@@ -95,7 +96,7 @@ Compliance::Wish Compliance::find_wish(const ComplianceInputs& in) noexcept {
   return retreats ? Wish::retreat : Wish::none;
 }
 
-/// Sets an axis in motion at a speed, within `reach` of where the motion of the arm began.
+/// Moves an axis at `speed` [rad/s], within `reach` [rad] of where the motion of the arm began.
 void Compliance::move(int axis, double speed, double reach) noexcept {
   AxisLimits limits = limits_of(robot_.comfort_limits(), axis);
   limits.velocity = std::clamp(std::abs(speed), 1e-3, limits.velocity);
@@ -122,7 +123,7 @@ void Compliance::step(const ComplianceInputs& in) noexcept {
     moving_ = true;
   }
   if (!moving_) return;
-  // A retreat takes over from the stop with which the arm leaves its path.
+  // A retreat takes over from the stop with which the arm switches off its path.
   const bool free = arm_.state() == ArmState::at_rest || wish_ == Wish::retreat;
   const double reach = pushed ? settings_.reach : settings_.retreat_reach;
   bool resting = true;

@@ -11,22 +11,23 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kSlack = 1e-6;  // [rad] beyond a bound by rounding
+constexpr double kSlack = 1e-6;  // tolerance of rounding beyond a bound [rad]
 
 double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-/// Whether a trajectory begins as `from` moves: then all of it is run, but for what brings the two
-/// together.
+/// Returns whether a trajectory begins close to the state `from`: then all of it is run, except for
+/// a short transition from that state.
 bool begins_alike(const MotionState3& from, const MotionState3& first,
                   const KinematicLimits& limits) {
-  constexpr double kNear = 0.02, kShare = 0.1;
+  constexpr double kNear = 0.02, kMaxRatio = 0.1;  // [rad]; fraction of the limits
   return apart(from.position, first.position) <= kNear &&
-         ((from.velocity - first.velocity).cwiseAbs().array() <= kShare * limits.velocity.array())
+         ((from.velocity - first.velocity).cwiseAbs().array() <=
+          kMaxRatio * limits.velocity.array())
              .all() &&
          ((from.acceleration - first.acceleration).cwiseAbs().array() <=
-          kShare * limits.acceleration.array())
+          kMaxRatio * limits.acceleration.array())
              .all();
 }
 
@@ -50,9 +51,8 @@ const Trajectory& PathRunner::path() const {
 }
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
-  constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way:
-                                   // farther on, the way there cuts corners
-  constexpr int kTries = 10;       // in this short a window; the time of a cycle goes with them
+  constexpr double kWithin = 0.4;  // window of switch points [s]: later ones cut corners
+  constexpr int kTries = 10;       // in this short window, limited by the time of a cycle
   if (finished_) return false;
   SwitchSettings settings;
   settings.first = std::max(0.0, scaling_.time());
@@ -99,11 +99,11 @@ std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& ne
     settings.last =
         from_rest || same_motion(from, there) ? 0.0 : std::min(join_time_, next.duration());
   } else {
-    constexpr int kLooks = 200;
+    constexpr int kSamples = 200;
     double nearest = std::numeric_limits<double>::infinity();
     settings.first = -1.0;
-    for (int k = 0; k <= (from_rest ? 0 : kLooks); ++k) {
-      const double t = next.duration() * k / kLooks;
+    for (int k = 0; k <= (from_rest ? 0 : kSamples); ++k) {
+      const double t = next.duration() * k / kSamples;
       next.sample(t, there);
       const double off = apart(there.position, from.position);
       nearest = std::min(nearest, off);

@@ -7,7 +7,7 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kDeadBand = 0.002;  // [rad] from the target
+constexpr double kDeadBand = 0.002;  // max distance from the target [rad]
 
 }  // namespace
 
@@ -23,15 +23,15 @@ bool ReferenceFollower::moves_nothing() const noexcept {
   return apart_ && !settings_.dry_run && reference_.state() == RobotReference::State::resting;
 }
 
-/// Returns whether an axis was at rest since the last evaluation.
+/// Returns whether an axis was at rest since the last check.
 bool ReferenceFollower::rests(const RobotState& robot, int axis) const noexcept {
-  constexpr double kRests = 0.05, kStill = 5e-4;  // [rad/s]; [rad] between two evaluations
+  constexpr double kRests = 0.05, kStill = 5e-4;  // [rad/s]; [rad] between two checks
   const bool still = std::abs(robot.position[axis] - measured_before_[axis]) < kStill;
   const bool has_velocity = robot.velocity.size() == robot.position.size();
   return still && (!has_velocity || std::abs(robot.velocity[axis]) < kRests);
 }
 
-/// Takes the measured configuration of an arm at rest once, and again when the arm has moved.
+/// Adopts the measured configuration of an arm at rest once, and again after the arm has moved.
 void ReferenceFollower::adopt(const RobotState& robot) noexcept {
   const auto far = [&](int axis) {
     return std::abs(robot.position[axis] - adopted_[axis]) > RobotReference::kBent;
@@ -42,10 +42,10 @@ void ReferenceFollower::adopt(const RobotState& robot) noexcept {
   has_adopted_ = true;
 }
 
-// A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
-// that rest at the reference move nothing; they stay while the reference moves. Where the reference
-// is not known, or follows under a fault, set-points are taken once to the configuration the robot
-// came to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
+// Enabled drives move the reference of the robot side to set-points at rest. Set-points at rest at
+// the reference move nothing and stay unchanged while the reference moves. If the reference is
+// unknown, or follows under a fault, the set-points adopt the configuration at rest once: if they
+// followed a sagging arm or a bent finger, the robot would creep.
 ReferenceFollower::Target ReferenceFollower::find_target(const RobotState& robot) noexcept {
   const bool joins = robot.mode == DriveMode::enabled && !settings_.dry_run;
   const bool at_reference = moves_nothing();
@@ -90,8 +90,8 @@ void ReferenceFollower::step(const ReferenceInputs& in, ArmMotion& arm, AxisMove
   const Target target = find_target(robot);
   follow(target, robot, groups_.arm(), arm.movers());
   follow(target, robot, groups_.head(), head);
-  // The fingers stay where they came to rest: what they hold bends them, and a person who holds it
-  // too moves them all the time.
+  // Finger set-points stay where the fingers came to rest: a held object bends them, and a person
+  // who also holds the object moves them all the time.
   const bool joins = robot.mode == DriveMode::enabled && !settings_.dry_run;
   hands.follow(robot.position, joins ? settings_.hand_rejoin : kDeadBand);
 }

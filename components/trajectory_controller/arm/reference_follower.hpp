@@ -12,7 +12,7 @@ namespace handsel::trajectory_controller {
 
 /// When set-points are brought to the robot.
 struct ReferenceFollowerSettings {
-  bool dry_run{};            ///< always: nobody follows set-points
+  bool dry_run{};            ///< no robot follows the set-points
   double hand_rejoin{0.25};  ///< fingers, where they are farther off than this [rad]
   double timeout{0.02};      ///< an older robot state says nothing of the reference [s]
 };

@@ -6,11 +6,11 @@
 namespace handsel::trajectory_controller {
 
 namespace {
-constexpr double kMinor = 0.2;  // of the largest effort: axes with less only hold
+constexpr double kMinor = 0.2;  // fraction of the max effort; axes with less only hold
 constexpr double kSameSpeed =
-    0.1;  // a limit that changes by less than this fraction does not change a motion under way
+    0.1;  // min change of the speed limit, as a fraction, that alters a motion under way
 
-/// Returns why a command cannot be executed, one sentence; empty: it can.
+/// Returns why a command cannot be executed, one sentence; empty if it can.
 std::string why_not(const HandCommand& command, const Fingers& fingers) {
   constexpr double kBeyond = 0.02, kMaxEffort = 20;
   const auto count = static_cast<Eigen::Index>(fingers.size());
@@ -46,7 +46,7 @@ bool presses(const Fingers& fingers, const HandSettings& settings,
   return fingers.count_pressing(robot, settings.touch_effort) >= settings.min_contacts;
 }
 
-/// Returns whether the fingers press on an object and hold that without help: no person is near, or
+/// Returns whether the fingers press on an object and hold it without help: no person is near, or
 /// all fingers push as planned.
 bool holds_alone(const Fingers& fingers, const HandSettings& settings, const RobotState& robot,
                  bool person_near) noexcept {
@@ -99,8 +99,8 @@ void HandExecutor::follow(const Vector& robot_position, double dead_band) noexce
     f.target = f.final = there ? f.mover.target() : measured;
     if (!there) f.mover.go_to(f.target, fingers_.comfort(i), fingers_.stop(i));
   }
-  // What was begun is not finished any more, but fingers that still hold an object hold that firmly
-  // again, and a person who takes the object later is still felt.
+  // The interrupted action is not completed, but fingers that still hold an object restore the grip
+  // force, and a later pull by a person is still detected.
   const bool grips =
       phase_ == Phase::loosened || phase_ == Phase::unloading || phase_ == Phase::regripping;
   const bool opens = phase_ == Phase::releasing;
@@ -119,13 +119,13 @@ std::string HandExecutor::accept(const HandCommand& command) {
   if (command.action == HandAction::release_on_pull) {
     release_to_ = command.position;
     release_.arm(command.pull_force);
-    // What a stop has interrupted does not count against the new command.
+    // An action interrupted by a stop does not count against the new command.
     if (state_ == HandState::refused) state_ = closed_ ? HandState::grasped : HandState::idle;
     return {};
   }
   release_.disarm();
-  // A hand that grips again, e.g. after a stop while it opened, holds what it held before; of that
-  // the load is known, and a person who pulls already is felt.
+  // A hand that grips again, e.g. after a stop while it opened, holds the same object as before;
+  // the load is known, so a pull that a person already exerts is detected.
   const bool grips_again = command.action == HandAction::grasp &&
                            (state_ == HandState::refused || state_ == HandState::grasped);
   if (command.action != HandAction::release && !grips_again) release_.forget_load();
@@ -174,7 +174,7 @@ void HandExecutor::retarget(std::size_t i, double target) noexcept {
 
 void HandExecutor::limit_speed(double fraction) noexcept {
   if (std::abs(fraction - speed_limit_) <= kSameSpeed * speed_limit_) return;
-  // Fingers that close together would not stay together if each of them got faster on its way.
+  // Fingers that close together would lose their synchronisation if each accelerated while closing.
   if (fraction > speed_limit_ && phase_ == Phase::closing && !at_rest()) return;
   speed_limit_ = fraction;
   if (at_rest()) return;
@@ -204,7 +204,7 @@ void HandExecutor::start(Phase phase) {
             (closed_ && phase != Phase::releasing);
 }
 
-/// An axis that meets something on its way stops there.
+/// Stops an axis that meets a contact.
 void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
@@ -220,8 +220,8 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
   for (Finger& f : fingers_) f.target = f.mover.state().position;
 }
 
-/// Axes that press on nothing yet continue in the direction in which they will push. Returns
-/// whether each presses on something or has moved as far as it may.
+/// Moves axes without contact on in the direction in which they will push. Returns whether each
+/// axis has contact or has reached its bound.
 bool HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   bool done = true;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
@@ -245,8 +245,8 @@ void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
   settled_for_ = sought && level_ >= 1.0 ? settled_for_ + dt : 0.0;
   if (settled_for_ < settings_.settle_time) return;
   fingers_.hold_object(kMinor * max_effort_);
-  // A finger that something keeps from what it should push on leaves the others unbalanced: only a
-  // person who also holds the object keeps it there.
+  // If an obstacle keeps a finger from its contact, the other fingers are unbalanced: only a person
+  // who also holds the object keeps it in place.
   const bool holds = holds_alone(fingers_, settings_, robot, person_near_);
   unsure_ = !holds && presses(fingers_, settings_, robot);
   state_ = holds ? HandState::grasped : HandState::empty;
@@ -259,7 +259,7 @@ void HandExecutor::check_outcome(const RobotState& robot, double payload, double
   if (phase_ == Phase::loosened || phase_ == Phase::unloading) return;
   if (phase_ == Phase::hold) {
     if (unsure_) {
-      // Fingers that do not push as planned may still hold what the person then lets go of.
+      // Fingers that do not push as planned may still hold the object after the person releases it.
       settled_for_ =
           holds_alone(fingers_, settings_, robot, person_near_) ? settled_for_ + dt : 0.0;
       if (settled_for_ >= settings_.settle_time) {
@@ -306,7 +306,7 @@ void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
   start(wanted == Grip::hold ? Phase::regripping : Phase::releasing);
 }
 
-/// The grip force follows what the hand does.
+/// Adapts the grip force to the phase of the hand.
 void HandExecutor::change_level(double dt) noexcept {
   const double change = dt / settings_.grip_rise_time;
   if (phase_ == Phase::regripping)
@@ -315,11 +315,11 @@ void HandExecutor::change_level(double dt) noexcept {
     level_ = std::max(std::min(level_, settings_.loosen_fraction), level_ - change);
   else if (phase_ == Phase::unloading || phase_ == Phase::moving || !closed_)
     level_ = std::max(0.0, level_ - change);
-  // Fingers that open while they still press drag the object along.
+  // Fingers that open while they still press would drag the object along.
   if (phase_ == Phase::unloading && level_ <= 0.0) start(Phase::releasing);
 }
 
-/// What was released may still be hooked on a finger while it is drawn away.
+/// Complies with contact after a release: the object may be hooked on a finger as it is removed.
 void HandExecutor::comply(const RobotState& robot, double dt) noexcept {
   if (phase_ != Phase::hold || state_ != HandState::released || settings_.yield_speed <= 0) return;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
@@ -334,7 +334,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
                         MotionState3& out) noexcept {
   const RobotState& robot = *in.robot;
   if (in.new_state) person_near_ = in.person_distance <= settings_.person_range;
-  // In Hold and above nothing is sure about where people are.
+  // In Hold and more severe modes the positions of people are uncertain.
   const bool alone = in.may_move && !person_near_ && !release_.armed();
   if (in.new_state && alone && state_ == HandState::grasped) release_.bear(in.force, now);
   if (in.clamped && person_near_ && closed_) {  // opens to where the last closing began
@@ -345,7 +345,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
     start(Phase::releasing);
   }
   if (phase_ != Phase::releasing) freeing_ = false;
-  // What a person takes is released in any case.
+  // An object that a person takes is released in any case.
   const bool approaches =
       phase_ == Phase::moving || phase_ == Phase::closing || phase_ == Phase::seeking;
   const bool waits = in.too_near && approaches;
@@ -353,14 +353,14 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
     paused_ = true;
     fingers_.stop_all(in.stop || waits);
   } else if (in.may_move && !waits && paused_ && at_rest()) {
-    // From the middle of a stop the gentle limits might not end inside the bounds.
+    // From the middle of a stop, the comfort limits might not end inside the bounds.
     paused_ = false;
     for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);
   }
   if (!paused_) {
     if (phase_ == Phase::closing) watch_contacts(robot, dt);
-    // A person who feels the fingers releases the object at once: the grip force grows as soon as
-    // most of it acts on the object, while other axes still search.
+    // A person who feels the fingers releases the object at once: the grip force rises as soon as
+    // most of it acts on the object, while other axes still search for contact.
     if (phase_ == Phase::seeking &&
         (seek(robot, dt) ||
          fingers_.fraction_in_contact(settings_.touch_time) >= settings_.grip_fraction)) {

@@ -48,10 +48,10 @@ struct HandInputs {
   double payload{};                 ///< that this hand feels [kg]
   Vector3 force{Vector3::Zero()};   ///< on the hand, world axes [N]
   Vector3 toward{Vector3::Zero()};  ///< unit vector to the partner of the handover, or zero
-  double person_distance{};         ///< to the nearest hand of a person [m]; +inf: nobody
+  double person_distance{};         ///< to the nearest hand of a person [m]; +inf: none
   bool may_move{};                  ///< mode below Hold
   bool stop{};                      ///< mode Stop or Fault: use the stop limits
-  bool too_near{};  ///< somebody comes toward the hand: fingers that move or close stop
+  bool too_near{};  ///< a person approaches the hand: fingers that move or close stop
   bool clamped{};   ///< the partner of the handover is clamped: open in any mode
 };
 

@@ -24,26 +24,26 @@ HandAxes axes_of(const RobotModel& robot, const Group* fingers) {
   return hand;
 }
 
-/// Mass in a hand that the servos allow for [kg].
+/// Returns the payload of a hand that the servos compensate [kg].
 double held_payload(const ServoReference& reference, std::size_t hand) noexcept {
   if (hand == 0) return reference.payload;
   const auto other = static_cast<Eigen::Index>(hand) - 1;
   return other < reference.other_payloads.size() ? reference.other_payloads[other] : 0.0;
 }
 
-/// Mass measured in a hand [kg].
+/// Returns the measured payload of a hand [kg].
 double felt_payload(const RobotState& robot, std::size_t hand) noexcept {
   if (hand == 0) return robot.payload;
   return hand <= robot.other_hands.size() ? robot.other_hands[hand - 1].payload : 0.0;
 }
 
-/// What the world exerts on a hand, in its frame; nullptr: not measured.
+/// Returns the measured external wrench on a hand, in its frame; nullptr if not measured.
 const Wrench* felt_wrench(const RobotState& robot, std::size_t hand) noexcept {
   if (hand == 0) return &robot.wrist_wrench;
   return hand <= robot.other_hands.size() ? &robot.other_hands[hand - 1].wrist_wrench : nullptr;
 }
 
-/// Notes how near the hands of people are to a hand at `p` (world), and where its partner is.
+/// Finds the nearest hand of a person to a hand at `p` (world [m]), and the handover partner.
 void find_people(const ObservedPeople& people, const Vector3& p, HandInputs& in) noexcept {
   double torso = std::numeric_limits<double>::infinity();
   for (const PersonPoints& person : people.points()) {
@@ -58,7 +58,7 @@ void find_people(const ObservedPeople& people, const Vector3& p, HandInputs& in)
   }
 }
 
-/// Returns whether a trajectory moves fingers of a hand. `on_path`: of each axis of the robot.
+/// Returns whether a trajectory moves fingers of a hand. `on_path` has one flag per robot axis.
 bool is_on_path(const HandExecutor& hand, const std::vector<char>& on_path) noexcept {
   return std::any_of(hand.axes().begin(), hand.axes().end(),
                      [&on_path](int axis) { return on_path[static_cast<std::size_t>(axis)] != 0; });

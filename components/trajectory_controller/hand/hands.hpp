@@ -93,7 +93,7 @@ class Hands {
   std::vector<int> axes_;
   Vector other_payloads_;
   Vector effort_;
-  bool too_near_{};  // somebody comes too near for fingers that move or close
+  bool too_near_{};  // a person is too near for fingers that move or close
   std::uint64_t last_command_{}, accepted_{};
 };
 

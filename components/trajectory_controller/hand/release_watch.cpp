@@ -5,7 +5,7 @@
 namespace handsel::trajectory_controller {
 
 namespace {
-constexpr double kStillThere = 0.5;  // of the threshold, or of the load where that is less
+constexpr double kStillThere = 0.5;  // fraction of the threshold, or of the load if that is smaller
 }  // namespace
 
 void ReleaseWatch::arm(double threshold) noexcept {
@@ -18,13 +18,13 @@ void ReleaseWatch::arm(double threshold) noexcept {
   filter_.reset();
 }
 
-/// A pull beyond the threshold, in one direction, not away from the person; above_since_ says since
-/// when.
+/// Returns whether a pull exceeds the threshold in one direction that does not lead away from the
+/// person; above_since_ is its start.
 bool ReleaseWatch::strong(const Vector3& toward, TimePoint now) noexcept {
   const double pull = filter_.pull();
   const Vector3 direction =
       pull > 1e-9 ? Vector3(filter_.filtered() / pull) : Vector3(Vector3::Zero());
-  // The quick filter must agree: after a bump the slow one is still high for a while.
+  // The fast filter must agree: after a bump the slow one stays high for a while.
   const bool lasts = filter_.quick().dot(direction) >= kStillThere * threshold_;
   const bool toward_person = direction.dot(toward) >= settings_.away_cosine;
   const bool beyond = pull >= threshold_ && lasts && toward_person;
@@ -73,7 +73,7 @@ Grip ReleaseWatch::update(const Felt& felt, TimePoint now) noexcept {
     }
     return grip_;
   }
-  // The load hangs on the hand as before, and nobody pulls.
+  // The load hangs on the hand as before, without a pull.
   const double load = filter_.load();
   const double reference = load > PullFilter::kMinLoad ? std::min(threshold_, load) : threshold_;
   const bool back = filter_.quick().norm() < kStillThere * reference;

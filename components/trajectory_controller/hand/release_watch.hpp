@@ -45,7 +45,7 @@ class ReleaseWatch {
       : settings_(settings),
         filter_({settings.baseline_time, settings.filter_time, settings.quick_time}) {}
 
-  /// Starts over: the load's own force is measured from the samples that follow. threshold: least
+  /// Starts over: the load's own force is measured from the samples that follow. threshold: min
   /// pull that counts [N].
   void arm(double threshold) noexcept;
   /// Ends the watch; grip() keeps its value until arm().

@@ -10,13 +10,13 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-/// What must vanish: the direction to the point minus the viewing direction.
+/// Returns the residual: direction to the point minus viewing direction.
 Vector3 miss(const RobotModel& robot, const Vector& q, const Vector3& p_root) {
   const Pose T = robot.link_pose(q, robot.gaze_link());
   return (p_root - T.translation()).normalized() - T.linear().col(0);
 }
 
-/// Links that are moved by one of the axes for which `moves` is true.
+/// Returns the links moved by an axis for which `moves` is true.
 template <class Moves>
 std::vector<bool> moved_links(const RobotModel& robot, const Moves& moves) {
   std::vector<bool> moved(robot.links().size(), false);
@@ -41,7 +41,7 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
   if (robot.gaze_link() >= 0 && n > 0 &&
       (p_root - robot.link_pose(q, robot.gaze_link()).translation()).norm() > 0.05) {
     constexpr int kIterations = 12;
-    constexpr double kStep = 1e-4, kDamping = 1e-4, kLargest = 0.5;
+    constexpr double kStep = 1e-4, kDamping = 1e-4, kMaxStep = 0.5;
     Eigen::MatrixXd J(3, n);
     for (int k = 0; k < kIterations; ++k) {
       const Vector3 e = miss(robot, x, p_root);
@@ -57,7 +57,7 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
       for (Eigen::Index i = 0; i < n; ++i) {
         const int axis = head.axes[static_cast<std::size_t>(i)];
         const Axis& bounds = robot.axes()[static_cast<std::size_t>(axis)];
-        x[axis] = std::clamp(x[axis] + std::clamp(dx[i], -kLargest, kLargest), bounds.lower,
+        x[axis] = std::clamp(x[axis] + std::clamp(dx[i], -kMaxStep, kMaxStep), bounds.lower,
                              bounds.upper);
       }
     }
@@ -87,8 +87,8 @@ HeadRoom::HeadRoom(const RobotModel& robot)
 }
 
 double HeadRoom::clearance(const Vector& q) {
-  double least = std::numeric_limits<double>::infinity();
-  if (pairs_.empty()) return least;
+  double min_clearance = std::numeric_limits<double>::infinity();
+  if (pairs_.empty()) return min_clearance;
   robot_.forward(q, T_root_link_);
   for (const auto& [a, b] : pairs_) {
     const LinkCapsule &head = capsules_[a], &other = capsules_[b];
@@ -97,21 +97,21 @@ double HeadRoom::clearance(const Vector& q) {
     Vector3 on_head, on_other;
     const double apart2 =
         nearest_points(T * head.a, T * head.b, U * other.a, U * other.b, on_head, on_other);
-    least = std::min(least, std::sqrt(apart2) - head.radius - other.radius);
+    min_clearance = std::min(min_clearance, std::sqrt(apart2) - head.radius - other.radius);
   }
-  return least;
+  return min_clearance;
 }
 
 bool HeadRoom::lets_turn(const Vector& q, const std::vector<double>& target) {
   constexpr double kMargin = 0.02, kSame = 1e-3;  // [m]
-  constexpr int kLooks = 4;
+  constexpr int kSamples = 4;
   if (pairs_.empty()) return true;
-  const double least = std::min(kMargin, clearance(q) - kSame);
+  const double min_clearance = std::min(kMargin, clearance(q) - kSame);
   Vector x = q;
-  for (int k = 1; k <= kLooks; ++k) {
+  for (int k = 1; k <= kSamples; ++k) {
     for (std::size_t i = 0; i < head_->axes.size(); ++i)
-      x[head_->axes[i]] += (target[i] - q[head_->axes[i]]) / kLooks;
-    if (clearance(x) < least) return false;
+      x[head_->axes[i]] += (target[i] - q[head_->axes[i]]) / kSamples;
+    if (clearance(x) < min_clearance) return false;
   }
   return true;
 }

@@ -1,4 +1,4 @@
-// Where the head must turn for the camera to look at a point, and whether it may. Pure.
+// Head angles at which the camera views a point, and whether the head may turn there. Pure.
 #pragma once
 
 #include <utility>
@@ -20,7 +20,7 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
 class HeadRoom {
  public:
   explicit HeadRoom(const RobotModel& robot);
-  /// Least distance between the head and what the other axes move [m]; +inf without one of both.
+  /// Min distance between the head and the links moved by other axes [m]; +inf without one of both.
   double clearance(const Vector& q);
   /// Returns whether the head keeps a distance of 2 cm, or the one it has if smaller, while its
   /// axes move from q to `target`.

@@ -35,7 +35,7 @@ class ObservedPeople {
   const PersonCapsules& capsules() const noexcept { return capsules_; }
   /// People whose whole body was measured.
   const std::vector<PersonPoints>& points() const noexcept { return points_; }
-  /// Person exempt from separation, until clear of the robot; empty: nobody.
+  /// Person exempt from separation, until clear of the robot; empty: none.
   const std::string& partner() const noexcept { return partner_; }
   /// Returns whether a sample was received.
   bool received() const noexcept { return time_.received(); }

@@ -39,8 +39,8 @@ bool ObservedSpace::contains(const Box& box, double since) const noexcept {
   return one_contains(box, since) || contains(box, 0, since, pieces);
 }
 
-/// By the views from this one on: what lies outside of the first that meets the box is cut off, and
-/// must lie inside those after it.
+/// Returns whether the views from index `from` on contain the box: the parts outside of the first
+/// view that meets the box are cut off, and the later views must contain them.
 bool ObservedSpace::contains(Box box, std::size_t from, double since, int& pieces) const noexcept {
   if (--pieces < 0) return false;
   for (std::size_t i = from; i < count_; ++i) {

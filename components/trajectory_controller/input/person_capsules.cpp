@@ -27,7 +27,7 @@ void prepare(const HumanState& people, const SeparationExemption& exception, dou
       c.region = region_of(body.part);
       const bool first = before == nullptr || before->part != body.part;
       if (c.region == BodyRegion::lower_leg && first)
-        c.region = BodyRegion::thigh;  // of a leg, the thigh comes first
+        c.region = BodyRegion::thigh;  // the first limb of a leg is the thigh
       before = &body;
       c.measured = known;
       if (known)

@@ -8,7 +8,7 @@ bool RobotInput::set(const RobotState& state, TimePoint sampled, Duration age, b
   state_ = state;
   time_.mark(sampled);
   new_state_ = true;
-  // Older samples waited while this process slept.
+  // Older samples waited while this process was suspended.
   constexpr Duration kFresh = std::chrono::milliseconds(50);
   if (asleep_ && age < kFresh) {
     asleep_ = false;

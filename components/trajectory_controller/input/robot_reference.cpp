@@ -21,7 +21,7 @@ bool RobotReference::reported(const RobotState& state) const noexcept {
 
 void RobotReference::update(const RobotState& state, const Vector& set_point,
                             bool follows) noexcept {
-  constexpr double kApart = 0.01;  // [rad] no lag of a robot side that follows is as large at rest
+  constexpr double kApart = 0.01;  // larger than the lag of a following robot side at rest [rad]
   stale_ = false;
   if (!reported(state)) {
     state_ = State::unknown;

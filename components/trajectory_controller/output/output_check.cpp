@@ -7,12 +7,12 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-/// Parts that are stopped.
+/// Parts to stop.
 struct Stops {
   bool arm{}, hand{}, head{};
 };
 
-/// The parts named come to rest, each axis by itself, from what was sent last.
+/// Stops the given parts, each axis by itself, from the last set-point sent.
 void stop(Stops stops, MovingParts parts, double period, SetPoints& set_points) noexcept {
   const MotionState3& sent = set_points.sent();
   if (stops.arm) {
@@ -35,7 +35,7 @@ OutputCheck::OutputCheck(const OutputCheckSettings& settings, const RobotModel& 
 void OutputCheck::step(const OutputCheckInputs& in, MovingParts parts,
                        SetPoints& set_points) noexcept {
   check_limits(parts, set_points);
-  // A stop that is sent instead was observed with the set-point before.
+  // A stop that replaces the set-point was checked for observation with the set-point before.
   if (check_stop(in, parts, set_points)) check_observed(in, parts, set_points);
 }
 
@@ -54,8 +54,8 @@ void OutputCheck::check_limits(MovingParts parts, SetPoints& set_points) noexcep
   stop(stops, parts, settings_.period, set_points);
 }
 
-/// No set-point that moves the robot leaves without a checked stop behind it: otherwise the next
-/// one of the stop checked before is sent. Returns whether none is.
+/// Sends no set-point that moves the robot without a checked stop after it; otherwise sends the
+/// next set-point of the last checked stop. Returns whether the set-point itself is sent.
 bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts,
                              SetPoints& set_points) noexcept {
   if (shown_cycles_ > 0) --shown_cycles_;
@@ -67,7 +67,7 @@ bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts,
   failed_rejoins_ = shown_cycles_ > 0 ? failed_rejoins_ + (running ? 1 : 0) : 0;
   shown_cycles_ = static_cast<int>(settings_.shown_time / settings_.period);
   if (running && failed_rejoins_ > settings_.max_rejoins)
-    parts.arm.interrupt_path(false);  // the planner finds another
+    parts.arm.interrupt_path(false);  // the planner finds another path
   else if (running)
     parts.arm.interrupt_path(true);
   const Stops stops{set_points.any_moves(parts.arm.movers().axes()),
@@ -76,11 +76,11 @@ bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts,
   return false;
 }
 
-/// No set-point leaves from which a stop would lead where no live source observes. Complying with a
-/// push is allowed: whoever pushes is there. The fingers alone are no reason: Hold stops them.
+/// Sends no set-point whose stop would end where no live source observes. Complying with a push is
+/// allowed, as the person who pushes is there. Fingers alone are no reason: Hold stops them.
 void OutputCheck::check_observed(const OutputCheckInputs& in, MovingParts parts,
                                  SetPoints& set_points) noexcept {
-  constexpr int kEvery = 10;  // [cycles] at rest
+  constexpr int kEvery = 10;  // cycles between two checks at rest
   if (!proof_.moving() && in.cycle % kEvery != 0) return;
   const Vector& position = set_points.next().position;
   blind_ = !stop_space_.observes_stops(position, in.T_world_base, in.age);

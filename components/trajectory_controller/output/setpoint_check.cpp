@@ -16,7 +16,7 @@ bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::I
   if (std::abs(v1) > V * room || std::abs(a1) > A * room ||
       std::abs(a1 - a0) > J * dt * room + kRounding)
     return false;
-  // Motions of bounded jerk stay this close to the trapezoid through their ends.
+  // Jerk-limited motions stay this close to the trapezoid through their ends.
   if (std::abs(v1 - v0 - 0.5 * dt * (a0 + a1)) > 0.25 * J * dt * dt * room + kRounding)
     return false;
   if (std::abs(q1 - q0 - 0.5 * dt * (v0 + v1)) > 0.25 * J * dt * dt * dt * room + kRounding)

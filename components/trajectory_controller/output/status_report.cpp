@@ -10,7 +10,7 @@ MotionState reported_motion(const StatusSources& from) {
   return from.commands.refused() ? MotionState::refused : from.arm.motion();
 }
 
-/// Time along the trajectory that is reported, divided by its duration.
+/// Returns the time along the reported trajectory, divided by its duration.
 double progress(const StatusSources& from) {
   if (reported_motion(from) == MotionState::finished) return 1.0;
   const PathPiece& last = from.arm.queue().last();
@@ -31,7 +31,7 @@ std::string why_blind(const StatusSources& from) {
   return trajectory_controller::why_blind(from.inputs.people.state(), name);
 }
 
-/// Reason of Hold, Stop or Fault.
+/// Returns the reason of Hold, Stop or Fault.
 std::string held_reason(const StatusSources& from) {
   const Supervisor& supervisor = from.supervisor;
   const Cause latched = supervisor.latched_cause();
@@ -115,7 +115,7 @@ ActiveTrajectory make_active(const StatusSources& from) {
   const PathRunner& path = from.arm.path();
   a.trajectory = piece.id;
   a.time = path.time();
-  a.speed_factor = std::clamp(path.factor(), -1.0, 1.0);  // rounding
+  a.speed_factor = std::clamp(path.factor(), -1.0, 1.0);  // clamps rounding errors
   a.axes = from.arm.path_axes();
   a.rest = path.path();
   a.allowed_contacts = piece.allowed_contacts;

@@ -28,7 +28,7 @@ FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot,
       }
 }
 
-/// `to_robot`: unit; `speed`: of the fingers [m/s].
+/// `to_robot` is a unit vector; `speed` [m/s] is that of the fingers.
 bool FingerLimit::is_too_near(const PersonCapsule& part, const Vector3& to_robot, double distance,
                               double speed, double age) const noexcept {
   const double v_h = directed_speed(part, to_robot, guard_);

@@ -37,7 +37,7 @@ GoRefusal GoGate::receive(const Go& go) noexcept {
   if (last_refusal_ != GoRefusal::none) return last_refusal_;
   if (!received_) {
     first_epoch_ = go.epoch;
-    if (waits_) stop_revision_ = go.state_revision;  // the stop was seen before any Go
+    if (waits_) stop_revision_ = go.state_revision;  // the stop was received before any Go
   }
   received_ = true;
   epoch_ = go.epoch;

@@ -9,20 +9,20 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kStill = 1e-4;  // [m/s] closing more slowly counts as not closing
+constexpr double kStill = 1e-4;  // max closing speed that counts as none [m/s]
 
-/// No direction gives more.
+/// Returns the max speed of a part of a person in any direction [m/s].
 double fastest(const PersonCapsule& c, const GuardSettings& s) noexcept {
   return c.joints == 0 ? s.speed_unknown
                        : std::clamp(c.fastest + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
-/// Smallest step of a StopTable whose factor is at least `factor`.
+/// Returns the smallest step of a StopTable whose factor is at least `factor`.
 int step_above(double factor) noexcept {
   return static_cast<int>(std::ceil(factor * kStopGrid - 1e-9));
 }
 
-/// One evaluation of guard(): the limits so far, while links are compared with people and walls.
+/// One evaluation of guard(): the current limits while links are compared with people and walls.
 class Evaluation {
  public:
   Evaluation(const GuardSettings& settings, const GuardQuery& query) noexcept
@@ -32,8 +32,8 @@ class Evaluation {
         margin_(settings.intrusion + settings.uncertainty_human + settings.uncertainty_robot),
         present_(std::clamp(step_above(std::abs(query.factor)), 0, kStopGrid)) {
     for (const PersonCapsule& part : query.people.capsules) {
-      quickest_person_ = std::max(quickest_person_, fastest(part, settings));
-      oldest_ = std::max(oldest_, part.age);
+      max_person_speed_ = std::max(max_person_speed_, fastest(part, settings));
+      max_age_ = std::max(max_age_, part.age);
     }
   }
 
@@ -52,30 +52,30 @@ class Evaluation {
   }
 
  private:
-  /// A link that is compared.
+  /// A link of the robot with the values that all comparisons use.
   struct Link {
     int index{};
     MovingCapsule capsule;
     Vector3 axis, centre;
     double length2{};
-    double reach{};     // half the length and the radius [m]
-    double quickest{};  // largest speed of an end [m/s]
+    double reach{};      // half the length and the radius [m]
+    double max_speed{};  // max speed of an end [m/s]
   };
-  /// A link and a part of a person, where they are nearest to each other.
+  /// The nearest points of a link and a part of a person.
   struct Approach {
     Vector3 toward{Vector3::UnitZ()};  // from the link to the person, unit
     double distance{};                 // [m]
     double closing{};                  // speed of the link toward the person at factor 1 [m/s]
   };
 
-  /// Distance that a stop from step `g` of the factors needs [m].
+  /// Returns the distance that a stop from step `g` of the factors needs [m].
   double needed(double v_h, double closing, int g, double T_r, double extra) const noexcept {
     const auto k = static_cast<std::size_t>(g);
     const double v_r = closing * g / kStopGrid;
     return v_h * (T_r + query_.stop.time[k]) + v_r * (T_r + query_.stop.distance[k]) + extra;
   }
 
-  /// Largest factor whose need fits into the distance; exact on the grid, linear between.
+  /// Returns the max factor whose stop fits into the distance: exact on the grid, linear between.
   double allowed(double distance, double v_h, double closing, double extra,
                  double best) const noexcept {
     const auto need = [&](int g) { return needed(v_h, closing, g, reaction_, extra); };
@@ -99,16 +99,17 @@ class Evaluation {
     l.centre = 0.5 * (r.a + r.b);
     l.length2 = l.axis.squaredNorm();
     l.reach = 0.5 * std::sqrt(l.length2) + r.radius;
-    l.quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
-    const double need = needed(quickest_person_, l.quickest, high_, reaction_ + oldest_, margin_);
-    const double farthest = std::max(settings_.handover_range, need) + l.reach;  // that may matter
-    for (const PersonCapsule& part : query_.people.capsules) check_part(l, farthest, part);
+    l.max_speed = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
+    const double need =
+        needed(max_person_speed_, l.max_speed, high_, reaction_ + max_age_, margin_);
+    const double max_distance = std::max(settings_.handover_range, need) + l.reach;
+    for (const PersonCapsule& part : query_.people.capsules) check_part(l, max_distance, part);
   }
 
-  /// What is farther than `farthest` changes nothing: rough first, then exactly.
-  void check_part(const Link& link, double farthest, const PersonCapsule& part) noexcept {
+  /// Skips parts farther than `max_distance` [m]: first by bounding spheres, then exactly.
+  void check_part(const Link& link, double max_distance, const PersonCapsule& part) noexcept {
     const double apart2 = (part.centre - link.centre).squaredNorm();
-    const double far = std::max(farthest, verdict_.distance + link.reach) + part.reach;
+    const double far = std::max(max_distance, verdict_.distance + link.reach) + part.reach;
     if (apart2 > far * far) return;
     const double matters = range(link, part);
     const double near = part.excepted ? matters : std::max(matters, verdict_.distance);
@@ -134,16 +135,16 @@ class Evaluation {
     if (at.distance >= matters) return;
     if (part.excepted)
       limit_exempt(at);
-    else if (link.quickest >= kStill)
+    else if (link.max_speed >= kStill)
       limit_separation(link, part, at);
   }
 
-  /// Distance within which the part matters to the link [m].
+  /// Returns the max distance at which the part limits the link [m].
   double range(const Link& link, const PersonCapsule& part) const noexcept {
     if (part.excepted) return settings_.handover_range;
-    if (link.quickest < kStill) return 0.0;
+    if (link.max_speed < kStill) return 0.0;
     const double v_h = fastest(part, settings_);
-    return needed(v_h, link.quickest, high_, reaction_ + part.age, margin_);
+    return needed(v_h, link.max_speed, high_, reaction_ + part.age, margin_);
   }
 
   void note_nearest(const Link& link, const PersonCapsule& part, const Approach& at) noexcept {
@@ -166,12 +167,12 @@ class Evaluation {
   /// Limits the speed so that a stop fits into the distance.
   void limit_separation(const Link& link, const PersonCapsule& part, const Approach& at) noexcept {
     const double v_h = directed_speed(part, -at.toward, settings_), closing = at.closing;
-    // The person may have come that much nearer since.
+    // The person may have approached by this much since the observation.
     const double left = at.distance - v_h * part.age;
-    // What does not clearly lead away counts as closing both ways: until they meet the direction
-    // between them may turn.
-    const double sideways = std::max(kStill, settings_.sideways_ratio * link.quickest);
-    const double away = settings_.away_ratio * link.quickest;
+    // A motion that does not clearly lead away counts as closing in both directions: the direction
+    // between link and person may turn until they meet.
+    const double sideways = std::max(kStill, settings_.sideways_ratio * link.max_speed);
+    const double away = settings_.away_ratio * link.max_speed;
     if (closing > -away)
       forward_ = allowed(left, v_h, std::max(closing, sideways), margin_, forward_);
     if (closing < away)
@@ -199,11 +200,11 @@ class Evaluation {
 
   const GuardSettings& settings_;
   const GuardQuery& query_;
-  double reaction_, margin_;             // [s], [m]
-  int present_;                          // step of the factor in force
-  int high_{kStopGrid};                  // largest step still in question
-  double quickest_person_{}, oldest_{};  // [m/s], [s]
-  double forward_{1.0}, backward_{1.0};  // largest factors so far
+  double reaction_, margin_;               // [s], [m]
+  int present_;                            // step of the current factor
+  int high_{kStopGrid};                    // max step that may still be allowed
+  double max_person_speed_{}, max_age_{};  // [m/s], [s]
+  double forward_{1.0}, backward_{1.0};    // max factors so far
   GuardVerdict verdict_;
 };
 

@@ -14,10 +14,10 @@ namespace handsel::trajectory_controller {
 
 /// Parameters of speed and separation monitoring, named as in ISO/TS 15066.
 struct GuardSettings {
-  double speed_floor{0.10};        ///< least v_h assumed of a tracked person [m/s]
+  double speed_floor{0.10};        ///< min v_h assumed of a tracked person [m/s]
   double speed_uncertainty{0.05};  ///< added to the measured directed speed [m/s]
   double speed_unknown{1.6};       ///< v_h of a person not seen just now [m/s]
-  double speed_max{2.2};           ///< largest v_h [m/s]
+  double speed_max{2.2};           ///< max v_h [m/s]
   double unknown_after{0.25};      ///< a person not seen for longer moves at speed_unknown [s]
   double reaction{0.06};           ///< T_r without the age of the data: cycle, transport, drive [s]
   double intrusion{0.03};          ///< C [m]
@@ -26,7 +26,7 @@ struct GuardSettings {
   double uncovered_factor{0.3};    ///< speed factor while "nobody" is not a fact
   double handover_speed{0.25};     ///< largest speed toward an exempt forearm or hand [m/s]
   double handover_range{0.30};     ///< within this distance [m]
-  double sideways_ratio{0.05};     ///< least closing speed of a link, ratio to its speed
+  double sideways_ratio{0.05};     ///< min closing speed of a link, ratio to its speed
   double away_ratio{0.5};          ///< a link with more than this ratio of its speed leads away
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
   /// Fingers stop for a person only when that person comes toward the hand this fast [m/s].
@@ -41,17 +41,17 @@ struct Wall {
 
 /// Result of guard().
 struct GuardVerdict {
-  double forward{1.0};    ///< largest speed factor allowed, [0, 1]
-  double backward{-1.0};  ///< smallest speed factor allowed (back along the path), [-1, 0]
+  double forward{1.0};    ///< max speed factor allowed, [0, 1]
+  double backward{-1.0};  ///< min speed factor allowed (back along the path), [-1, 0]
   double distance{1e9};   ///< to the nearest person, without exempt parts [m]
   double needed{};        ///< protective separation distance there at the present factor [m]
-  int link{-1};           ///< of the robot, nearest to a person; -1: nobody is there
+  int link{-1};           ///< of the robot, nearest to a person; -1: no person is present
   /// Points on the axes of the two nearest capsules, world [m].
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};
   double view{1.0};           ///< largest factor at which a stop stays inside the observed space
   bool separation{};          ///< speed and separation monitoring limits a factor
   bool wall{};                ///< a wall limits a factor
-  bool uncovered{};           ///< nobody is seen, but that nobody is there is not certain
+  bool uncovered{};           ///< no person is observed, but absence is not certain
   bool too_near{};            ///< nearer than a stop at the present factor needs, still closing in
   bool handover_clear{true};  ///< no exempt part within handover_range
 };

@@ -9,9 +9,9 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kBackward = 0.02;  // the path runs back
-constexpr int kEvery = 50;          // [cycles] at rest
-constexpr int kEveryRetreat = 10;   // [cycles] in a retreat
+constexpr double kBackward = 0.02;  // min backward speed factor at which the path runs back
+constexpr int kEvery = 50;          // cycles between two evaluations at rest
+constexpr int kEveryRetreat = 10;   // cycles between two evaluations in a retreat
 
 }  // namespace
 
@@ -39,7 +39,7 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
     now_ = near_ = far_ = {};
     rise_.rest();
     now_.uncovered = in.uncovered;
-    // At rest only the distance, the end of a handover and a possible retreat are of interest.
+    // At rest only the distance, the end of a handover and a possible retreat matter.
     if (cycle % (in.retreat != nullptr ? kEveryRetreat : kEvery) != 0) {
       verdict_ = now_;
       if (in.retreat != nullptr) keep_retreat();
@@ -49,8 +49,8 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
     motion_.acceleration.setZero();
     if (in.retreat != nullptr) motion_.velocity = *in.retreat;
   }
-  // In turn where the path is and where it will be a little later, the one or the other; where it
-  // is as soon as people have just been seen.
+  // Every other cycle evaluates the present state on the path, the cycles between one of two later
+  // states in turn; after new observations of people, the present state.
   turn_ = new_people_ || !running ? 0 : (turn_ + 1) % 4;
   const bool here = turn_ % 2 == 0;
   if (here)
@@ -67,7 +67,7 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
   return here;
 }
 
-/// Between two evaluations the limit of a retreat and its causes stay.
+/// Keeps the limit of a retreat and its causes between two evaluations.
 void Lookahead::keep_retreat() noexcept {
   verdict_.forward = retreat_.factor;
   verdict_.separation = retreat_.people;
@@ -115,7 +115,8 @@ void Lookahead::limit_rise() noexcept {
   verdict_.wall = limit.wall;
 }
 
-/// The motion along the path `ahead` [s] of where it is; at rest, that which was set before.
+/// Sets the motion along the path `ahead` [s] of the present state; at rest keeps the motion set
+/// before.
 void Lookahead::set_motion(double ahead, const LookaheadInputs& in) noexcept {
   motion_.position = in.set_point.position;
   if (!in.arm.running()) return;
@@ -155,7 +156,7 @@ void Lookahead::evaluate(double ahead, const LookaheadInputs& in, GuardVerdict& 
   const double forward = reach_limit_.factor(query, in.people, false);
   verdict.separation = verdict.separation || forward < verdict.forward;
   verdict.forward = std::min(verdict.forward, forward);
-  // Where the path is now is in the stop of the set-point itself.
+  // The stop check of the set-point itself covers the present state.
   verdict.view = 1.0;
   if (in.arm.running() && ahead > 0.0)
     verdict.view = stop_space_.factor(motion_.position, motion_.velocity, in.T_world_base, in.age);

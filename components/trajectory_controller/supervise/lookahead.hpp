@@ -22,7 +22,7 @@ struct LookaheadSettings {
   double look_ahead{0.15};      ///< the path is also evaluated this much later [s]
   double look_far_ahead{0.45};  ///< and this much later: about the time of a stop [s]
   SpeedRiseSettings rise;       ///< of the speed factor
-  double min_factor{0.6};       ///< least speed factor assumed until then
+  double min_factor{0.6};       ///< min speed factor assumed until then
 };
 
 /// Inputs of one evaluation.

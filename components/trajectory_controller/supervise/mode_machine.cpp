@@ -5,7 +5,7 @@
 namespace handsel::trajectory_controller {
 namespace {
 
-/// Of the causes that only slow the motion: those that name a silent component.
+/// Causes that only slow the motion and name a silent component.
 constexpr std::uint32_t kSilent = bit(Cause::attention_silent) | bit(Cause::supervisor_silent);
 
 }  // namespace
@@ -38,7 +38,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   const bool supervisor_silent = in.go_age > timeouts_.supervisor;
   set(supervisor_silent && !in.running ? hold : slow, Cause::supervisor_silent, supervisor_silent);
 
-  // Never seen since the start: waits, and needs no newer Go once it is there.
+  // Not received since the start: waits, and needs no newer Go after the first sample.
   set(waiting, Cause::robot_state_silent, in.robot_age < 0);
   set(waiting, Cause::human_state_silent, in.human_age < 0);
   set(waiting, Cause::no_go, in.go_age < 0);
@@ -68,12 +68,12 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
     latched_ = Mode::normal;
 
   ModeVerdict verdict;
-  // At rest, of the causes that only slow the motion a silent component is still reported.
-  // no_go: nothing but a newer Go is left to wait for.
+  // At rest, a silent component that only slows the motion is still reported. no_go: only a newer
+  // Go is missing.
   verdict.causes = fault | stop | hold | waiting;
   if (latched_ == Mode::hold && verdict.causes == 0) verdict.causes = bit(Cause::no_go);
   verdict.causes |= latched_ == Mode::normal ? slow : slow & kSilent;
-  // What only makes slow: everything of `slow` except a silent supervisor, which lets the running
+  // Causes that slow the motion: all of `slow` except a silent supervisor, which lets the running
   // trajectory finish at full speed.
   const bool slower = (slow & ~bit(Cause::supervisor_silent)) != 0;
   verdict.mode = latched_ != Mode::normal ? latched_ : slower ? Mode::slow : Mode::normal;

@@ -9,7 +9,7 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-/// Linear between the factors of the table.
+/// Returns the stop time [s], interpolated linearly between the factors of the table.
 double time_at(const StopTable& stop, double factor) noexcept {
   const double place = std::clamp(factor, 0.0, 1.0) * kStopGrid;
   const auto k = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(kStopGrid - 1));
@@ -32,28 +32,28 @@ std::array<double, kBodyRegions> allowed_speeds(const StopProof& proof, double p
   return out;
 }
 
-/// The same for all links and parts.
+/// Terms common to all links and parts.
 struct LimitTerms {
   const StopTable& stop;
   double reaction, margin;  ///< [s], [m]
   bool backward;
 };
 
-/// A link at full speed, in the world.
+/// A link at full speed, world frame.
 struct LinkAtSpeed {
   double radius;
   const Vector3 &a, &b, &va, &vb;  ///< ends of its axis and their velocities
   double extra, inner, speed;      ///< [m/s]
 };
 
-/// A part of a person as a link meets it.
+/// A part of a person that a link approaches.
 struct PartApproach {
   const PersonCapsule& part;
   const RegionMotion& bounds;
   double contact_now, from, late;  ///< [m/s], [m/s], [s]
 };
 
-/// The limit so far, lowered to the largest factor at which the link is slow enough in time.
+/// Returns the limit so far, lowered to the max factor at which the link is slow enough in time.
 double lowered_limit(const LinkAtSpeed& link, const PartApproach& person, const LimitTerms& terms,
                      double limit) noexcept {
   const auto needed = [&](double factor, double closing) {
@@ -71,8 +71,8 @@ double lowered_limit(const LinkAtSpeed& link, const PartApproach& person, const 
                behind = std::max(-link.va.dot(toward), -link.vb.dot(toward));
   const double closing = std::max(0.0, terms.backward ? behind : ahead) + link.extra;
   if (needed(limit, closing) <= distance) return limit;
-  // The need grows with the factor: bisection between contact speed, which is always allowed, and
-  // the limit so far.
+  // The needed distance grows with the factor: bisection between contact speed, which is always
+  // allowed, and the limit so far.
   double low = std::min(limit, person.contact_now / link.speed), high = limit;
   for (int k = 0; k < 8; ++k) {
     const double middle = 0.5 * (low + high);
@@ -101,7 +101,7 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
   const double reaction = s.latency + s.robot_side_delay + query.ease,
                margin = s.tracker_error + s.robot_error + s.limit_margin;
   const LimitTerms terms{stop, reaction, margin, backward};
-  PartReaches reach;  // by the time the whole motion has stopped
+  PartReaches reach;  // at the end of the whole stop
   reach_of_parts(people, reaction + query.age + stop.time[kStopGrid], s.speed_error, s.people,
                  reach);
   for (std::size_t i = 0; i < finger_speeds_.size(); ++i)
@@ -136,7 +136,7 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
       const double rough = travel + part.reach + reach.distance[p];
       if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       const auto region = static_cast<std::size_t>(part.region);
-      // What the fingers leave of a contact's energy is the arm's.
+      // The fingers use part of the allowed contact energy; the rest is for the arm.
       const double of_fingers = inner == 0.0 ? 0.0
                                              : inner * proof_.contact_speeds().finger_ratio_at(
                                                            part.region, query.payload);
@@ -144,8 +144,8 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
           std::sqrt(std::max(0.0, contact[region] * contact[region] - of_fingers * of_fingers));
       if (speed * limit + gain <= of_arm) continue;
       const RegionMotion& bounds = s.people[region];
-      // What the arm's present acceleration adds before a stop begins counts, but never forbids all
-      // motion.
+      // The speed that the present acceleration adds before a stop begins counts, but never forbids
+      // all motion.
       const double contact_now = std::max(of_arm - gain, s.min_contact_ratio * contact[region]);
       const PartApproach approach{part, bounds, contact_now,
                                   start_speed(part, s.speed_error, bounds),

@@ -33,7 +33,7 @@ double StopDeadline::fastest_stop(int axis, double velocity, double acceleration
   return measure_stop(velocity, acceleration, max_acceleration, max_jerk).duration;
 }
 
-/// Of the arm, each axis by itself [s].
+/// Returns the duration of the fastest stop of the arm, each axis by itself [s].
 double StopDeadline::fastest_stop(const MotionState3& set_point) const noexcept {
   double max_time = 0.0;
   for (int axis : axes_) {
@@ -43,8 +43,8 @@ double StopDeadline::fastest_stop(const MotionState3& set_point) const noexcept 
   return max_time;
 }
 
-/// Longest fastest stop of the arm from where the next cycle can bring it [s]. An axis that brakes
-/// almost too hard to stop without swinging back is much later one cycle on.
+/// Returns the max duration of the fastest stop after any possible next cycle [s]. For an axis that
+/// brakes almost too hard to stop without overshoot it is much longer one cycle later.
 double StopDeadline::fastest_stop_after_a_cycle(const MotionState3& set_point) const noexcept {
   const double dt = period_;
   double max_time = 0.0;

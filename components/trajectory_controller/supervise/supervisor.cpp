@@ -6,7 +6,7 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kFull = 0.999;  // speed factors below this count as slow
+constexpr double kFull = 0.999;  // min speed factor of full speed
 
 }  // namespace
 
@@ -58,7 +58,7 @@ ModeInputs Supervisor::mode_inputs(const SupervisorInputs& in, TimePoint now) no
   const bool too_near = in.running && in.guard.too_near;
   too_near_for_ = too_near ? too_near_for_ + settings_.period : 0.0;
   out.separation_stop = too_near_for_ > settings_.stop_persistence;
-  // At rest a short push does no harm.
+  // A short push on an arm at rest does no harm.
   out.contact_stop = in.contact != Contact::none && !out.at_rest && !in.complying;
   out.clamped = in.contact == Contact::clamped;
   out.human_unknown = in.inputs.people.uncovered();

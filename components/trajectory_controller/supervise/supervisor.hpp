@@ -49,7 +49,7 @@ class Supervisor {
 
   /// Advances by one cycle.
   void update(const SupervisorInputs& in, TimePoint now) noexcept;
-  /// Notes that a motion began from rest: nobody has been too near to it yet.
+  /// Notes that a motion began from rest: no person has been too near yet.
   void begin_motion(TimePoint now) noexcept {
     started_ = now;
     too_near_for_ = 0.0;

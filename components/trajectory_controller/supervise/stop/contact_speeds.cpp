@@ -10,8 +10,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-/// Half of the mass that the axes move (ISO/TS 15066:2016, A.3.4), those of the platform
-/// included or not [kg].
+/// Returns half of the mass that the axes move (ISO/TS 15066:2016, A.3.4), with or without the axes
+/// of the platform [kg].
 double half_moving_mass(const RobotModel& robot, bool with_platform) {
   std::vector<char> moves(robot.links().size(), 0);
   const Group* platform = robot.group(kPlatformGroup);

@@ -1,4 +1,4 @@
-// Whether everybody is so far from the robot that nobody can reach it within a stop, from distances
+// Checks whether all people are so far that none can reach the robot within a stop, from distances
 // measured once for each sample of people. Pure, no heap after construction, noexcept.
 #pragma once
 
@@ -10,24 +10,24 @@
 
 namespace handsel::trajectory_controller {
 
-/// How far each capsule could move before anybody could reach it, as measured at one moment.
+/// Travel of each capsule up to the first possible contact with a person, measured at one moment.
 class FreeSpace {
  public:
   /// Keeps a reference to the chain. `dof`: number of axes of the robot.
   FreeSpace(const MovingChain& chain, int dof);
 
   /// Begins a measurement: for people of a revision, the robot at `position`, within `duration`
-  /// [s]; nobody is faster than `max_person_speed` [m/s].
+  /// [s]; no person is faster than `max_person_speed` [m/s].
   void begin(std::uint64_t revision, const Pose& T_world_base, const Vector& position,
              double duration) noexcept;
-  /// Notes the largest speed of the people [m/s].
+  /// Sets the max speed of the people [m/s].
   void set_max_person_speed(double speed) noexcept { max_person_speed_ = speed; }
   /// Notes the free space of a capsule [m].
   void set(std::size_t capsule, double distance) noexcept { space_[capsule] = distance; }
   /// Returns whether the measurement is of these people and of a base at this place.
   bool is_of(std::uint64_t revision, const Pose& T_world_base) const noexcept;
   /// Returns whether every capsule that may be faster than `min_speed` [m/s] is still so far from
-  /// everybody that nobody reaches it: what was free, less how far it has come since.
+  /// all people that none reaches it: the measured free space minus its travel since.
   bool suffices(const StopBounds& bounds, const Vector& position, double duration,
                 double min_speed) noexcept;
 

@@ -12,18 +12,16 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-/// Where a link is on the chain.
+/// Place of a link on the chain.
 struct Place {
   int frame{-1};
   int finger_frame{-1};                 // of a finger: index into the frames of its hand
   Pose T_frame_link{Pose::Identity()};  // in the finger's frame, if it has one
   bool finger{};
-  double reach{};  // of a finger: the largest distance of the link's origin from where the finger
-                   // begins [m]
-  double mass{};   // of a finger: of its links so far [kg]
-  std::vector<Lever> inner;  // of a finger: its axes from its beginning to the link, with the reach
-                             // of each axis itself
-  std::vector<double> factors;  // by which each of these turns or slides with its axis
+  double reach{};            // of a finger: max distance of the link's origin from the base [m]
+  double mass{};             // of a finger: mass of its links up to this one [kg]
+  std::vector<Lever> inner;  // of a finger: axes from its base to the link, with their own reaches
+  std::vector<double> factors;  // ratio of each of these axes to the axis that drives it
 };
 
 std::vector<char> finger_axes(const RobotModel& robot) {
@@ -48,7 +46,7 @@ Pose held_at(const Joint& joint) {
   return held;
 }
 
-/// The axes that carry a capsule, from its frame to the root.
+/// Returns the axes that carry a capsule, from its frame to the root.
 std::vector<Lever> levers(const RobotModel& robot, const std::vector<ChainFrame>& frames,
                           const ChainCapsule& capsule) {
   std::vector<Lever> out;
@@ -65,7 +63,7 @@ std::vector<Lever> levers(const RobotModel& robot, const std::vector<ChainFrame>
   return out;
 }
 
-/// Pose of a frame; velocities are left.
+/// Computes the pose of a frame, but no velocities.
 void place(const ChainFrame& frame, const FrameMotion& parent, double position,
            FrameMotion& out) noexcept {
   const double value = frame.factor * position + frame.offset;
@@ -77,7 +75,7 @@ void place(const ChainFrame& frame, const FrameMotion& parent, double position,
   }
   const double s = std::sin(value), c = std::cos(value);
   const Vector3& d = frame.direction;
-  Eigen::Matrix3d turn;  // Rodrigues
+  Eigen::Matrix3d turn;  // Rodrigues' rotation matrix
   turn << c + (1 - c) * d.x() * d.x(), (1 - c) * d.x() * d.y() - s * d.z(),
       (1 - c) * d.x() * d.z() + s * d.y(), (1 - c) * d.x() * d.y() + s * d.z(),
       c + (1 - c) * d.y() * d.y(), (1 - c) * d.y() * d.z() - s * d.x(),
@@ -167,7 +165,7 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
                                                           : reach - axis.length)});
     }
     sphere.fingers.push_back(std::move(inner));
-    // As large as it can become: for the levers.
+    // The levers use the max radius.
     double from_frame = reach;
     for (const ChainFrame& frame : hands[place.frame].frames)
       if (frame.parent < 0) from_frame = std::max(from_frame, reach + frame.p_parent_joint.norm());
@@ -186,7 +184,8 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
 }
 
 void MovingChain::enclose_hands(const Vector& position) noexcept {
-  constexpr double kSame = 1e-3;  // [rad, m] of a finger, for which the sphere is larger by as much
+  constexpr double kSame =
+      1e-3;  // max finger motion without an update; it enlarges the sphere [rad, m]
   for (Hand& hand : hands_) {
     bool moved = false;
     for (std::size_t k = 0; k < hand.frames.size(); ++k)

@@ -25,8 +25,8 @@ double reach_after(double time, double speed, const RegionMotion& bounds) noexce
 double start_speed(const PersonCapsule& part, double uncertainty,
                    const RegionMotion& bounds) noexcept;
 
-/// How far each part of everybody can be from where it was measured. HumanState carries at most 16
-/// people.
+/// Max distance of each part of all people from its measured position. HumanState carries at most
+/// 16 people.
 struct PartReaches {
   std::array<double, 16 * kBodyCapsules> distance;  ///< [m], the first `count`
   std::size_t count{};                              ///< number of capsules in PersonCapsules

@@ -10,7 +10,7 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kRounding = 1e-9;    // [rad, m]
-constexpr double kBoundSlack = 1e-6;  // [rad, m] by which trajectories may touch a bound
+constexpr double kBoundSlack = 1e-6;  // max excess of trajectories over a bound [rad, m]
 
 }  // namespace
 
@@ -27,8 +27,8 @@ AxisState AxisStop::at(double t) const noexcept {
   return {s.position, 0.0, 0.0};
 }
 
-/// Within a segment of constant jerk the speed is largest at an end, or where the acceleration
-/// changes its sign.
+/// Returns the max speed. Within a segment of constant jerk it occurs at an end or where the
+/// acceleration changes its sign.
 double AxisStop::max_speed_between(double from, double to) const noexcept {
   double fastest = 0.0, begin = 0.0;
   AxisState s = start;
@@ -80,8 +80,8 @@ void StopPlan::plan(const MotionState3& state, double delay) noexcept {
     axis.start = {state.position[i], state.velocity[i], state.acceleration[i]};
     axis.delay = delay;
     AxisState s = advanced(axis.start, delay, 0.0);
-    // Bounds: within a segment of constant jerk the speed is largest at an end, or less than
-    // |a| t / 2 beyond it.
+    // Upper bound: within a segment of constant jerk the max speed occurs at an end, or exceeds the
+    // speed there by less than |a| t / 2.
     axis.max_speed = std::max(std::abs(axis.start.velocity), std::abs(s.velocity));
     axis.travel = axis.max_speed * delay;
     critical_movement({s.velocity, s.acceleration}, {}, limits_.acceleration[i], limits_.jerk[i],
@@ -104,7 +104,7 @@ void StopPlan::plan(const MotionState3& state, double delay) noexcept {
   }
 }
 
-/// Whether an axis that is inside its bounds comes to rest inside them.
+/// Returns whether an axis that is inside its bounds comes to rest inside them.
 bool StopPlan::ends_inside(int axis, double start, double end) const noexcept {
   const double low = lower_[static_cast<std::size_t>(axis)];
   const double high = upper_[static_cast<std::size_t>(axis)];

@@ -10,10 +10,11 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kMinLever = 0.1;  // [m] per radian, to count sliding axes with turning ones
+constexpr double kMinLever =
+    0.1;  // lever that converts the speed of a sliding axis to a turning rate [m/rad]
 constexpr int kIntervals = StopSamples::kIntervals;
 
-/// Sum of a value over axes.
+/// Returns the sum of a value over the axes.
 double rate(const std::vector<Lever>& axes, const std::vector<double>& by_axis) noexcept {
   double out = 0.0;
   for (const Lever& lever : axes) out += by_axis[static_cast<std::size_t>(lever.axis)];
@@ -27,14 +28,14 @@ double fastest_finger(const ChainCapsule& capsule, const std::vector<double>& by
   return fastest;
 }
 
-/// Mass of the heaviest finger, at least `min_mass` [kg].
+/// Returns the mass of the heaviest finger, at least `min_mass` [kg].
 double finger_mass(const MovingChain& chain, double min_mass) {
   double mass = min_mass;
   for (const ChainCapsule& capsule : chain.capsules()) mass = std::max(mass, capsule.finger_mass);
   return mass;
 }
 
-/// Distance between a link and a part of a person [m].
+/// Returns the distance between a link and a part of a person [m].
 double distance_between(const CapsuleSample& link, double radius,
                         const PersonCapsule& part) noexcept {
   Vector3 on_robot, on_person;
@@ -65,8 +66,8 @@ StopProof::StopProof(const StopProofSettings& settings, const RobotModel& robot,
   pairs_.reserve(kMaxPairs);
 }
 
-/// Collects the links and parts that could touch faster than allowed, and measures the free space
-/// of every capsule; false when there are too many to check.
+/// Collects the links and parts that could touch faster than allowed, and computes the free space
+/// of every capsule; false if there are too many to check.
 bool StopProof::find_pairs(const PersonCapsules& people, const Pose& T_world_base,
                            double duration) noexcept {
   pairs_.clear();
@@ -105,9 +106,9 @@ bool StopProof::find_pairs(const PersonCapsules& people, const Pose& T_world_bas
   return true;
 }
 
-/// Samples both until everything in a pair is at rest. Between two samples a link moves no faster
-/// than the faster of them, but for how much speeds and levers may bend within the interval; nor
-/// faster than the largest speeds of its axes there at their levers, which says more where axes
+/// Samples both stops until everything in a pair is at rest. Between two samples a link moves at
+/// most at the faster speed of the two, plus the max change of speeds and levers within the
+/// interval, and at most at the max axis speeds there times the levers, a tighter bound as axes
 /// come to rest.
 bool StopProof::check_stop(const StopPlan& stop, const Vector& position,
                            const PersonCapsules& people, const Pose& T_world_base,
@@ -175,8 +176,8 @@ bool StopProof::check_pair(const StopPlan& stop, const Pair& pair, const Bend& b
     inner = std::min(inner, link.inner_bound(speeds));
     const double contact = contact_.of(carried, inner, region);
     if (contact <= allowed) continue;
-    // Within the interval the link is no farther from where it is at one of its ends than it goes
-    // in half of it.
+    // Within the interval the link stays within half of its max travel of its position at one of
+    // the two ends.
     const double time = (slot + 1) * interval + settings_.latency + age + part.age;
     const double needed = (carried + inner) * interval / 2.0 + bend.inner_travel + margin +
                           reach_after(time, from, bounds);

@@ -54,7 +54,7 @@ bool StopSamples::take(const StopPlan& stop, const Vector& position,
   return true;
 }
 
-/// Returns when everything that is needed is at rest.
+/// Returns the time until all required links are at rest [s].
 double StopSamples::time_until_rest(const StopPlan& stop) noexcept {
   std::fill(rest_.begin(), rest_.end(), 0.0);
   for (int k = 0; k < stop.count(); ++k)

@@ -22,7 +22,7 @@ StopSpace::StopSpace(const ViewSettings& settings, const StopProof& proof, const
       position_(rest_),
       stop_(rest_) {}
 
-/// Whether every capsule is inside, larger by `margin` and what it may travel.
+/// Returns whether every capsule, enlarged by `margin` [m] and its max travel, is observed.
 bool StopSpace::inside(const Vector& position, double margin, const Pose& T_world_base,
                        double since) noexcept {
   chain_.enclose_hands(position);
@@ -59,8 +59,8 @@ bool StopSpace::observes_stops(const Vector& position, const Pose& T_world_base,
          inside_during(true, T_world_base, since);
 }
 
-/// A capsule is no farther from where it is at one of the instants than it can travel in half an
-/// interval.
+/// Returns whether the whole stop is observed. A capsule stays within its max travel of half an
+/// interval from its position at one of the sampled instants.
 bool StopSpace::inside_during(bool robot_side, const Pose& T_world_base, double since) noexcept {
   const double interval = proof_.stop(robot_side).duration() / kIntervals;
   for (std::size_t c = 0; c < travel_.size(); ++c)
@@ -78,16 +78,16 @@ double StopSpace::factor(const Vector& position, const Vector& velocity, const P
   for (const double factor : {1.0, settings_.boundary_factor}) {
     for (Eigen::Index i = 0; i < velocity.size(); ++i) {
       const double v = factor * velocity[i];
-      const double way =
+      const double braking_distance =
           v == 0.0 ? 0.0 : measure_stop(v, 0.0, limits_.acceleration[i], limits_.jerk[i]).distance;
-      stop_[i] = way + v * proof_.settings().robot_side_delay;
+      stop_[i] = braking_distance + v * proof_.settings().robot_side_delay;
     }
     if (inside_from(position, T_world_base, since)) return factor;
   }
   return 0.0;
 }
 
-/// Whether the links are inside from a position on to where the stop ends, stop_ away.
+/// Returns whether the links are observed from a position to the end of the stop, stop_ away.
 bool StopSpace::inside_from(const Vector& position, const Pose& T_world_base,
                             double since) noexcept {
   const double margin = settings_.margin + settings_.ahead_margin;

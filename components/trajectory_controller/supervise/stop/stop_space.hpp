@@ -22,7 +22,7 @@ struct ViewSettings {
   double ahead_margin{0.05};
   /// Speed factor where a stop from full speed would lead out of the observed space, (0, 1].
   double boundary_factor{0.3};
-  /// Nobody is below the floor or reaches above the ceiling: what is beyond need not be
+  /// No person is below the floor or reaches above the ceiling: the space beyond need not be
   /// observed [m].
   double floor{0.0}, ceiling{2.5};
 };
@@ -35,15 +35,15 @@ class StopSpace {
 
   /// Replaces the views by those of the newest HumanState.
   void set(const HumanState& people) noexcept { space_.set(people.views); }
-  /// Returns whether all links are inside what is observed during both stops of the set-point that
+  /// Returns whether all links are inside the observed space in both stops of the set-point that
   /// the proof has checked last. `position`: of it, all axes. `since`: the age of the views'
   /// message [s].
   bool observes_stops(const Vector& position, const Pose& T_world_base, double since) noexcept;
-  /// Returns the largest of the speed factors 1, boundary_factor and 0 at which a stop on the path,
-  /// from a point where it has this velocity at full speed, stays inside what is observed.
+  /// Returns the max of the speed factors 1, boundary_factor and 0 at which a stop on the path,
+  /// from a point where it has this velocity at full speed, stays inside the observed space.
   double factor(const Vector& position, const Vector& velocity, const Pose& T_world_base,
                 double since) noexcept;
-  /// Link that was found outside of what is observed; -1: none yet.
+  /// Link found outside of the observed space; -1: none yet.
   int link() const noexcept { return link_; }
   /// Whether any view counts.
   bool any(double since) const noexcept { return space_.any(since); }
