@@ -10,7 +10,7 @@
 
 namespace handsel::collision_checker {
 
-/// A link and another robot at their least distance.
+/// A link and another robot at their min distance.
 struct RobotApproach {
   double distance{std::numeric_limits<double>::infinity()};  ///< [m]; +inf: no other robot
   std::string link, robot;                                   ///< names; empty: no other robot
