@@ -14,8 +14,8 @@ class FrameConflicts {
  public:
   explicit FrameConflicts(std::string robot) : robot_(std::move(robot)) {}
 
-  /// Sets the parent of each link that TF gets from this process, by link: nobody else may send
-  /// those frames.
+  /// Sets the parent of each link that TF gets from this process, by link: no other process may
+  /// send those frames.
   void set_own(std::map<std::string, std::string> parents) { parents_ = std::move(parents); }
   /// Returns whether the transform places one of the links below another parent; this is reported.
   bool contradicts(const ros2::Transform& transform, TimePoint arrival);

@@ -7,7 +7,7 @@
 namespace handsel::ros2_lane {
 namespace {
 
-constexpr double kSame = 1e-6;  // two points closer than this are one [rad]
+constexpr double kSame = 1e-6;  // max distance of two points that count as one [rad]
 constexpr std::size_t kMaxStates = 4096;
 
 std::string number(double value) {
@@ -16,7 +16,7 @@ std::string number(double value) {
   return text;
 }
 
-/// Finds the place in the arm's group of each joint that is named.
+/// Returns the index in the arm's group of each named joint.
 std::string find_joints(const ros2::JointTrajectory& wanted, const RobotModel& robot,
                         const Group& arm, std::vector<std::size_t>& place) {
   for (const std::string& name : wanted.joint_names) {

@@ -7,10 +7,9 @@
 namespace handsel::ros2_lane {
 namespace {
 
-constexpr std::size_t kMostBodies = 256;  // as an observation holds; SPARK tracks the nearest
-constexpr std::size_t kFewestJoints =
-    3;  // frames of robots may be called alike: "head_tilt" alone is no body
-constexpr double kListAge = 2.0;  // [s] a list of tracked bodies counts
+constexpr std::size_t kMaxBodies = 256;  // bound of an observation; SPARK tracks the nearest
+constexpr std::size_t kMinJoints = 3;    // min joints: other frames may be called e.g. "head_tilt"
+constexpr double kListAge = 2.0;         // max age of a list of tracked bodies [s]
 
 Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 
@@ -28,7 +27,7 @@ std::optional<BodyFrame> body_frame(const std::string& frame) {
 void PeopleObserver::on(const ros2::Transform& transform) {
   const auto frame = body_frame(transform.child);
   if (!frame || frame->body.size() > 64) return;
-  if (bodies_.size() >= kMostBodies && !bodies_.contains(frame->body)) return;
+  if (bodies_.size() >= kMaxBodies && !bodies_.contains(frame->body)) return;
   bodies_[frame->body].insert(frame->joint);
 }
 
@@ -52,7 +51,7 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
       const auto place = tree.find(joint + "_" + id, settings_.world_frame);
       if (!place || now - place->arrival > age) continue;
       fresh = true;
-      const bool shoulders = joint == "torso";  // of ROS4HRI
+      const bool shoulders = joint == "torso";  // in ROS4HRI
       if (shoulders && joints.contains("neck")) continue;
       person.joints.push_back({shoulders ? "neck" : joint, place->T_root_frame.translation(), 1.0});
       out.stamp = std::max(out.stamp, place->stamp);
@@ -61,7 +60,7 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
       body = bodies_.erase(body);
       continue;
     }
-    if (joints.size() >= kFewestJoints && (!listed || tracked_->contains(id)))
+    if (joints.size() >= kMinJoints && (!listed || tracked_->contains(id)))
       out.people.push_back(std::move(person));
     ++body;
   }

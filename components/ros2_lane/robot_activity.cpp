@@ -5,7 +5,7 @@
 namespace handsel::ros2_lane {
 namespace {
 
-constexpr double kAtRest = 1e-3;  // [rad/s]
+constexpr double kAtRest = 1e-3;  // max speed of an axis at rest [rad/s]
 constexpr double kSilent = 0.3;   // max age of the controller's report [s]
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace handsel::ros2_lane {
 namespace {
-constexpr double kLeastStep = 1e-4;  // [s] between two positions from which a velocity is taken
+constexpr double kMinStep = 1e-4;  // min time between two positions for a velocity [s]
 }  // namespace
 
 ros2::JointState joint_state_of(const RobotModel& robot, const RobotState& state) {
@@ -39,18 +39,18 @@ void JointGatherer::on(const ros2::JointState& message, TimePoint arrival) {
     const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(),
                                    [&](const Axis& a) { return a.name == message.names[i]; });
     if (axis == robot_.axes().end()) continue;
-    Reported& told = axes_[static_cast<std::size_t>(axis - robot_.axes().begin())];
+    Reported& reported = axes_[static_cast<std::size_t>(axis - robot_.axes().begin())];
     const double position = message.position[static_cast<Eigen::Index>(i)];
-    const double dt = to_seconds(message.stamp != 0 ? Duration(message.stamp - told.stamp)
-                                 : told.arrival     ? arrival - *told.arrival
+    const double dt = to_seconds(message.stamp != 0 ? Duration(message.stamp - reported.stamp)
+                                 : reported.arrival ? arrival - *reported.arrival
                                                     : Duration::zero());
     if (message.velocity.size() > 0)
-      told.velocity = message.velocity[static_cast<Eigen::Index>(i)];
-    else if (told.arrival && dt > kLeastStep)
-      told.velocity = (position - told.position) / dt;
-    told.position = position;
-    told.stamp = message.stamp;
-    told.arrival = arrival;
+      reported.velocity = message.velocity[static_cast<Eigen::Index>(i)];
+    else if (reported.arrival && dt > kMinStep)
+      reported.velocity = (position - reported.position) / dt;
+    reported.position = position;
+    reported.stamp = message.stamp;
+    reported.arrival = arrival;
   }
   stamp_ = std::max(stamp_, message.stamp);
 }

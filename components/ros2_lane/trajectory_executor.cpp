@@ -5,10 +5,10 @@
 namespace handsel::ros2_lane {
 namespace {
 
-constexpr double kRetry = 0.5;           // [s]
-constexpr double kAnswerTimeout = 5.0;   // [s]
-constexpr double kSlower = 1.05;         // timed again where the asked duration is this much longer
-constexpr double kMinSpeedScale = 0.02;  // of the comfort velocities
+constexpr double kRetry = 0.5;          // time between two attempts [s]
+constexpr double kAnswerTimeout = 5.0;  // max time until an answer [s]
+constexpr double kSlower = 1.05;  // ratio of min to requested duration that requires new timing
+constexpr double kMinSpeedScale = 0.02;  // ratio to the comfort velocities
 
 }  // namespace
 
