@@ -85,7 +85,7 @@ std::optional<Vector3> shift_to_extended_hand(const ActionStatus& action, const 
 }
 
 double urgency(double distance, double closing) {
-  constexpr double kReferenceSpeed = 0.5;  // [m/s]
+  constexpr double kReferenceSpeed = 0.5;  // reference speed of a hand [m/s]
   return std::max(0.0, closing > kReferenceSpeed ? distance * kReferenceSpeed / closing : distance);
 }
 
