@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kTakerPositions = 40, kTakerOrientations = 72;
 
-// A person's list is one of several for an object: fewer frames do.
+// Returns settings with fewer frames: an object has several lists of a person's hands.
 GraspListSettings taker_settings(const settings::GraspPlannerSettings& text) {
   GraspListSettings s = list_settings(text, 1);
   s.positions = std::min(s.positions, kTakerPositions);
@@ -56,7 +56,7 @@ std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem:
                                  const settings::GraspPlannerSettings& text) {
   if (robot.hand().empty())
     throw ConfigError("robot " + robot.name() + " names no hand; the grasp planner needs one");
-  // Lists are the same for each seed of the node: they are kept on disk and shared.
+  // Lists do not depend on the seed of the node: they are stored on disk and shared.
   const GraspListSettings lists = list_settings(text, 1);
   const GraspStore store(text.store ? default_store() : "");
   const std::vector<Manipulator> all =

@@ -10,17 +10,15 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::uint64_t kTransferBudget =
-    600;  // inverse kinematics tried for places to hand over, for each tilt
-constexpr std::size_t kTransferTries =
-    12;  // grasps looked at for a place to hand over, for each that is wanted
-constexpr double kSameDistance = 0.02;  // [m] grasps nearer than this ...
-constexpr double kSameAngle = 0.35;     // [rad] ... and less turned count as one variant
-constexpr std::size_t kShortList =
-    40;  // grasps, clearly different ones, tried at each place of the platform
-constexpr std::size_t kReasonsGiven = 3;  // the most frequent ones, where no grasp serves
-constexpr std::size_t kPlacesServed =
-    3;  // places of the platform with grasps, then the search ends
+// Max calls of inverse kinematics for handover places, per tilt.
+constexpr std::uint64_t kTransferBudget = 600;
+// Max grasps for which a handover place is searched, per wanted grasp.
+constexpr std::size_t kTransferTries = 12;
+constexpr double kSameDistance = 0.02;    // [m] max distance of two grasps of one variant
+constexpr double kSameAngle = 0.35;       // [rad] max rotation between two grasps of one variant
+constexpr std::size_t kShortList = 40;    // distinct grasps tried at each platform pose
+constexpr std::size_t kReasonsGiven = 3;  // max reasons reported when no grasp is feasible
+constexpr std::size_t kPlacesServed = 3;  // platform poses with grasps that end the search
 
 /// Returns an arm of the robot with its hand; ConfigError where one of the two is missing.
 Manipulator hand_of(const RobotModel& robot, const std::string& arm) {
@@ -124,7 +122,7 @@ std::string Choice::why_none(const GraspList& list) const {
   }
   std::stable_sort(often.begin(), often.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  // What failed on the last of the checks came nearest to serving.
+  // A grasp that failed only the last check was nearest to feasible.
   const auto last = std::max_element(
       often.begin(), often.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   if (std::distance(often.begin(), last) >= static_cast<std::ptrdiff_t>(kReasonsGiven))
@@ -177,7 +175,7 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   Search search(*this, inputs);
   const auto [order, weak] = search.ranked();
   std::vector<Found> found;
-  // Twice as many as asked for, so that the arm's posture has a say.
+  // Twice the requested number, so that the arm configuration affects the ranking.
   const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
   const std::uint64_t budget =
       (request.has_goal ? 2 : 1) * static_cast<std::uint64_t>(settings_.reach_budget);
@@ -190,8 +188,8 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
     ++search.out.reasons[static_cast<std::size_t>(reason)];
     if (reason == ChoiceReason::chosen) found.push_back(std::move(one));
   };
-  // For a person, those that can be handed over come first, upright before tilted; the others only
-  // when too few of them can be picked up.
+  // For a person, grasps with a handover place come first, upright before tilted; the others
+  // follow when too few of those can be picked up.
   std::vector<std::pair<double, std::size_t>> others = order;
   const auto levels = search.places ? tilt_levels(pairs->settings()) : std::vector<double>{};
   for (const double tilt : levels) {
@@ -216,7 +214,7 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
     others = std::move(left);
   }
   for (const auto& [rank, index] : others) consider(rank, index, {});
-  // Weaker grasps, ranked with the others, where fewer than min_grasps_held serve.
+  // Adds weaker grasps when fewer than min_grasps_held are feasible.
   for (const auto& [rank, index] : weak) {
     if (found.size() < settings_.min_grasps_held)
       consider(rank, index, {});
@@ -228,7 +226,7 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   search.out.contacts = contacts_here;
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.rank > b.rank; });
-  // One of each kind first: when the best fails, the next should be different.
+  // One grasp of each variant first, so that a retry uses a different variant.
   const auto known = [&](const Found& f, const std::vector<Found>& among) {
     return std::any_of(among.begin(), among.end(), [&](const Found& g) {
       return alike(g.grasp.T_object_hand, f.grasp.T_object_hand);
@@ -265,8 +263,8 @@ void GraspChooser::search_places(Search& search,
     });
     if (!again && !search.below_support(g)) tried.emplace_back(rank, index);
   }
-  // Elsewhere the platform carries the root of the model along: the arm is planned for as it
-  // stands.
+  // The platform moves the root of the model, so the arm is planned for each platform pose at
+  // rest.
   const Pose T_world_root = search.scene.T_world_base;
   const Pose T_world_now = T_world_platform(*robot_, request.start, T_world_root);
   const Pose T_platform_root = T_world_now.inverse() * T_world_root;

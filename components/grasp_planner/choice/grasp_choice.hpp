@@ -17,22 +17,22 @@
 
 namespace handsel::grasp_planner {
 
-/// Why a listed grasp does not serve now.
+/// Why a listed grasp is not feasible now.
 enum class ChoiceReason : std::uint8_t {
   chosen,
   too_weak,       ///< the fingers of one hand would not bear the object
-  below_support,  ///< some part of the hand would be in or under what the object stands on
+  below_support,  ///< a part of the hand would be in or under the support of the object
   out_of_reach,   ///< no arm configuration reaches it
   collision,      ///< arm or hand collides there
   cannot_lift,    ///< the arm cannot go straight up with it
-  no_approach,    ///< no straight path in without touching the object or anything else
+  no_approach,    ///< no collision-free straight approach
   near_giver,     ///< too near to the body of the giver
-  goal_support,   ///< the same where the object is to be put
-  goal_taken,     ///< something is there already
+  goal_support,   ///< below_support at the goal
+  goal_taken,     ///< another object occupies the goal
   goal_out_of_reach,
   goal_collision,  ///< arm, hand or object
   goal_lowering,   ///< no straight path down with the object
-  goal_leaving,    ///< no straight path off for the opened hand
+  goal_leaving,    ///< no straight retreat for the opened hand
   hidden,          ///< too little of the object is seen past the hand
   not_considered,  ///< the budget was used up, or enough better ones were found
   count
@@ -43,7 +43,7 @@ const char* reason_text(ChoiceReason);
 /// How the object is put down in a grasp: arm axes.
 struct PuttingDown {
   Vector above, at;  ///< with the object in the hand
-  Vector off;        ///< the opened hand gone from it
+  Vector off;        ///< the opened hand after its retreat
 };
 
 /// Where the platform was thought of.
@@ -72,30 +72,30 @@ class NamedContacts {
   std::map<std::string, int> counts_;
 };
 
-/// The grasps that serve, and why others do not.
+/// The feasible grasps, and why others are not.
 struct Choice {
   std::vector<Grasp> grasps;       ///< with arm_joints and approach_joints, best first
   std::vector<PuttingDown> goals;  ///< of each grasp, when there is a goal
   /// For a person, with the pairs known: how each of the grasps can be handed over; nullopt: no
   /// place was found.
   std::vector<std::optional<TransferPose>> transfers;
-  /// Listed grasps by ChoiceReason, for where the robot stands.
+  /// Listed grasps by ChoiceReason, for the present place of the robot.
   std::array<std::uint64_t, static_cast<std::size_t>(ChoiceReason::count)> reasons{};
   NamedContacts contacts;            ///< of grasps where arm or hand would collide
   std::uint64_t reaches{};           ///< inverse kinematics solved or tried
   std::uint64_t transfer_reaches{};  ///< those for places to hand over
   std::uint64_t states{};            ///< robot states checked for collision
   std::uint64_t touch_tests{};       ///< hand against object
-  PlatformSearch platform;           ///< what came of the search for places of the platform
+  PlatformSearch platform;           ///< result of the search for platform places
 
-  /// Returns the counts per reason of the grasps and places of the platform that do not serve.
+  /// Returns the counts per reason of the infeasible grasps and platform places.
   Refusals refusals() const;
-  /// Returns one sentence for when there are no grasps: how many the list had, on what most of them
-  /// failed, with counts, and how many were not tried.
+  /// Returns one sentence for a choice without grasps: the number of listed grasps, the most
+  /// frequent reasons with counts, and the number not tried.
   std::string why_none(const GraspList& list) const;
 };
 
-/// What a choice is made from.
+/// Inputs of a choice.
 struct ChoiceInputs {
   const GraspRequest& request;        ///< what is asked for
   const GraspList& list;              ///< grasps of the hand of the robot on the object
@@ -103,12 +103,11 @@ struct ChoiceInputs {
   const Scene& scene;                 ///< with the object of the request
   const HumanState& people;           ///< everybody near
   std::function<bool()> cancelled{};  ///< may be empty
-  /// Of this list and the hand of the person the object is for; without them only the room left
-  /// counts.
+  /// Pairs of this list and the receiver's hand; without them only the free surface counts.
   const TransferTable* pairs{};
 };
 
-/// What does not change from request to request.
+/// Chooses grasps; holds all inputs that do not change between requests.
 class GraspChooser {
  public:
   /// Chooses for one arm of the robot. ConfigError when that arm has no hand at its tip, or the
@@ -119,9 +118,9 @@ class GraspChooser {
                const settings::GraspPlannerSettings& settings, const std::string& arm = "arm",
                std::shared_ptr<const RobotModel> mobile = nullptr);
 
-  /// Chooses the grasps that serve now; deterministic for equal inputs. Where no grasp serves from
-  /// where the robot stands and the request allows it, places of the platform are searched, the
-  /// shortest drive first; the reasons stay those of where it stands.
+  /// Chooses the grasps that are feasible now; deterministic for equal inputs. If none is feasible
+  /// from the present place and the request allows it, platform places are searched, the shortest
+  /// drive first; the reasons remain those of the present place.
   Choice choose(const ChoiceInputs& inputs) const;
 
  private:
@@ -135,7 +134,7 @@ class GraspChooser {
   ObjectLibrary library_;
   settings::GraspPlannerSettings settings_;
   Manipulator manipulator_;  // the arm that takes the object
-  // unit, hand frame: directions to back off from a grasp, the straightest first
+  // unit, hand frame: retreat directions from a grasp, the straightest first
   std::vector<Vector3> retreats_;
 };
 

@@ -137,8 +137,8 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
                    inputs.object.box().center());
 }
 
-// A middle place for the exchange: before the person's chest, on the side of the robot. Whoever
-// carries the task out chooses the real one.
+// Sets a nominal handover place before the person's chest, on the side of the robot. The task
+// itself chooses the actual place later.
 void GraspChooser::Search::plan_handover() {
   handover_point.reset();
   const BodyJoint *torso = find_joint(*person, "torso"),
@@ -242,8 +242,8 @@ bool GraspChooser::Search::free(CollisionWorld& world, const Vector& arm_q, cons
   return world.is_free(whole(arm_q, hand_q));
 }
 
-// Whether the open hand touches neither the object, nor the hand that holds the object, nor
-// anything else on the straight motion from approach_q to grasp_q.
+// Returns whether the open hand touches neither the object, nor the hand that holds the object,
+// nor anything else on the straight motion from approach_q to grasp_q.
 bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
                                          const Vector& grasp_q, const Grasp& g) {
   const Vector from = whole(approach_q, g.pregrasp_joints), to = whole(grasp_q, g.pregrasp_joints);
@@ -251,9 +251,9 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
   const Pose T_object_root = site.T_world_object.inverse() * scene.T_world_base;
   const bool from_hand = holder_body.has_value() && &site == &start;
   for (int i = 0; i <= steps; ++i) {
-    const double share = static_cast<double>(i) / steps;
+    const double fraction = static_cast<double>(i) / steps;
     const Pose T_object_hand =
-        T_object_root * robot().link_pose(from + share * (to - from), self.manipulator_.palm);
+        T_object_root * robot().link_pose(from + fraction * (to - from), self.manipulator_.palm);
     ++out.touch_tests;
     const double clearance =
         i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
@@ -272,7 +272,7 @@ double GraspChooser::Search::stand_off() const {
   return settings().stand_off - (holder.empty() ? 0.0 : settings().held_nearer);
 }
 
-// Where the straight way in begins; T_open must be that of the grasp.
+// Returns the configuration at the start of the straight approach; sets T_open.
 std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q,
                                                      const Grasp& g) {
   const Pose T_world_hand = site.T_world_object * g.T_object_hand;
@@ -394,7 +394,7 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
     g.visible = visible(g, T_world_object);
     return g.visible < inputs.request.min_visible;
   };
-  // From where the person will stand to the exchange is known only once the arm gets there.
+  // The person's view of the handover place is known only after the arm has reached the grasp.
   const bool seen_later = person != nullptr && !found.transfer;
   if (!seen_later && inputs.request.min_visible > 0 &&
       hidden(found.transfer ? found.transfer->T_world_object : start.T_world_object))

@@ -9,7 +9,7 @@
 
 namespace handsel::grasp_planner {
 
-/// Weighed and checked: a grasp that serves.
+/// A ranked and checked feasible grasp.
 struct GraspChooser::Found {
   double rank{};
   Grasp grasp;
@@ -20,42 +20,42 @@ struct GraspChooser::Found {
 struct GraspChooser::Search {
   Search(const GraspChooser& chooser, const ChoiceInputs& given);
 
-  /// The robot stands elsewhere from now on.
+  /// Sets another place of the robot.
   void stand(const Pose& T_world_base);
 
-  /// Where the robot stands.
+  /// Returns the place of the robot.
   Vector3 p_world_robot() const;
   /// Ranks of grasps and their places in the list, best first.
   using Ranking = std::vector<std::pair<double, std::size_t>>;
-  /// Grasps by which one hand holds the object, and weaker ones, used where few others serve.
+  /// Grasps that bear the object, and weaker ones, used when few others are feasible.
   struct Ranked {
     Ranking strong, weak;
   };
   /// Returns the grasps of the list in the order in which they are considered; counts the others.
   Ranked ranked();
-  /// What can be said of a grasp before the arm is checked.
+  /// Returns the rank of a grasp before the arm is checked.
   double rank(const ListedGrasp& listed, std::size_t index) const;
   bool below_support(const Grasp& g);
-  /// Where and how the object, tilted by that much, can be handed over in this grasp, the robot
-  /// free of everything but the person's arms.
+  /// Returns where the object, at this tilt [rad], can be handed over in this grasp. The robot may
+  /// collide only with the person's arms.
   std::optional<TransferPose> transfer(std::size_t index, const Grasp& g, double tilt);
-  /// Whether the grasp serves; writes the rest of `out`, whose rank and transfer are set.
+  /// Checks whether the grasp is feasible; completes `out`, whose rank and transfer are set.
   ChoiceReason consider(const Grasp& listed, Found& out);
 
-  /// The object standing somewhere, the hand not closed on it.
+  /// The object at rest on a support, with the hand open.
   struct Site {
     Pose T_world_object{Pose::Identity()};
     CollisionWorld world;
   };
-  /// The middle place for the exchange, and how the object is held there.
+  /// The pose of the object at the nominal handover place.
   struct HandoverPlace {
-    /// How well the hand stays behind the object, [0, 1], in the best heading; -1: the arm gets to
-    /// none.
+    /// Cosine of how far the hand is behind the object, [0, 1], in the best heading; -1: none is
+    /// reachable.
     double behind{-1};
     Pose T_world_object{Pose::Identity()};
   };
 
-  /// Where the person and the robot can hold the object, in the middle between them.
+  /// Nominal handover place between person and robot, world [m].
   struct HandoverPoint {
     Vector3 place, to_person;  ///< to_person: unit
   };
@@ -70,14 +70,15 @@ struct GraspChooser::Search {
   std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const;
   bool free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q);
   bool approach_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
-  double stand_off() const;  ///< before the object, where the straight approach begins [m]
+  double stand_off() const;  ///< distance of the start of the straight approach from the grasp [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   ChoiceReason pick_up(Grasp& g);
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
-  /// How far on the robot's side of the object the hand is, [0, 1]: the person with the object in
-  /// the hand is on the other.
+  /// Returns how far the hand is on the robot's side of a held object, [0, 1]; the giver is on the
+  /// other side.
   double on_our_side(const Grasp& g) const;
-  /// Far enough from head, torso, upper arms and legs of the person that holds it, the hand open.
+  /// Returns whether the robot, hand open, keeps its clearance to the giver's head, torso, upper
+  /// arms and legs.
   bool off_giver(const Vector& arm_q, const Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 
@@ -85,14 +86,14 @@ struct GraspChooser::Search {
   const ChoiceInputs& inputs;
   HandAtObject hand;
   const Person* person{};
-  std::string holder;  // person in whose hand it is; empty: nobody
+  std::string holder;  // person that holds the object; empty: none
   Scene scene;
   Site start;
   std::optional<Site> goal;
   std::optional<HandShape::PlacedHand> holder_body;  // frame of the object
-  std::optional<CollisionWorld> giver;     // the person that holds it, but for forearms and hands
-  std::optional<CollisionWorld> carrying;  // about the goal, with the object in the hand
-  // with the object in the hand, at the handover: the person's arms are no obstacle
+  std::optional<CollisionWorld> giver;               // the giver without forearms and hands
+  std::optional<CollisionWorld> carrying;            // at the goal, with the object held
+  // with the object held at the handover, the person's arms excluded
   std::optional<CollisionWorld> held;
   bool goal_is_taken{};
   Pose T_root_world{Pose::Identity()};

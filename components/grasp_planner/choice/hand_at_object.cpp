@@ -77,7 +77,7 @@ bool HandAtObject::stands_in(const Grasp& g) const {
 
 bool HandAtObject::touches(const HandShape::PlacedHand& body, const Grasp& g,
                            std::uint64_t& tests) {
-  // Closed and open first: these touch most often.
+  // Closed and open first: these collide most often.
   for (const double closure : {1.0, 0.0, 0.5, 0.25, 0.75}) {
     hand_.forward(g.pregrasp_joints + closure * (g.hand_joints - g.pregrasp_joints), T_open_);
     ++tests;

@@ -7,9 +7,9 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::size_t kMostPoints = 240;
-constexpr double kOff = 0.001;    // [m] the line of sight begins this far off the surface
-constexpr double kThin = 0.0001;  // [m] nearer than this to a line of sight, the surface hides
+constexpr std::size_t kMaxSightPoints = 240;  // surface points sampled
+constexpr double kSightOffset = 0.001;      // [m] of the start of a line of sight from the surface
+constexpr double kSightThickness = 0.0001;  // [m] a surface nearer to a line of sight hides
 
 }  // namespace
 
@@ -27,15 +27,16 @@ double visible_fraction(const Graspable& object, const HandShape::PlacedHand& ha
   }
   const double size = object.box().diagonal().norm();
   const std::size_t stride =
-      std::max<std::size_t>(1, (object.points().size() + kMostPoints - 1) / kMostPoints);
+      std::max<std::size_t>(1, (object.points().size() + kMaxSightPoints - 1) / kMaxSightPoints);
   std::size_t facing = 0, seen = 0;
   for (std::size_t i = 0; i < object.points().size(); i += stride) {
     const SurfacePoint& point = object.points()[i];
-    const Vector3 way = p_object_eye - point.position;
-    const double far = way.norm();
-    if (!(way.dot(point.normal) > 0)) continue;
-    const Vector3 from = point.position + kOff * point.normal;
-    if (object.triangles().nearer_than(from, from + std::min(1.0, size / far) * way, kThin))
+    const Vector3 to_eye = p_object_eye - point.position;
+    const double far = to_eye.norm();
+    if (!(to_eye.dot(point.normal) > 0)) continue;
+    const Vector3 from = point.position + kSightOffset * point.normal;
+    if (object.triangles().nearer_than(from, from + std::min(1.0, size / far) * to_eye,
+                                       kSightThickness))
       continue;
     ++facing;
     const auto hidden = [&](const auto& solid) { return hides(solid, p_object_eye, from); };

@@ -17,9 +17,9 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
   if (tip < 0)
     throw ConfigError("hand " + hand.name() + ": finger " + f.name + " names tip link " +
                       f.tip_link + ", which its URDF does not have");
-  // Every joint driven by this finger's axes on its own branch is a step; fixed joints are folded
-  // into their neighbours. Fingers that move together share axes, so the branch begins at the first
-  // joint above the tip that one of them moves.
+  // Each joint that this finger's axes drive on the finger's branch is a step; fixed joints are
+  // merged into their neighbours. Coupled fingers share axes, so the branch begins at the first
+  // joint above the tip that one of these axes moves.
   const auto driven = [&](const Joint& joint) {
     return joint.dof >= 0 && std::find(f.axes.begin(), f.axes.end(), joint.dof) != f.axes.end();
   };
@@ -74,8 +74,8 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
                       : -1.0;
 }
 
-// Every step's frame is turned so that its joint's axis is z: a rotation about it mixes two
-// columns.
+// Rotates the frame of every step so that the joint axis is z: a joint rotation then changes only
+// two columns.
 void FingerChain::turn_to_z() {
   std::vector<Pose> T_old_new(steps_.size(), Pose::Identity());
   for (std::size_t s = 0; s < steps_.size(); ++s) {

@@ -10,7 +10,7 @@ constexpr std::size_t kSeedsPerCell = 3;
 constexpr double kDistinct = 0.35;  // [rad] seeds of one cell differ by more in some axis
 constexpr std::int64_t kMaxSamples = 1'000'000;
 
-// How many samples each axis needs so that the tip moves less than `step` between two of them.
+// Returns the samples per axis with less than `step` [m] of tip motion between two of them.
 std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chain, double step) {
   std::vector<int> counts;
   const Vector &lower = hand.lower_contact(), &upper = hand.upper_contact();

@@ -8,7 +8,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kShrink = 0.001;  // [m] a mesh or box of a finger in contact may be this deep
+constexpr double kShrink = 0.001;  // [m] max penetration of the mesh or box of a finger in contact
 
 const Pose& step_pose(const std::vector<Pose>& T, int step) {
   static const Pose identity = Pose::Identity();
@@ -21,8 +21,8 @@ MeshPtr shrink(const TriangleMesh& mesh) {
   const Vector3 half = (0.5 * box.sizes()).cwiseMax(1e-6);
   auto out = std::make_shared<TriangleMesh>(mesh);
   for (Vector3& v : out->vertices) {
-    const Vector3 share = (half.array() - kShrink).max(0.0) / half.array();
-    v = box.center() + share.cwiseProduct(v - box.center());
+    const Vector3 scale = (half.array() - kShrink).max(0.0) / half.array();
+    v = box.center() + scale.cwiseProduct(v - box.center());
   }
   return out;
 }

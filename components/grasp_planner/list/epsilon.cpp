@@ -32,8 +32,8 @@ class Hull {
     for (std::size_t i = 0; i < points_.size(); ++i) key_.push_back(mix(i));
   }
 
-  // Signed distance of the nearest hull facet; 0 when flat, not positive when the origin is not
-  // inside; NaN when rounding broke the topology.
+  // Returns the signed distance of the nearest hull facet; 0 when flat, not positive when the
+  // origin is not inside; NaN when rounding broke the topology.
   double nearest() {
     if (!start()) return 0.0;
     while (true) {
@@ -80,8 +80,8 @@ class Hull {
     return s;
   }
 
-  // Unit normal of the hyperplane through the facet's vertices, away from the inner point; false
-  // when they do not span one.
+  // Sets the unit normal of the hyperplane through the facet's vertices, away from the inner point;
+  // false when the vertices span no hyperplane.
   bool plane(Facet& f) const {
     std::array<Point, D> m{};
     const Point& origin = points_[f.vertices[0]];
@@ -136,8 +136,9 @@ class Hull {
     return std::isfinite(f.offset);
   }
 
-  // The hyperplane through `point` and the ridge between a facet that sees it and one that does
-  // not: their pencil has it, outward already. Recomputed from the vertices when rounding shows.
+  // Sets the hyperplane through `point` and the ridge between a facet that sees the point and one
+  // that does not, as a combination of the two facets' planes. Falls back to the vertices when
+  // rounding errors are large.
   bool cone_plane(const Facet& seeing, const Facet& blind, const Point& point, Facet& f) const {
     const double above = dot(seeing.normal, point) - seeing.offset,
                  below = blind.offset - dot(blind.normal, point);
@@ -160,7 +161,7 @@ class Hull {
     return high - low < kRounding || plane(f);
   }
 
-  // A simplex of D + 1 points, each as far as possible from the span of those before.
+  // Builds a simplex of D + 1 points, each at the max distance from the span of those before.
   bool start() {
     if (points_.size() < D + 1) return false;
     std::vector<Point> rest = points_;
@@ -306,9 +307,8 @@ class Hull {
 
 template <int D>
 double epsilon_of(const WrenchMatrix& w, double scale) {
-  // Rounding can break the hull of points that nearly share a facet. Then, and only then, it is
-  // built again from points moved by a relative 1e-11, then more: far below the 1e-9 that is
-  // promised for the distance.
+  // Rounding can break the hull of points that nearly share a facet. Only then is the hull built
+  // again from points moved by a relative 1e-12 to 1e-10, below the promised 1e-9 of the distance.
   for (const double joggle : {0.0, 1e-12, 1e-11, 1e-10}) {
     std::vector<std::array<double, D>> points(static_cast<std::size_t>(w.cols()));
     for (Eigen::Index j = 0; j < w.cols(); ++j) {

@@ -16,7 +16,7 @@ constexpr double kMaxPositions = 2000;
 std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count) {
   const Vector3 size = box.sizes().cwiseMax(1e-6);
   Eigen::Array3i n(1, 1, 1);
-  // A side much shorter than a step has one position; the others share the rest.
+  // A side much shorter than a step has one position; the others divide the rest.
   std::array<bool, 3> thin{};
   for (bool again = true; again;) {
     double product = 1.0 / std::max(1U, count);

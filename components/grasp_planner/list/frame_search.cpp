@@ -8,26 +8,27 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kFromBehind =
-    0.6;  // cosine: a fingertip pointing out along the normal would come through the object
-constexpr double kLeastPush = 0.25;  // cosine between the way the pad faces and into the surface:
-                                     // no contact on the back of a finger
-constexpr double kOnFace = 0.94;  // cosine: the fingertip meets the face of a triangle, not an edge
-constexpr double kClosed = 1e-4;  // [m] of the fingertip to the surface
-constexpr int kClosingSteps = 60;
-constexpr int kInnerPlaces = 8;  // of the inner axis of a finger of two
-constexpr double kLeastBackOff =
-    0.4;  // share of the opening below which a finger counts as unable to open
+// Max cosine of fingertip direction and surface normal: above it the finger passes through the
+// object.
+constexpr double kFromBehind = 0.6;
+// Min cosine of pad direction and inward normal: excludes contacts on the back of a finger.
+constexpr double kMinPush = 0.25;
+constexpr double kOnFace = 0.94;   // min cosine of a contact on the face of a triangle, not an edge
+constexpr double kClosed = 1e-4;   // [m] max gap of a closed fingertip to the surface
+constexpr int kClosingSteps = 60;  // max steps of a closing finger
+constexpr int kInnerPlaces = 8;    // values tried for the inner axis of a two-axis finger
+// Min fraction of the wanted opening that a finger must reach.
+constexpr double kMinBackOff = 0.4;
 
 double force_alignment(const Eigen::Matrix3Xd& J, const Vector3& normal) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(Eigen::Matrix3d(J * J.transpose()));
   return std::abs(normal.dot(axes.eigenvectors().col(0)));
 }
 
-// Does the fingertip come from outside, its pad toward the surface?
+// Returns whether the fingertip comes from outside with its pad toward the surface.
 bool plausible(const FingerWorkspace::Seed& seed, const Vector3& normal) {
   return normal.dot(seed.tip_direction) <= kFromBehind &&
-         -normal.dot(seed.closing_direction) >= kLeastPush;
+         -normal.dot(seed.closing_direction) >= kMinPush;
 }
 
 }  // namespace
@@ -74,8 +75,8 @@ bool FrameSearch::holds(int finger, const Pose& T_object_hand, const SurfacePoin
                                           -settings_.depth))
     return false;
   if (hand_geometry_.shape.finger_touches_palm(finger, out.T_hand_step)) return false;
-  // Back off along the normal, as far as the joints allow, and stay clear of the object there. An
-  // axis shared with another finger stays.
+  // The finger must open along the normal within its joint limits, clear of the object. An axis
+  // shared with another finger keeps its value.
   Vector lower = hand.lower_contact(), upper = hand.upper_contact();
   for (const int a : chain.axes()) {
     lower[a] = hand_geometry_.shared(a) ? out.q[a]
@@ -87,7 +88,7 @@ bool FrameSearch::holds(int finger, const Pose& T_object_hand, const SurfacePoin
   ++counters.finger_solutions;
   chain.inverse(p_hand_tip + settings_.opening * normal, lower, upper, out.q_open, 2e-4, 15);
   chain.forward(out.q_open, T_);
-  if ((chain.tip(T_) - p_hand_tip).dot(normal) < kLeastBackOff * settings_.opening) return false;
+  if ((chain.tip(T_) - p_hand_tip).dot(normal) < kMinBackOff * settings_.opening) return false;
   ++counters.touch_tests;
   if (hand_geometry_.shape.finger_touches(finger, T_, object_, T_object_hand,
                                           settings_.open_clearance))
@@ -106,18 +107,18 @@ bool FrameSearch::touches_at(int finger, const Pose& T_object_hand, Vector q,
                                                : hand_geometry_.hand.upper_contact()[closing];
   const double to = chain.closing_sign() > 0 ? hand_geometry_.hand.upper_contact()[closing]
                                              : hand_geometry_.hand.lower_contact()[closing];
-  // The tip goes no farther than lever * angle: steps of distance / lever never pass through the
+  // The tip moves at most lever * angle, so steps of distance / lever never pass through the
   // surface.
   double lever = 0;
-  for (const double share : {0.0, 0.5, 1.0}) {
-    q[closing] = from + share * (to - from);
+  for (const double ratio : {0.0, 0.5, 1.0}) {
+    q[closing] = from + ratio * (to - from);
     chain.forward(q, T_closing_);
     lever = std::max(lever, 1.2 * chain.jacobian(T_closing_).rightCols<1>().norm());
   }
-  double way = 0;
+  double travel = 0;
   const double length = std::abs(to - from), sign = to > from ? 1.0 : -1.0;
-  for (int i = 0; i < kClosingSteps && way <= length; ++i) {
-    q[closing] = from + sign * way;
+  for (int i = 0; i < kClosingSteps && travel <= length; ++i) {
+    q[closing] = from + sign * travel;
     chain.forward(q, T_closing_);
     const Vector3 tip = T_object_hand * chain.tip(T_closing_);
     const SurfaceHit hit = object_.triangles().nearest(tip);
@@ -126,14 +127,14 @@ bool FrameSearch::touches_at(int finger, const Pose& T_object_hand, Vector q,
     if (gap < kClosed) {
       const Vector3 push = T_object_hand.linear() * chain.closing_direction(T_closing_);
       if ((tip - hit.position).dot(hit.normal) < kOnFace * hit.along ||
-          -push.dot(hit.normal) < kLeastPush)
+          -push.dot(hit.normal) < kMinPush)
         return false;
       out.q = q;
       out.place = {hit.position, hit.normal, hit.triangle, hit.barycentric,
                    object_.curvature_near(hit.position, hit.normal)};
       return true;
     }
-    way += std::max(gap, kClosed) / lever;
+    travel += std::max(gap, kClosed) / lever;
   }
   return false;
 }

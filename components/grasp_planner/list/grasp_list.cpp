@@ -14,7 +14,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::size_t kLeastContacts = 3;
+constexpr std::size_t kMinContacts = 3;
 constexpr std::size_t kScoredCombinations = 64;
 
 /// Which contact each finger uses; -1: none, the finger rests.
@@ -96,7 +96,7 @@ struct GraspLister::Impl {
       search.candidates(static_cast<int>(f), T_object_hand, points[f]);
       reached += !points[f].empty();
     }
-    if (reached + 1 < kLeastContacts) return FrameReason::fingers_out_of_reach;
+    if (reached + 1 < kMinContacts) return FrameReason::fingers_out_of_reach;
     ++out.touch_tests;
     if (hand_geometry->shape.palm_touches(*object, T_object_hand))
       return FrameReason::palm_in_object;
@@ -105,18 +105,17 @@ struct GraspLister::Impl {
     if (contacts[0].empty()) return FrameReason::thumb_without_contact;
     std::size_t touching = 0;
     for (std::size_t f = 1; f < fingers; ++f) {
-      if (touching + (fingers - f) + 1 < kLeastContacts)
-        return FrameReason::fingers_without_contact;
+      if (touching + (fingers - f) + 1 < kMinContacts) return FrameReason::fingers_without_contact;
       contacts[f] = search.contacts(static_cast<int>(f), T_object_hand, points[f], out);
       touching += !contacts[f].empty();
     }
-    if (touching + 1 < kLeastContacts) return FrameReason::fingers_without_contact;
+    if (touching + 1 < kMinContacts) return FrameReason::fingers_without_contact;
     return combine(id, T_object_hand);
   }
 
   /// Posture of a finger without contact: rest, else pre-grasp; -1 when both collide with the
   /// object.
-  int idle_posture(std::size_t f, const Pose& T_object_hand) {
+  int idle_configuration(std::size_t f, const Pose& T_object_hand) {
     ++out.touch_tests;
     if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_rest[f], *object, T_object_hand,
                                              0.002))
@@ -159,16 +158,17 @@ struct GraspLister::Impl {
     return FrameReason::grasped;
   }
 
-  // Walks all combinations depth first; a pair of postures that collides cuts its whole branch.
+  // Enumerates all combinations depth first; a colliding pair of finger configurations prunes its
+  // branch.
   void enumerate(std::size_t f, Combination& chosen, std::size_t used,
                  std::vector<Combination>& found) {
     const std::size_t fingers = contacts.size();
     if (f == fingers) {
-      if (used >= kLeastContacts) found.push_back(chosen);
+      if (used >= kMinContacts) found.push_back(chosen);
       return;
     }
     for (int choice = static_cast<int>(contacts[f].size()) - 1; choice >= -1; --choice) {
-      if (choice < 0 && (f == 0 || idle[f] < 0 || used + (fingers - f - 1) < kLeastContacts))
+      if (choice < 0 && (f == 0 || idle[f] < 0 || used + (fingers - f - 1) < kMinContacts))
         continue;
       bool free = true;
       for (std::size_t g = 0; g < f && free; ++g) free = !clash(g, chosen[g], f, choice);
@@ -218,7 +218,7 @@ struct GraspLister::Impl {
 
   double friction() const { return settings.friction > 0 ? settings.friction : object->friction(); }
 
-  // The three parts of the quality that cost nothing.
+  // Returns the scores that need no force-closure computation.
   GraspScores cheap_scores(const Combination& c) const {
     GraspScores s;
     Vector3 mean = Vector3::Zero();
@@ -247,7 +247,8 @@ struct GraspLister::Impl {
 
   FrameReason combine(std::uint64_t id, const Pose& T_object_hand) {
     idle.assign(contacts.size(), 0);
-    for (std::size_t f = 1; f < contacts.size(); ++f) idle[f] = idle_posture(f, T_object_hand);
+    for (std::size_t f = 1; f < contacts.size(); ++f)
+      idle[f] = idle_configuration(f, T_object_hand);
     width = 1;
     for (const auto& of_finger : contacts) width = std::max(width, of_finger.size() + 1);
     clashes.assign(contacts.size() * contacts.size() * width * width, -1);
@@ -390,7 +391,7 @@ struct GraspLister::Impl {
   std::vector<std::vector<FingerContact>> contacts;
   std::vector<int> idle;
   std::vector<signed char> clashes;  // of finger, finger, choice, choice: -1 not known
-  std::size_t width{};               // choices a finger has at most
+  std::size_t width{};               // max choices of a finger
   GraspList out;
 };
 

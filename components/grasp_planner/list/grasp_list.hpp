@@ -34,13 +34,13 @@ struct GraspListSettings {
   int cone_edges{8};                     ///< of a linearised friction cone, >= 6
   double full_epsilon{0.25};             ///< an epsilon from which on the stability counts as 1
   QualityWeights weights;                ///< of the terms of the quality
-  std::uint32_t contacts_per_finger{4};  ///< alternatives kept for each finger of a frame
-  std::uint32_t tries_per_finger{24};    ///< candidates checked for them
-  double depth{0.0008};   ///< how deep the model of a touching finger may be in the object [m]
-  double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  std::uint32_t contacts_per_finger{4};  ///< max alternatives per finger of a frame
+  std::uint32_t tries_per_finger{24};    ///< max candidates checked per finger
+  double depth{0.0008};                  ///< max penetration of a touching finger model [m]
+  double opening{0.025};         ///< pre-grasp distance of the fingertips along the normal [m]
   double pad_hollow{0.003};      ///< a pad bridges a hollow that is no deeper [m]
-  double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
-  GripForceSettings grip;        ///< how hard it is held, and what it must bear
+  double open_clearance{0.004};  ///< min pre-grasp clearance of the whole finger [m]
+  GripForceSettings grip;        ///< grip force and load
   /// Distance that a fingertip may creep over the surface, which turns the normal where the surface
   /// is curved: the grip does not use that part of the friction cone [m].
   double creep{0};
@@ -50,7 +50,7 @@ struct GraspListSettings {
   double sturdy_margin{2.0};  ///< a grip margin that counts as 1 [N]
   /// Min grip margin of a grasp by which one hand alone bears the object [N].
   double min_margin{-std::numeric_limits<double>::infinity()};
-  /// Surface this far from the hand counts as room for another hand [m].
+  /// Min distance of the surface from the hand to count as free for another hand [m].
   double free_distance{0.03};
   std::uint64_t seed{1};  ///< of the contact points; the same gives the same list
 };

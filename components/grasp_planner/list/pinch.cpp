@@ -9,18 +9,17 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr int kGrid = 5;  // rays along each side of a pad
-constexpr double kPatch =
-    0.0005;  // [m] what is nearer than this to a pad's plane touches: so far it yields
-constexpr double kInside = 0.0003;        // [m] what stands out farther keeps the pad off
-constexpr double kBeside = 0.001;         // [m] off its middle, on both sides
-constexpr double kBackOff = 0.004;        // [m] the rays start this far behind the pad's plane
-constexpr double kFlat = 0.94;            // cosine: the surface faces the pad
-constexpr double kParallel = 0.985;       // cosine: the pads face each other
-constexpr double kLeastThickness = 1e-3;  // [m]
-constexpr double kGolden = 0.6180339887498949;
+constexpr int kGrid = 5;                // rays along each side of a pad
+constexpr double kPatch = 0.0005;       // [m] compliance of a pad: nearer surface touches it
+constexpr double kInside = 0.0003;      // [m] max protrusion into the plane of a pad
+constexpr double kBeside = 0.001;       // [m] min extent of the contact on each side of the middle
+constexpr double kBackOff = 0.004;      // [m] from the start of a ray to the plane of the pad
+constexpr double kFlat = 0.94;          // min cosine of a surface that faces the pad
+constexpr double kParallel = 0.985;     // min cosine of pads that face each other
+constexpr double kMinThickness = 1e-3;  // [m] of the object between the pads
+constexpr double kGolden = 0.6180339887498949;  // golden ratio - 1
 
-/// Returns whether an area of a pad reaches to both sides of the pad's middle, both ways.
+/// Returns whether an area extends to both sides of the middle of a pad on both axes.
 bool is_around_middle(const Eigen::AlignedBox2d& on_pad) {
   return !on_pad.isEmpty() && (on_pad.min().array() < -kBeside).all() &&
          (on_pad.max().array() > kBeside).all();
@@ -86,15 +85,15 @@ std::optional<PinchSearch::Found> PinchSearch::frame(std::uint64_t id, GraspList
   const Vector3 u = place.normal.unitOrthogonal();
   const Vector3 along = std::cos(turn) * u + std::sin(turn) * place.normal.cross(u);
   std::vector<SurfaceHit> exits;
-  object_.triangles().hits(place.position - kLeastThickness * place.normal, -place.normal,
+  object_.triangles().hits(place.position - kMinThickness * place.normal, -place.normal,
                            motion_.widest(), exits);
   std::erase_if(exits, [&](const SurfaceHit& h) {
     return -h.normal.dot(place.normal) < kFlat || object_.is_filled(h.position);
   });
   why = FrameReason::nothing_opposite;
   for (auto exit = exits.rbegin(); exit != exits.rend();
-       ++exit)  // the whole thickness first, then a wall
-    if (auto found = across(place, along, exit->along + kLeastThickness, counters, why)) {
+       ++exit)  // the whole thickness first, then one wall
+    if (auto found = across(place, along, exit->along + kMinThickness, counters, why)) {
       found->grasp.id = id;
       return found;
     }
@@ -157,7 +156,7 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
   return found;
 }
 
-/// What the rays from behind a pad through its area meet first.
+/// Adds the first hits of the rays from behind a pad through its area.
 void PinchSearch::sample(const Pad& pad, const Pose& T_object_pad, std::vector<Place>& places) {
   const Vector3 z = T_object_pad.linear().col(2);
   for (int i = 0; i < kGrid; ++i) {
@@ -173,9 +172,9 @@ void PinchSearch::sample(const Pad& pad, const Pose& T_object_pad, std::vector<P
   }
 }
 
-/// Returns how far a pad must be held back for the surface, 0 where it lies flat; nullopt where it
-/// does not lie or would rest on one side of its middle only. Of the places that touch, those
-/// farthest toward the pad's corners are its contacts.
+/// Returns the distance [m] of a pad from the surface, 0 where it lies flat; nullopt where the pad
+/// finds no support or rests on one side of its middle only. The touching places nearest to the
+/// pad's corners become its contacts.
 std::optional<double> PinchSearch::settle(std::uint32_t finger, const Pose& T_object_pad,
                                           Found& found) {
   const Pad& pad = *hand_geometry_.hand.fingers()[finger].pad;
@@ -183,7 +182,7 @@ std::optional<double> PinchSearch::settle(std::uint32_t finger, const Pose& T_ob
   std::vector<Place> places;
   sample(pad, T_object_pad, places);
   double nearest = kBackOff;
-  Eigen::AlignedBox2d out, resting;  // on the pad: what stands out, and what the pad rests on
+  Eigen::AlignedBox2d out, resting;  // areas on the pad: protruding, supporting
   for (const Place& p : places) {
     nearest = std::min(nearest, p.hit.along);
     if (p.hit.along < kBackOff - kInside) out.extend(p.on_pad);

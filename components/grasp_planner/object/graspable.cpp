@@ -10,9 +10,9 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kDeepInPart = 0.004;  // [m]
+constexpr double kDeepInPart = 0.004;  // [m] depth at which a point counts as inside a part
 
-// Depth of a point inside a shape, negative outside; meshes are not judged.
+// Returns the depth [m] of a point inside a shape, negative outside; -1 for meshes.
 double depth(const Shape& shape, const Vector3& p) {
   if (const auto* s = std::get_if<Sphere>(&shape)) return s->radius - p.norm();
   if (const auto* b = std::get_if<Box>(&shape)) return (0.5 * b->size - p.cwiseAbs()).minCoeff();

@@ -75,8 +75,8 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh,
     cumulative.push_back(area += area_vector(corners(mesh, t)).norm());
   if (!(area > 0)) return {};
   const double step = std::max(settings.step, std::sqrt(area / (0.6 * settings.max_points)));
-  // Candidates: ten for each cell of one step, one per equal share of the area, placed in the
-  // triangle by the R2 sequence.
+  // Candidates: ten per cell of one step, one per equal part of the area, placed in the triangle
+  // by the R2 sequence.
   const auto count = static_cast<std::size_t>(std::ceil(10 * area / (step * step)));
   std::mt19937_64 random(settings.seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -145,7 +145,7 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
   struct Bend {
     Vector3 a, b;
     double angle;
-    Vector3 facing;  // of the two triangles together
+    Vector3 facing;  // mean normal of the two triangles
   };
   std::vector<Bend> bends;
   for (const auto& [edge, users] : edges_of(mesh)) {
@@ -226,7 +226,7 @@ MeshFindings orient(TriangleMesh& mesh) {
   const EdgeMap edges = edges_of(mesh);
   const std::size_t n = mesh.triangles.size();
   std::vector<std::vector<std::pair<std::uint32_t, bool>>> neighbours(
-      n);  // triangle, must one of the two be turned
+      n);  // triangle, whether one of the two must be flipped
   for (const auto& [edge, users] : edges) {
     findings.open_edges += users.size() == 1;
     findings.crowded_edges += users.size() > 2;
@@ -276,7 +276,7 @@ MeshFindings orient(TriangleMesh& mesh) {
     for (const Component& other : components)
       inner = inner ||
               (&other != &c && other.box.contains(c.box) && other.box.volume() > c.box.volume());
-    // An inner shell keeps the orientation most of its triangles came with; all others face
+    // An inner shell keeps the orientation of most of its given triangles; all other shells face
     // outward.
     const bool flip = inner ? 2 * c.as_given < c.triangles.size() : c.volume < 0;
     for (const std::uint32_t t : c.triangles) {

@@ -19,7 +19,7 @@ struct SurfacePoint {
 };
 
 struct SurfaceSettings {
-  double step{0.008};  ///< least distance of two samples on the same side [m]
+  double step{0.008};  ///< min distance of two samples on the same side [m]
   /// The curvature is averaged over a ball of this radius; the fingertip's [m].
   double curvature_radius{0.013};
   std::uint32_t max_points{20000};  ///< the step grows when more would be needed

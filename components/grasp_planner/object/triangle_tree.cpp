@@ -44,7 +44,7 @@ double point_triangle_squared(const Vector3& p, const Vector3& a, const Vector3&
   return (p - k[0] * a - k[1] * b - k[2] * c).squaredNorm();
 }
 
-// Does the segment pass through the triangle?
+// Returns whether the segment passes through the triangle.
 bool crosses(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b,
              const Vector3& c) {
   const Vector3 d = q - p, e1 = b - a, e2 = c - a, h = d.cross(e2);
@@ -67,8 +67,8 @@ double segment_triangle_squared(const Vector3& p, const Vector3& q, const Vector
   return std::min(best, segment_segment_squared(p, q, c, a));
 }
 
-// Lower bound of the squared distance of a segment (centre, half vector, its box) to a box: by
-// boxes, then by the ball around the segment.
+// Returns a lower bound of the squared distance of a segment (centre, half vector, box) to a box,
+// from the boxes and from the ball around the segment.
 double box_bound(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& segment,
                  const Vector3& middle, double half) {
   const double by_boxes = box.squaredExteriorDistance(segment);

@@ -10,19 +10,19 @@ namespace handsel::grasp_planner {
 
 struct CarriedMotion {
   std::vector<Vector> joints;  ///< arm axes at each pose of the path [rad]
-  double room{};               ///< least distance of a joint from its limits on the path [rad]
+  double room{};               ///< min distance of a joint from its limits on the path [rad]
 };
 
 struct CarriedSettings {
-  /// Angles of the elbow on its circle that are tried; it keeps its angle all along the path.
+  /// Number of elbow angles tried; the angle is constant along the path.
   int elbows{24};
   double min_room{0.06};  ///< [rad]
-  /// Of a joint from one pose to the next: more is a jump from branch to branch [rad].
+  /// Max step of a joint between two poses; more is a jump between branches [rad].
   double largest_step{0.5};
 };
 
-/// Poses of the object from `from` over those that follow, straight from each to the next, at most
-/// `step` [m] (or 5 * step [rad]) apart.
+/// Returns poses of the object along straight segments between `corners`, at most `step` [m] (or
+/// 5 * step [rad]) apart.
 std::vector<Pose> path_of_object(const std::vector<Pose>& corners, double step);
 
 /// Returns the motions on which the arm's tip goes through all of these poses without a jump, the

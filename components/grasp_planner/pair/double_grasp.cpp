@@ -13,12 +13,13 @@ namespace {
 
 using Steps = std::vector<std::vector<Pose>>;
 
-// One grasp of a list, made ready for tests against many of the other.
+// One grasp of a list with its hand placed, for tests against many grasps of the other hand.
 struct Placed {
   HandShape::PlacedHand closed;
   Steps T_open;
-  std::vector<HandShape::PlacedHand> way;  // opened, at the grasp and on its way off
-  Vector3 direction{Vector3::Zero()};      // of that way, hand frame
+  std::vector<HandShape::PlacedHand>
+      retreating;                      // opened, from the grasp to the end of the retreat
+  Vector3 direction{Vector3::Zero()};  // unit, of the retreat, hand frame
   bool reached{true};
 };
 
@@ -29,7 +30,7 @@ class Side {
                           settings.p_object_middle, side.also);
     const std::size_t count = taken_.size();
     placed_.resize(count);
-    ways_ = retreat_directions(side.hand_geometry->hand);
+    directions_ = retreat_directions(side.hand_geometry->hand);
     Steps T_closed;
     for (std::size_t i = 0; i < count; ++i) {
       side.hand_geometry->forward(grasp(i).hand_joints, T_closed);
@@ -48,14 +49,15 @@ class Side {
   }
   const Placed& operator[](std::size_t i) const { return placed_[i]; }
 
-  // Whether grasp i, opened, gets past the object and the other hand.
+  // Returns whether hand i, opened, can retreat clear of the object and the other hand.
   bool leaves(std::size_t i, const HandShape::PlacedHand& other) {
     if (!tried_[i]) prepare(i);
     const Placed& p = placed_[i];
-    return !p.way.empty() &&
-           std::none_of(p.way.begin(), p.way.end(), [&](const HandShape::PlacedHand& hand) {
-             return HandShape::hands_touch(hand, other, settings_.retreat_clearance);
-           });
+    return !p.retreating.empty() &&
+           std::none_of(p.retreating.begin(), p.retreating.end(),
+                        [&](const HandShape::PlacedHand& hand) {
+                          return HandShape::hands_touch(hand, other, settings_.retreat_clearance);
+                        });
   }
 
  private:
@@ -63,16 +65,18 @@ class Side {
     tried_[i] = true;
     Placed& p = placed_[i];
     side_.hand_geometry->forward(grasp(i).pregrasp_joints, p.T_open);
-    const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const Vector3& w) {
-      return retreat_free(*side_.hand_geometry, p.T_open, *settings_.passed, grasp(i).T_object_hand,
-                          {w, settings_.stand_off, settings_.retreat_clearance});
-    });
-    if (way == ways_.end()) return;
-    p.direction = *way;
+    const auto direction =
+        std::find_if(directions_.begin(), directions_.end(), [&](const Vector3& w) {
+          return retreat_free(*side_.hand_geometry, p.T_open, *settings_.passed,
+                              grasp(i).T_object_hand,
+                              {w, settings_.stand_off, settings_.retreat_clearance});
+        });
+    if (direction == directions_.end()) return;
+    p.direction = *direction;
     for (double s = 0; s < settings_.stand_off + kSweepStep; s += 2 * kSweepStep) {
       Pose T = grasp(i).T_object_hand;
-      T.translate(Vector3(s * *way));
-      p.way.push_back(side_.hand_geometry->shape.placed(p.T_open, T));
+      T.translate(Vector3(s * *direction));
+      p.retreating.push_back(side_.hand_geometry->shape.placed(p.T_open, T));
     }
   }
 
@@ -81,7 +85,7 @@ class Side {
   std::vector<std::size_t> taken_;
   std::vector<Placed> placed_;
   std::vector<bool> tried_;
-  std::vector<Vector3> ways_;
+  std::vector<Vector3> directions_;
 };
 
 // Maps the values of all double grasps to [0, 1] and adds them to the scores.
@@ -112,13 +116,13 @@ std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, 
   }
   const std::vector<Eigen::Quaterniond> cells = so3_sequence(so3_grid_size(0));
   std::map<std::pair<std::size_t, int>, std::size_t>
-      seen;  // how many came before from the same cell and octant
+      seen;  // grasps before in the same cell and octant
   struct Entry {
     bool is_weak;
     std::size_t before, index;
     auto operator<=>(const Entry&) const = default;
   };
-  std::vector<Entry> order;  // what one hand cannot bear comes last
+  std::vector<Entry> order;  // grasps too weak to bear the object come last
   for (std::size_t i = 0; i < list.grasps.size(); ++i) {
     const Pose& T = list.grasps[i].grasp.T_object_hand;
     const Eigen::Quaterniond q(T.linear());
@@ -152,7 +156,7 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b,
                               const DoubleSettings& settings) {
   Side first(a, settings), second(b, settings);
   DoubleList out;
-  const double most = std::cos(settings.min_opposition);
+  const double max_cosine = std::cos(settings.min_opposition);
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Vector3 wrist = first.wrist(i);
     for (std::size_t k = 0; k < second.size(); ++k) {
@@ -162,7 +166,7 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b,
         continue;
       }
       const double cosine = std::clamp(wrist.dot(second.wrist(k)), -1.0, 1.0);
-      if (cosine > most) {
+      if (cosine > max_cosine) {
         ++out.not_opposed;
         continue;
       }
@@ -209,13 +213,13 @@ std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, co
   IkOptions options;
   options.restarts = 1;
   for (const ListedGrasp& g : list.grasps) {
-    double least = 1;
+    double min_score = 1;
     for (const Pose& T : T_root_object) {
       const auto q = robot.inverse(arm, T * g.grasp.T_object_hand, q_seed, options);
-      least = q ? std::min(least, rest_score_of(robot, arm, *q)) : -1;
+      min_score = q ? std::min(min_score, rest_score_of(robot, arm, *q)) : -1;
       if (!q) break;
     }
-    out.push_back(least);
+    out.push_back(min_score);
   }
   return out;
 }

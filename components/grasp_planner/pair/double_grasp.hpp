@@ -13,10 +13,10 @@ namespace handsel::grasp_planner {
 struct HandSide {
   const HandGeometry* hand_geometry{};  ///< geometry of the hand
   const GraspList* list{};              ///< grasps of the hand on the object
-  /// How naturally the arm reaches each grasp, one a grasp of the list, the higher the better
-  /// (rest_scores_of()); below 0: not at all, such grasps are left out. Empty: not asked.
+  /// Closeness of the arm to its rest configuration, per grasp of the list, best 1
+  /// (rest_scores_of()); below 0: out of reach, excluded. Empty: not evaluated.
   std::vector<double> rest_score{};
-  std::vector<std::size_t> also{};  ///< grasps that are taken whatever the settings say
+  std::vector<std::size_t> also{};  ///< grasps that are always included
 };
 
 struct DoubleGrasp {
@@ -26,18 +26,18 @@ struct DoubleGrasp {
   /// Angle between the wrists' directions, the z axes of the hands [rad]; pi: straight against each
   /// other.
   double opposition{};
-  /// Hand frames: how each can leave or come; 0 when not asked.
+  /// Retreat directions, unit, hand frames; 0 if not evaluated.
   Vector3 retreat_first{Vector3::Zero()}, retreat_second{Vector3::Zero()};
   double score{};  ///< sum of quality and nearness to rest, each normalised over the list
 };
 
 /// Which grasps of a list are paired: the best, or the best of every orientation and side of the
-/// object in turn (own method: what is best of all is at the middle of the object, where there is
-/// no room for a second hand).
+/// object in turn (own method: the best grasps are at the middle of the object and leave no room
+/// for a second hand).
 enum class Taken : std::uint8_t { best, spread };
 
-/// Indices into the list, `count` at most and those of `also`. `p_object_middle`: of the object's
-/// box.
+/// Returns indices into the list, at most `count` and those of `also`. `p_object_middle`: of the
+/// object's box.
 std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken,
                                       const Vector3& p_object_middle,
                                       const std::vector<std::size_t>& also = {});
@@ -49,11 +49,11 @@ struct DoubleSettings {
   double clearance{0.0};                     ///< between the hands [m]
   double palm_clearance{0.0};  ///< between either palm and the other hand, when more [m]
   double min_opposition{0.0};  ///< [rad] for a transfer: wrists opposed by at least this
-  /// For passing the object on: either hand, opened, must be able to come and to leave straight
-  /// over `stand_off`, past the object and the other hand. Needs the object.
+  /// The object of a transfer: either hand, opened, must be able to approach and retreat straight
+  /// over `stand_off`, clear of the object and the other hand. nullptr: not checked.
   const Graspable* passed{};
   double stand_off{0.09};           ///< [m]
-  double retreat_clearance{0.002};  ///< kept on that path [m]
+  double retreat_clearance{0.002};  ///< clearance on that path [m]
 };
 
 struct DoubleList {

@@ -6,8 +6,8 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kGravity = 9.81;      // [m/s^2]
-constexpr double kLeastEffort = 0.05;  // [Nm]
+constexpr double kGravity = 9.81;    // [m/s^2]
+constexpr double kMinEffort = 0.05;  // [Nm] below it no effort is commanded
 
 }  // namespace
 
@@ -23,7 +23,7 @@ std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const V
   for (std::size_t h = 0; h < hands.size(); ++h)
     for (const Contact& c : hands[h].grasp->contacts)
       contacts[h].push_back({c.position, -c.normal, c.friction});
-  // All press with no more than the weakest hand can.
+  // The max normal force of all hands is that of the weakest hand.
   GripForceSettings limits = limits_of(hands.front().hand_geometry->hand, settings);
   for (const BearingHand& h : hands)
     limits.max_normal =
@@ -44,7 +44,7 @@ std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const V
       hand_geometry->chains[c.finger].add_effort(T_hand_step[c.finger], T_hand_object, c.position,
                                                  forces[k], effort);
     }
-    if (effort.allFinite() && effort.cwiseAbs().maxCoeff() >= kLeastEffort)
+    if (effort.allFinite() && effort.cwiseAbs().maxCoeff() >= kMinEffort)
       out[h].effort = std::move(effort);
   }
   return out;

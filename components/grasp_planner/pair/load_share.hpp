@@ -16,24 +16,24 @@ struct BearingHand {
   const Grasp* grasp{};                 ///< its grasp of the load
 };
 
-/// What one of them has to do.
+/// The part of the load that one hand bears.
 struct LoadShare {
   double margin{};  ///< as GripForces::margin; -infinity when its contacts bear nothing [N]
   Vector effort;    ///< of the hand's axes; empty when there is none worth reporting [Nm]
 };
 
-/// The load of an object that is carried in this turn, object frame: its weight is always there,
-/// what `settings.acceleration` exceeds gravity by may come from any side.
+/// Returns the load of an object carried in this orientation, object frame: its weight, and in any
+/// direction the force by which `settings.acceleration` exceeds gravity.
 GripLoad carried_load(double mass, const Eigen::Matrix3d& R_world_object,
                       const GripForceSettings& settings);
 
-/// Returns what each hand has to do, in the order of `hands`. `centre` of the load and its
+/// Returns the part of the load of each hand, in the order of `hands`. `centre` of the load and its
 /// directions: object frame.
 std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const Vector3& centre,
                                   const GripLoad& load, const GripForceSettings& settings);
 
-/// What one hand bears by itself when the others see to it that nothing turns: this part of the
-/// load, in the middle of its contacts.
+/// Returns what one hand bears of the fraction `part` of the load, applied at the middle of its
+/// contacts; the other hands prevent rotation.
 LoadShare bear_part(const BearingHand& hand, double part, const GripLoad& load,
                     const GripForceSettings& settings);
 

@@ -9,24 +9,24 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kTiltStep = std::numbers::pi / 12;
-constexpr int kTiltWays = 4;
-constexpr double kDifferent = 0.5;  // [rad] between two partners' hands
-constexpr std::size_t kPlaced =
-    120;  // best double grasps of one robot grasp that partners are picked from
+constexpr double kTiltStep = std::numbers::pi / 12;  // [rad]
+constexpr int kTiltAxes = 4;                         // tilt axes tried
+constexpr double kDifferent = 0.5;  // [rad] min rotation between the hands of two partners
+// Best double grasps of one robot grasp from which partners are selected.
+constexpr std::size_t kPlaced = 120;
 
 double promise_of(const TransferPartner& p) {
   return 0.6 * p.opposition / std::numbers::pi + 0.4 * p.quality;
 }
 
-// Ways to tilt the object about level axes; one when it stays upright.
+// Returns rotations of the object about horizontal axes; the identity without tilt.
 std::vector<Eigen::Matrix3d> tilted(double tilt) {
   if (tilt <= 0) return {Eigen::Matrix3d::Identity()};
   std::vector<Eigen::Matrix3d> out;
-  for (int k = 0; k < kTiltWays; ++k) {
-    const double way = 2 * std::numbers::pi * k / kTiltWays;
-    out.push_back(
-        Eigen::AngleAxisd(tilt, Vector3(std::cos(way), std::sin(way), 0)).toRotationMatrix());
+  for (int k = 0; k < kTiltAxes; ++k) {
+    const double heading = 2 * std::numbers::pi * k / kTiltAxes;
+    out.push_back(Eigen::AngleAxisd(tilt, Vector3(std::cos(heading), std::sin(heading), 0))
+                      .toRotationMatrix());
   }
   return out;
 }
@@ -86,8 +86,8 @@ TransferPlaces::TransferPlaces(const Person& person, const HumanArm& arm,
   to_robot_ = p_world_robot - chest_;
   to_robot_.z() = 0;
   to_robot_ = to_robot_.norm() > 1e-3 ? Vector3(to_robot_.normalized()) : Vector3(Vector3::UnitX());
-  // Before the person, the arm bent: from the middle of the chest out to the shoulder, elbow to
-  // chest high.
+  // Places before the person within reach of a bent arm: from the middle of the chest to the
+  // shoulder, at heights from elbow to chest.
   const Vector3 across = Vector3::UnitZ().cross(to_robot_);
   const double side = across.dot(arm.outward) >= 0 ? 1.0 : -1.0;
   for (const double ahead : {0.62, 0.54, 0.7}) {
@@ -107,8 +107,8 @@ std::vector<double> tilt_levels(const TransferSettings& s) {
   return out;
 }
 
-/// The best of every turn first: where the robot's arm does not get to in one, it seldom does a
-/// little beside. Poses of one turn are neighbours in `found`.
+/// Sorts the best pose of each rotation first: where the robot does not reach one, it seldom
+/// reaches its neighbours. Poses of one rotation are adjacent in `found`.
 static std::vector<TransferPose> best_of_turns_first(std::vector<TransferPose> found) {
   const auto better = [](const TransferPose& x, const TransferPose& y) {
     return x.score > y.score;
@@ -135,19 +135,19 @@ std::optional<TransferPose> TransferPlaces::best(
                                               const Pose& T_world_hand)>& reach,
     int max_reaches) const {
   const TransferSettings& s = table.settings();
-  const double least_cosine = std::cos(s.max_aim);
+  const double min_cosine = std::cos(s.max_aim);
   struct Held {
     Eigen::Matrix3d R;
     const TransferPartner* partner;
   };
-  // Whether the hand of a partner at a place would do; the pose without the arm's joints.
-  const auto judge = [&](const Held& held, const Vector3& place,
-                         double max_strain) -> std::optional<TransferPose> {
-    Vector3 way = place - chest_;
-    way.z() = 0;
+  // Returns the pose, without arm joints, if the partner's hand at the place is feasible.
+  const auto evaluate = [&](const Held& held, const Vector3& place,
+                            double max_strain) -> std::optional<TransferPose> {
+    Vector3 heading = place - chest_;
+    heading.z() = 0;
     const double cosine =
-        (held.R * held.partner->T_object_wrist.linear().col(2)).dot(way.normalized());
-    if (cosine < least_cosine) return std::nullopt;
+        (held.R * held.partner->T_object_wrist.linear().col(2)).dot(heading.normalized());
+    if (cosine < min_cosine) return std::nullopt;
     TransferPose pose;
     pose.T_world_object.linear() = held.R;
     pose.T_world_object.translation() = place - held.R * p_object_middle_;
@@ -171,15 +171,15 @@ std::optional<TransferPose> TransferPlaces::best(
                       R_tilt * R_world_object_);
   }
   for (const Eigen::Matrix3d& R : turns) {
-    std::vector<Held> likely;  // what is hopeless in the middle is so everywhere
+    std::vector<Held> likely;  // partners feasible at the first place
     for (const TransferPartner& partner : table.partners(robot_grasp)) {
-      if (judge({R, &partner}, places_.front(), 1.3 * s.max_strain))
+      if (evaluate({R, &partner}, places_.front(), 1.3 * s.max_strain))
         likely.push_back({R, &partner});
     }
     for (const Vector3& place : places_) {
       std::optional<TransferPose> at_place;
       for (const Held& held : likely) {
-        auto pose = judge(held, place, s.max_strain);
+        auto pose = evaluate(held, place, s.max_strain);
         if (pose && (!at_place || pose->score > at_place->score)) at_place = std::move(pose);
       }
       if (at_place) found.push_back(std::move(*at_place));

@@ -16,17 +16,17 @@ struct TransferSettings {
   double palm_clearance{0.01};   ///< between either palm and the other hand [m]
   double min_opposition{2.1};    ///< angle of the wrists, more than 120 degrees [rad]
   std::size_t max_of_each{400};  ///< best grasps taken from each list
-  /// Grasps of the person kept for each of the robot, clearly different ones.
+  /// Max distinct grasps of the person per grasp of the robot.
   std::size_t partners{10};
   /// Strain of wrist and arm of the person; beyond it a pose is left out.
   double max_strain{kComfortableStrain};
   /// Angle between the person's hand and the level direction from their body to the object [rad].
   double max_aim{1.05};
   int headings{24};    ///< of the object
-  double max_tilt{0};  ///< it may be tilted by up to this [rad]; upright is better
+  double max_tilt{0};  ///< max tilt of the object [rad]; upright is preferred
 };
 
-/// What a person's hand could do with the object in one grasp of the robot.
+/// A grasp of the person that is compatible with one grasp of the robot.
 struct TransferPartner {
   std::size_t human{};                    ///< index into the person's list
   std::uint64_t id{};                     ///< of the person's grasp

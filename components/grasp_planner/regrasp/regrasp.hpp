@@ -25,17 +25,17 @@ struct RegraspArm {
   const GraspList* list{};  ///< grasps of that hand on the object; must outlive this struct
 };
 
-/// One hand holds the object, or it stands somewhere.
+/// The object held by one hand, or at rest on a support.
 struct ObjectState {
-  int arm{-1};                       ///< index of the arm; -1: it stands
+  int arm{-1};                       ///< index of the arm; -1: on a support
   std::optional<std::size_t> grasp;  ///< index into the arm's list; as a goal it may be left open
-  Pose T_world_object{Pose::Identity()};  ///< where it stands
+  Pose T_world_object{Pose::Identity()};  ///< pose on the support
 };
 
 struct RegraspTask {
   ObjectState start, goal;        ///< where the object is, and where it is to be
-  std::vector<Pose> other_goals;  ///< T_world_object: where it may stand instead of at the goal
-  std::vector<Pose> placements;   ///< T_world_object: where else it can be put down
+  std::vector<Pose> other_goals;  ///< T_world_object: alternatives to the goal
+  std::vector<Pose> placements;   ///< T_world_object: intermediate placements
 };
 
 enum class RegraspStepKind { pick, pass, place, join };
@@ -47,8 +47,8 @@ struct RegraspStep {
   std::size_t grasp_from{}, grasp_to{};   ///< indices into the lists of these arms
   Pose T_world_object{Pose::Identity()};  ///< where the object is during the step
   Vector q;                               ///< all hands that touch the object closed on it
-  Vector before;  ///< pick, pass, join: the hand that comes, opened, off the object
-  /// Pass, place: the hand that went, opened, off the object; both when two put it down.
+  Vector before;  ///< pick, pass, join: the taking hand, opened, at its stand-off
+  /// Pass, place: the releasing hand, opened, at its stand-off; both if two put the object down.
   Vector after;
 };
 
@@ -56,10 +56,10 @@ struct RegraspSettings {
   /// Grasps of each list that are considered, spread over all orientations.
   std::size_t max_of_each{200};
   double clearance{0.004};  ///< between the hands [m]
-  /// What is held may lie this far from its planned place when the other hand comes [m].
+  /// Max error of a held object's position when the other hand takes it [m].
   double slack{0.005};
-  double stand_off{0.09};  ///< of a hand before it comes and after it went [m]
-  double lift{0.08};  ///< what is picked up or put down must be able to go this far straight up [m]
+  double stand_off{0.09};   ///< distance of a hand before its approach and after its retreat [m]
+  double lift{0.08};        ///< straight vertical motion after a pick and before a place [m]
   double max_turn{0.9};     ///< max motion of an arm axis on a straight path [rad]
   int handover_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
   /// The search ends when so many picks, passes and places were checked.

@@ -8,9 +8,10 @@
 namespace handsel::grasp_planner {
 namespace {
 
-// [N] of Grasp::margin: weaker grasps are taken only where firmer ones lead nowhere.
+// [N] of Grasp::margin: weaker grasps are used only where firmer ones give no plan.
 constexpr std::array kMinMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
-constexpr std::size_t kFewest = 3;  // steps from one hand by the other to its place
+constexpr std::size_t kMinSteps =
+    3;  // min steps of a plan that passes the object from hand to hand
 
 RegraspKind kind_of(RegraspStepKind kind) {
   switch (kind) {
@@ -105,7 +106,7 @@ namespace {
 /// The grasps of all arms on the object.
 struct ListedGrasps {
   std::vector<std::shared_ptr<const CachedGrasps>> pages;
-  std::vector<GraspList> whole;  // one an arm
+  std::vector<GraspList> whole;  // one per arm
 };
 
 void answer_together(const RegraspRequest& request, const RegraspStage& stage,
@@ -154,12 +155,12 @@ void answer_one_after_the_other(const RegraspRequest& request, const RegraspStag
     planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan(task, cancelled);
     answer.checked += plan.checked;
-    // A firm grip is not worth handing the object to and fro.
+    // A plan with weaker grasps replaces one with firmer grasps only if it has fewer steps.
     if (!plan.solved ? !answer.reply.solved
                      : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
       write(plan, sides, answer.reply);
     }
-    const bool better_by_weaker = min_margin >= 0 && answer.reply.steps.size() > kFewest;
+    const bool better_by_weaker = min_margin >= 0 && answer.reply.steps.size() > kMinSteps;
     if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;
   }
 }

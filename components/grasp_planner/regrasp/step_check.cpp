@@ -11,8 +11,8 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kMotionStep = 0.04;         // [rad]
-constexpr double kRetreatClearance = 0.005;  // [m] between an opened hand and the object
+constexpr double kMotionStep = 0.04;          // [rad] between two checked states
+constexpr double kRetreatClearance = 0.005;   // [m] between an opened hand and the object
 
 using FingerPoses = std::vector<std::vector<Pose>>;
 
@@ -102,14 +102,14 @@ std::optional<Vector> StepCheck::straight(int arm, std::size_t i, const Pose& T_
   const Vector opened = grasp(arm, i).pregrasp_joints, from = with(q, arm, *off, opened),
                to = with(q, arm, arm_q, opened);
   if (!world_.check_motion(from, to, kMotionStep).free) return std::nullopt;
-  // A straight line of the joints bends in space.
+  // A straight line in configuration space is curved in Cartesian space.
   for (const double ratio : {0.25, 0.5, 0.75, 0.9})
     if (!clear_of_object(from + ratio * (to - from), T_world_object, 1 - arm)) return std::nullopt;
   return from;
 }
 
 std::optional<double> StepCheck::strain(int arm, std::size_t i, const Pose& T_world_object) const {
-  constexpr double kComfortable = 0.7;  // of the arm's length
+  constexpr double kComfortable = 0.7;  // fraction of the arm's length
   const auto a = static_cast<std::size_t>(arm);
   const Pose T_world_hand = T_world_object * grasp(arm, i).T_object_hand;
   const Vector3 away = T_world_hand.translation() - p_shoulders_[a];
@@ -229,7 +229,7 @@ CheckedStep StepCheck::check_pass(const Pass& pass) {
       reason = "the arms would collide wherever both reach it";
       continue;
     }
-    // It is brought there while the other arm rests, whose hand opens then.
+    // The object arrives while the other arm rests; then the other hand opens.
     const Vector closed = with(rest, from, *q_from, g.hand_joints);
     const Vector opened = RobotModel::with(closed, *arms_[static_cast<std::size_t>(to)].arm.fingers,
                                            h.pregrasp_joints);
@@ -266,12 +266,12 @@ bool StepCheck::tolerates_slack(int from, int to, const RegraspStep& step) {
   const auto arm_of = [](const Vector& q, const Manipulator& m) {
     return RobotModel::part(q, *m.arm);
   };
-  // Where a hand is open the other is closed on the object.
-  const Vector came =
+  // While one hand is open, the other is closed on the object.
+  const Vector at_grasp =
       with(step.before, to, arm_of(step.q, mover), RobotModel::part(step.before, *mover.fingers));
-  const Vector left =
+  const Vector released =
       with(step.after, from, arm_of(step.q, holder), RobotModel::part(step.after, *holder.fingers));
-  for (const Vector& q : {step.before, came, step.q, left, step.after}) {
+  for (const Vector& q : {step.before, at_grasp, step.q, released, step.after}) {
     const Pose T_world_hand = T_world_base_ * robot_.link_pose(q, mover.palm);
     for (int axis = 0; axis < 3; ++axis) {
       for (const double by : {-settings_.slack, settings_.slack}) {

@@ -42,19 +42,19 @@ class StepCheck {
   Vector with(const Vector& q, int arm, const Vector& arm_q, const Vector& hand_q) const;
   /// Returns whether the robot collides with nothing but, perhaps, the object.
   bool is_free(const Vector& q) { return world_.is_free(q); }
-  /// Returns whether all of the robot but the hands named stays off the object. `holding`, `other`:
-  /// indices of arms; -1: none.
+  /// Returns whether the robot, the named hands excluded, is clear of the object. `holding`,
+  /// `other`: indices of arms; -1: none.
   bool clear_of_object(const Vector& q, const Pose& T_world_object, int holding, int other = -1);
-  /// Returns where the hand, opened, stands off the object before it comes, or after it went; the
-  /// other axes as in `q`. nullopt: no straight path is free.
+  /// Returns the configuration with the opened hand at its stand-off, before an approach or after a
+  /// retreat; the other axes as in `q`. nullopt: no straight path is free.
   std::optional<Vector> stand_off(int arm, std::size_t i, const Pose& T_world_object,
                                   const Vector& q, const Vector& arm_q);
 
-  /// Returns how much speaks against the arm's reaching a grasp of the object at this pose, [0, 1]:
-  /// the hand points back toward the shoulder or is as far away as the arm is long. nullopt:
-  /// farther. Takes 1 us where an inverse solution takes milliseconds. Own method.
+  /// Returns a cost, [0, 1], that estimates how unlikely the arm reaches a grasp of the object at
+  /// this pose: it grows as the hand points back to the shoulder and as the arm stretches. nullopt:
+  /// out of reach. Takes 1 us; an inverse solution takes milliseconds. Own method.
   std::optional<double> strain(int arm, std::size_t i, const Pose& T_world_object) const;
-  /// Checks picking the object up from where it stands, or, backwards, putting it down there.
+  /// Checks a pick of the object from its support, or, in reverse, a place there.
   CheckedStep check_pick(int arm, std::size_t i, const Pose& T_world_object);
   /// A pass from one hand to the other.
   struct Pass {

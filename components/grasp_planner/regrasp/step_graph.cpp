@@ -7,17 +7,19 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kQualityCost = 0.01;  // of a step: grasps decide between sequences of equal length
-constexpr double kWeakCost =
-    0.05;  // of a step whose grip force does not hold wherever the load pulls
-constexpr double kStrainCost = 0.03;  // of a step that is hardly possible: those are checked last
-constexpr double kWeakest = 10;       // below a margin of less than this all are alike [N]
+// Weight of grasp quality per step: decides between sequences of equal length.
+constexpr double kQualityCost = 0.01;
+// Max cost of a step whose grip force does not bear the load in every direction.
+constexpr double kWeakCost = 0.05;
+// Max cost of a strained step: strained steps are checked last.
+constexpr double kStrainCost = 0.03;
+constexpr double kMaxWeakness = 10;  // [N] negative margin at which kWeakCost is reached
 
 }  // namespace
 
 void StepGraph::add(const GraphNode& from, const GraphNode& to, double quality, double margin,
                     double strain, std::size_t pair) {
-  const double weak = std::clamp(-margin / kWeakest, 0.0, 1.0);
+  const double weak = std::clamp(-margin / kMaxWeakness, 0.0, 1.0);
   const double cost = 1 + kQualityCost * (1 - quality) + kWeakCost * weak + kStrainCost * strain;
   edges_[from].push_back({to, cost, pair});
 }

@@ -9,9 +9,9 @@
 
 namespace handsel::grasp_planner {
 
-/// A state of the search: the object held, or standing in one of the places of the task.
+/// A state of the search: the object held, or at rest at one of the places of the task.
 struct GraphNode {
-  int arm{-1};          ///< index of the arm that holds the object; -1: it stands
+  int arm{-1};          ///< index of the arm that holds the object; -1: on a support
   std::size_t index{};  ///< of the grasp in the list of the arm, or of the place
   auto operator<=>(const GraphNode&) const = default;
 };
@@ -20,7 +20,7 @@ struct GraphNode {
 class StepGraph {
  public:
   /// Adds a step. `quality`: of its grasps, [0, 1]. `margin`: the smallest of the grasps that it
-  /// leads from or to [N]. `strain`: what speaks against its being possible, [0, 1]. `pair`: of a
+  /// leads from or to [N]. `strain`: StepCheck::strain(), [0, 1]. `pair`: of a
   /// pass: index of the pair of grasps.
   void add(const GraphNode& from, const GraphNode& to, double quality, double margin,
            double strain = 0, std::size_t pair = 0);

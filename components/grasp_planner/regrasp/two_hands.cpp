@@ -10,10 +10,10 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kPathStep = 0.03;        // [m] between the poses of what two hands carry
-constexpr std::size_t kMotionsTried = 5;  // of each arm
+constexpr double kPathStep = 0.03;        // [m] between two poses of the carried object
+constexpr std::size_t kMotionsTried = 5;  // motions tried per arm
 
-/// Up by `lift`, straight over and down.
+/// Returns the path of the object: up by `lift` [m], straight across and down.
 std::vector<Pose> carried_over(const Pose& T_start, const Pose& T_goal, double lift) {
   const auto raised = [&](Pose T) {
     T.translation().z() += lift;
@@ -38,8 +38,8 @@ class TwoHandSearch {
   StepCheck& check_;
   GripLoad load_;
   std::vector<Pose> T_world_path_;  // of the object
-  // By arm: grasps that bear half of the load and by which the arm follows the path, their indices
-  // in the list of the arm, and the motions of the arm by index.
+  // By arm: grasps that bear half of the load and with which the arm follows the path, their
+  // indices in the list of the arm, and the motions of the arm by index.
   std::array<GraspList, 2> reached_;
   std::array<std::vector<std::size_t>, 2> index_;
   std::array<std::map<std::size_t, std::vector<CarriedMotion>>, 2> paths_;
