@@ -88,7 +88,7 @@ LeftOut keep_lowest(std::vector<T>& items, std::size_t max, RankOf&& rank) {
   return out;
 }
 
-/// Keeps the people nearest to the arm. Nobody left out is nearer than anybody kept.
+/// Keeps the people nearest to the arm.
 template <class SomePerson>
 LeftOut keep_nearest(std::vector<SomePerson>& people, std::size_t max, const Coverage& reach) {
   return keep_lowest(people, max, [&](const SomePerson& p) {

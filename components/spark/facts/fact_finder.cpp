@@ -185,7 +185,7 @@ void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k,
 }
 
 Candidate FactFinder::reach_fact(const Scene& scene, const SceneObject& object) const {
-  // Of the arm with the min ratio of distance and length.
+  // Values of the arm with the min ratio of distance to length.
   double distance_to_shoulder = 0, length = 0;
   for (const ArmReach& arm : arms_) {
     const Vector3 p_shoulder =

@@ -8,16 +8,16 @@
 namespace handsel::spark {
 namespace {
 
-constexpr std::size_t kMaxReports = 32;     // remembered
-constexpr std::size_t kMaxOtherRobots = 4;  // bound of HumanState.robots
+constexpr std::size_t kMaxReports = 32;     // max number of stored reports
+constexpr std::size_t kMaxOtherRobots = 4;  // max length of HumanState.robots
 
 /// Returns the distance of the nearest part to the axis of the arm [m].
 double distance_of(const OtherRobot& robot, const Coverage& reach) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const MovingPart& part : robot.parts)
-    least = std::min(least, distance_to_arm(0.5 * (part.a + part.b), reach) -
-                                0.5 * (part.b - part.a).norm() - part.radius);
-  return least;
+    min_distance = std::min(min_distance, distance_to_arm(0.5 * (part.a + part.b), reach) -
+                                              0.5 * (part.b - part.a).norm() - part.radius);
+  return min_distance;
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ std::vector<OtherRobot> OtherRobots::robots(TimePoint now, const Coverage& reach
   std::vector<std::pair<double, OtherRobot>> found;
   for (const auto& [name, report] : reports_) {
     OtherRobot robot{name, report.parts, std::max(0.0, to_seconds(now - report.seen))};
-    // What a robot does after it fell silent is not known.
+    // The motion of a silent robot is unknown beyond this time.
     const double ahead = std::min(robot.age, settings_.robot_ahead);
     for (MovingPart& part : robot.parts) {
       part.a += ahead * part.velocity_a;

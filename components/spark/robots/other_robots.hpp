@@ -1,4 +1,4 @@
-// The other robots around, from what they report about themselves. Pure. Own method.
+// Tracks the other robots from their own reports. Pure. Own method.
 #pragma once
 
 #include <map>
@@ -12,18 +12,16 @@
 
 namespace handsel::spark {
 
-/// A robot that is silent is taken to stand where it was reported last: it stays an obstacle.
+/// Other robots as obstacles; a silent robot remains one at its last reported place.
 class OtherRobots {
  public:
   /// `own_name`: reports under this name are those of the robot itself.
   OtherRobots(const settings::SparkSettings& settings, std::string own_name);
 
-  /// Takes a report. Older ones than the last, those without parts, and those of the robot itself
-  /// change nothing.
+  /// Takes a report; ignores one older than the last, without parts, or of the own robot.
   void observe(const RobotReport& report, TimePoint seen);
-  /// Returns the other robots as they are expected to be now, the nearest to the arm first: their
-  /// parts are moved on for at most robot_ahead and larger by robot_margin. Writes how many were
-  /// left out, when given.
+  /// Returns the other robots extrapolated to `now`, the nearest to the arm first: parts move for
+  /// at most robot_ahead [s] and grow by robot_margin [m]. Counts omitted robots in `left_out`.
   std::vector<OtherRobot> robots(TimePoint now, const Coverage& reach,
                                  LeftOut* left_out = nullptr) const;
   /// Returns one sentence about the robots that are silent for longer than robot_silent_after;

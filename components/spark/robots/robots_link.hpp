@@ -18,7 +18,7 @@ class RobotsLink {
   RobotsLink(Bus& bus, const settings::SparkSettings& settings,
              std::shared_ptr<const RobotModel> robot, const std::string& name);
 
-  /// Takes the state of the own robot; one of another number of axes changes nothing.
+  /// Takes the state of the own robot; ignores one with another number of axes.
   void update(const RobotState& state);
   /// Adds the other robots, as they are now, to the people.
   void add_to(HumanState& people, TimePoint now, const Coverage& reach) const;
@@ -32,7 +32,7 @@ class RobotsLink {
   OtherRobots others_;
   RobotVolume volume_;
   RobotReport report_;
-  RobotState state_;  // of the own robot; no position: not known yet
+  RobotState state_;  // of the own robot; without positions: unknown
   double period_{};   // of publishing [s]
   TimePoint published_{};
   std::unique_ptr<Publisher<RobotReport>> out_;

@@ -179,7 +179,7 @@ void HolderAssignment::assign(ObjectTrack& track) const {
   };
   double min_distance = in_.settings.near_distance;
   for (const auto& person : in_.people.people) {
-    if (!object.grips.empty()) break;  // nobody grips it
+    if (!object.grips.empty()) break;  // the rest applies only without measured grips
     for (const char* hand : {"l_hand", "r_hand"}) {
       const double distance = distance_of(joint_of(person, hand).position);
       if (distance > min_distance) continue;
