@@ -96,7 +96,7 @@ std::optional<DurableState> StateStore::read(std::uint64_t revision, Stamp now) 
 
 DurableState StateStore::restore(const DurableState& fresh, Stamp now) const {
   DurableState state = read(fresh.safety.revision, now).value_or(fresh);
-  // A state that cannot be written now could not be written later either.
+  // Checks at start that the state can be written.
   if (const std::string why = save(state, now); !why.empty()) {
     std::vector<Person> lost = std::move(state.safety.lost);
     state = unknown_state(std::max(fresh.safety.revision, state.safety.revision + 1), why);

@@ -54,7 +54,7 @@ class Search {
   struct Item {
     enum class Kind { call, all, one } kind{Kind::call};
     Call call;                   // index and whether it is an action; its arguments are `frame`
-    const CompiledStep* step{};  // of all and one
+    const CompiledStep* step{};  // for all and one
     std::shared_ptr<const Frame> frame;
     std::uint32_t depth{};
     double min_cost{};
@@ -64,8 +64,8 @@ class Search {
   struct Link {
     Item item;
     Agenda rest;
-    double min_cost;     // of all of it
-    std::uint64_t hash;  // of all of it
+    double min_cost;     // of the item and the rest
+    std::uint64_t hash;  // of the item and the rest
   };
 
   Agenda push(Item item, const Agenda& rest) const {
@@ -216,8 +216,8 @@ class Search {
   /// Tests that bind the variables of a method in one state.
   struct BindingProblem {
     const std::vector<Test>& tests;      // of the method or of one of its steps
-    const CompiledMethod& method;        // whose variables the frame holds
-    const State& state;                  // in which literals are looked up
+    const CompiledMethod& method;        // its variables are in the frame
+    const State& state;                  // evaluates the literals
     const std::function<void()>& found;  // called for every binding
   };
 
@@ -339,8 +339,8 @@ class Search {
   bool too_deep_{false};
   std::string blame_;
   std::size_t blame_at_{0};
-  std::string mismatch_;        // why the method looked at does not fit
-  std::string* here_{nullptr};  // first reason inside the instance that might be left out
+  std::string mismatch_;        // why the present method is not applicable
+  std::string* here_{nullptr};  // first reason inside the instance that may be skipped
   Plan best_;
 };
 

@@ -19,7 +19,7 @@ struct PlannedAction {
   std::vector<std::string> args;       ///< of the domain's action
   double cost{};                       ///< with extra costs in the state of the plan
   std::string text() const;            ///< "give mug to anna"
-  /// Returns whether the object is to stand on a surface at the end, by one hand or another.
+  /// Returns whether the action ends with the object on a surface.
   bool puts_down() const {
     return kind == ActionKind::place || (kind == ActionKind::regrasp && !surface.empty());
   }
@@ -42,28 +42,28 @@ struct Plan {
   bool found{false};                   ///< true: `actions` carry out the task
   std::vector<PlannedAction> actions;  ///< in order; none: nothing has to be done
   std::vector<PlanLine> tree;          ///< depth first; the first line is the goal
-  double cost{};                       ///< of methods, actions and what is skipped
-  bool proven{false};                  ///< nothing cheaper exists; else the search was cut short
+  double cost{};                       ///< sum of methods, actions and skipped lines
+  bool proven{false};                  ///< true: minimal cost; false: the search reached a limit
   std::uint64_t nodes{};               ///< states expanded
-  std::string reason;                  ///< why there is none, one sentence for people
+  std::string reason;                  ///< why no plan was found, one sentence for people
 };
 
-/// What it leaves out, and why: "clear box away: box is out of the robot's reach; ..."; empty:
-/// nothing.
+/// Returns the skipped lines with reasons, such as "clear box away: box is out of the robot's
+/// reach; ..."; empty: none.
 std::string left_out(const Plan& plan);
 
 /// Limits of the search.
 struct PlanLimits {
-  std::uint64_t nodes{4000};  ///< largest number of states expanded
-  std::uint32_t depth{64};    ///< largest depth of decomposition
+  std::uint64_t nodes{4000};  ///< max number of expanded states
+  std::uint32_t depth{64};    ///< max depth of decomposition
 };
 
-/// What an action must not be tried again for, by its text.
+/// Reasons why actions are forbidden, by the text of the action.
 using Forbidden = std::map<std::string, std::string>;
 
-/// Branch and bound: methods and bindings cheapest first, by their cost and a lower bound of
-/// what they lead to; an alternative that costs as much as the best one found is left. The same
-/// question has the same answer. `args`: of the task, "-" = left out.
+/// Plans by branch and bound: methods and bindings in order of cost plus a lower bound of the
+/// rest; prunes an alternative that costs at least as much as the best plan. Deterministic.
+/// `args`: of the task, "-" = omitted.
 Plan make_plan(const Domain& domain, const World& world, int task,
                const std::vector<std::string>& args, const Forbidden& forbidden,
                const PlanLimits& limits);

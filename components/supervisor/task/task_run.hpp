@@ -28,8 +28,8 @@ class TaskRun {
           const TaskGoal& goal, TimePoint now);
 
   enum class Start { begun, refused, unsure };
-  /// Evaluates the goal and makes the first plan. `unsure`: what is named is not seen yet, or not
-  /// as it would have to be; `status().reason` says what.
+  /// Evaluates the goal and makes the first plan. `unsure`: something named in the goal is not
+  /// observed yet or not in the required state; `status().reason` names it.
   Start start(TimePoint now);
 
   /// Runs one cycle: follows the running action, plans again, sends the next action. `missing`:
