@@ -35,15 +35,15 @@ PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<P
         }
       }
       options.random_seed = random.bits();
-      const std::optional<Vector> posture = robot.inverse(group, T, q, options);
-      if (!posture) continue;
+      const std::optional<Vector> candidate = robot.inverse(group, T, q, options);
+      if (!candidate) continue;
       const auto same = [&](const Vector& other) {
-        return (other - *posture).cwiseAbs().maxCoeff() < kSame;
+        return (other - *candidate).cwiseAbs().maxCoeff() < kSame;
       };
-      if (std::none_of(of_pose.begin(), of_pose.end(), same)) of_pose.push_back(*posture);
+      if (std::none_of(of_pose.begin(), of_pose.end(), same)) of_pose.push_back(*candidate);
     }
-    for (Vector& posture : of_pose) {
-      found.goals.push_back(std::move(posture));
+    for (Vector& candidate : of_pose) {
+      found.goals.push_back(std::move(candidate));
       found.pose.push_back(i);
     }
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMaxTilt = 0.02;  // max tilt of a level platform [rad]
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);  // period of layer checks
-constexpr Duration kLeastModelled = std::chrono::milliseconds(2);
+constexpr Duration kMinModelled = std::chrono::milliseconds(2);   // min modelled planning time
 using settings::read_trajectory_planner_settings;
 
 TrajectoryReply refusal(const RequestId& id, const std::string& reason) {
@@ -137,7 +137,7 @@ void Node::start(const TrajectoryRequest& request) {
         const Group* group = robot.group(work->request.group);
         if (group != nullptr) cost.set_moving_axes(group->axes);
         work->result = plan(robot, world, cost, work->around, work->request, settings_);
-        return kLeastModelled + check_time_ * static_cast<Duration::rep>(work->result.checks);
+        return kMinModelled + check_time_ * static_cast<Duration::rep>(work->result.checks);
       },
       [this, work] { answer(work->result.reply); });
 }

@@ -87,11 +87,11 @@ bool CartesianPlanning::corner_free(const Trajectory& corner) const {
   }
   const double lasts = corner.duration();
   const Vector& at = motion_.path.nodes_[node].active;
-  double middle = 0, least = std::numeric_limits<double>::infinity();
+  double middle = 0, min_distance = std::numeric_limits<double>::infinity();
   const int parts = std::max(8, static_cast<int>(std::ceil(lasts / (8 * settings_.period))));
   for (int k = 0; k <= parts; ++k)
-    if (const double d = (corner.at(lasts * k / parts).position - at).norm(); d < least) {
-      least = d;
+    if (const double d = (corner.at(lasts * k / parts).position - at).norm(); d < min_distance) {
+      min_distance = d;
       middle = lasts * k / parts;
     }
   for (const double end : {0.0, lasts}) {
@@ -124,11 +124,11 @@ std::size_t CartesianPlanning::node_of(const Trajectory& corner) const {
     return (x - nodes[segment].active - factor * along).norm();
   };
   std::size_t best = 0;
-  double least = 1e-5;
+  double min_distance = 1e-5;
   for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
     if (const double d = distance_to_segment(begin, k - 1) + distance_to_segment(end, k);
-        d < least) {
-      least = d;
+        d < min_distance) {
+      min_distance = d;
       best = k;
     }
   return best;

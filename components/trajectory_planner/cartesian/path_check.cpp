@@ -35,19 +35,19 @@ std::size_t first_touching(CollisionWorld& world, const std::vector<Vector>& con
     return std::nullopt;
   };
   for (std::size_t begin = 0; begin < configurations.size();) {
-    Vector least = configurations[begin], bound = least;
+    Vector lower_bound = configurations[begin], upper_bound = lower_bound;
     std::size_t end = begin;
     while (end + 1 < configurations.size()) {
-      const Vector lower = least.cwiseMin(configurations[end + 1]),
-                   upper = bound.cwiseMax(configurations[end + 1]);
+      const Vector lower = lower_bound.cwiseMin(configurations[end + 1]),
+                   upper = upper_bound.cwiseMax(configurations[end + 1]);
       if (end > begin && (upper - lower).maxCoeff() > step) break;
-      least = lower;
-      bound = upper;
+      lower_bound = lower;
+      upper_bound = upper;
       ++end;
     }
     runs.push_back({begin, end});
-    low.push_back(least);
-    high.push_back(bound);
+    low.push_back(lower_bound);
+    high.push_back(upper_bound);
     begin = end > begin && end + 1 < configurations.size() ? end : configurations.size();
     if (runs.size() < CollisionWorld::kMaxBoxes && begin < configurations.size()) continue;
     if (const auto touching = check()) return *touching;
