@@ -5,9 +5,9 @@
 namespace handsel::sim {
 
 namespace {
-constexpr double kLifted = 0.10;        // by the robot that gives [m]
-constexpr double kShared = 0.2 - 1e-9;  // both have hold of it [s]
-constexpr double kAlone = 1.0 - 1e-9;   // then the receiver has the object alone [s]
+constexpr double kLifted = 0.10;        // min lift by the giving robot [m]
+constexpr double kShared = 0.2 - 1e-9;  // min time in which both hold the object [s]
+constexpr double kAlone = 1.0 - 1e-9;   // min time in which the receiver then holds it alone [s]
 }  // namespace
 
 void HandoverOracle::observe(const ObjectSituation& now, double dt) {

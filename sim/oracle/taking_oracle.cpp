@@ -58,11 +58,11 @@ std::optional<Vector3> long_axis(const Taker& taker) {
   Eigen::AlignedBox3d box;
   for (const Vector3& vertex : taker.object->mesh.vertices) box.extend(vertex);
   Vector3 size = box.sizes();
-  Eigen::Index longest = 0;
-  const double length = size.maxCoeff(&longest);
-  size[longest] = 0;
+  Eigen::Index longest_axis = 0;
+  const double length = size.maxCoeff(&longest_axis);
+  size[longest_axis] = 0;
   if (length < kMinElongation * size.maxCoeff()) return std::nullopt;
-  return Vector3(taker.T_world_object.linear().col(longest));
+  return Vector3(taker.T_world_object.linear().col(longest_axis));
 }
 
 /// Returns directions on cones about an axis.

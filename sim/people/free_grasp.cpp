@@ -12,8 +12,8 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr int kHandDirections = 40;              // directions about the object
-constexpr int kHandRolls = 16;                   // rotations of the hand about its palm's normal
+constexpr int kHandDirections = 40;              // number of directions about the object
+constexpr int kHandRolls = 16;                   // number of rotations about the palm's normal
 constexpr double kTilts[] = {0.0, -0.45, 0.45};  // of the hand about the axis across it [rad]
 constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fingers' direction [m]
 constexpr double kMinLength = 0.12;              // min extent held off the middle [m]
@@ -22,14 +22,14 @@ constexpr double kOffMiddle = 0.32;              // such a place, divided by the
 constexpr double kOffMiddleToGive = 0.45;        // same, of a person who gives
 constexpr double kMaxOffMiddleToGive = 0.10;     // max distance of such a place [m]
 constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
-constexpr int kGivingChoices = 200;              // usable places from which a giver chooses
-constexpr double kOtherPlace = 0.05;             // distance of a place that is another one [m]
-constexpr double kOtherSide = 0.7;               // same, cosine between the palms' normals
-constexpr int kApproachSteps = 4;                // poses tested before the grasp
-constexpr double kPalmOverlap = 0.003;           // flesh that gives way to the object [m]
-constexpr double kDigitOverlap = 0.004;          // same, of a digit [m]
-constexpr double kDifference = 1e-4;             // step of the finite differences [m]
-constexpr int kLeanSteps = 8;                    // leans tested
+constexpr int kGivingChoices = 200;      // number of usable places from which a giver chooses
+constexpr double kOtherPlace = 0.05;     // min distance of a different place [m]
+constexpr double kOtherSide = 0.7;       // or max cosine between the palms' normals
+constexpr int kApproachSteps = 4;        // number of poses tested before the grasp
+constexpr double kPalmOverlap = 0.003;   // depth by which flesh is compressed by the object [m]
+constexpr double kDigitOverlap = 0.004;  // same, of a digit [m]
+constexpr double kDifference = 1e-4;     // step of the finite differences [m]
+constexpr int kLeanSteps = 8;            // number of leans tested
 
 /// Returns directions spread evenly over the sphere.
 std::vector<Vector3> directions() {
@@ -198,7 +198,7 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
     moved += beyond;
     beyond = distance(start - moved * direction) - kPalmDistance;
   }
-  if (beyond > 5e-4) return;  // passes the object
+  if (beyond > 5e-4) return;  // the motion misses the object
   Pose T = Pose::Identity();
   T.linear() << -direction, fingers.cross(-direction), fingers;
   T.linear() = T.linear() * Eigen::AngleAxisd(tilt, Vector3::UnitY()).toRotationMatrix();
@@ -217,7 +217,7 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
 
 /// Returns the arm of the person who leans as far as the wrist's position needs.
 HumanArm FreeGraspSearch::leaning_to(const Vector3& p_wrist) const {
-  constexpr double kStretch = 0.92;  // of the arm's length
+  constexpr double kStretch = 0.92;  // max extension divided by the arm's length
   HumanArm arm = query_.arm;
   for (int i = 0; i <= kLeanSteps; ++i) {
     const double lean = i * settings_.max_lean / kLeanSteps;

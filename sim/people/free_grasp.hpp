@@ -34,7 +34,7 @@ struct FreeGraspSettings {
   double away_weight{0.7};      ///< side away from the robot, relative to that toward the person
 };
 
-/// What is known when a person chooses a place.
+/// Inputs of the choice of a place.
 struct FreeGraspQuery {
   const ObjectModel* object{};            ///< not null
   Pose T_world_object{Pose::Identity()};  ///< pose of the object
@@ -46,15 +46,14 @@ struct FreeGraspQuery {
   const std::vector<HandPart>* robot{};   ///< parts of the robot, world; not null
   /// Point of the object that is left to a receiver, world [m]; nullopt: the person does not give.
   std::optional<Vector3> p_left;
-  /// Places held before in vain, poses of the hand in the frame of the object: the hand goes
-  /// elsewhere.
+  /// Hand poses of failed attempts, frame of the object: the search avoids them.
   std::vector<Pose> avoided;
 };
 
-/// Searches the best place a part at a time, so that no step of the simulation takes long.
+/// Searches the best place in parts, so that every step of the simulation is short.
 class FreeGraspSearch {
  public:
-  /// Copies what the query points to, except the object.
+  /// Copies the data of the query, except the object.
   FreeGraspSearch(const FreeGraspQuery& query, const HumanHand& shape,
                   const FreeGraspSettings& settings = {});
 

@@ -99,7 +99,7 @@ Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_re
       lower_body_recorded ? (*upright - lowest) / (kHeadUp - kAnkleUp) : *upright / kHeadUp, 1.0,
       2.4);
   const double raise = lower_body_recorded ? kAnkleUp * recording.stature - lowest : 0.0;
-  std::array<double, 2> farthest{-1e9, -1e9}, when{};
+  std::array<double, 2> max_reach{-1e9, -1e9}, when{};
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Vector3 travelled = travel > kMaxTravel
                                   ? Vector3(frames[i][kWaist].x(), frames[i][kWaist].y(), -raise)
@@ -107,11 +107,11 @@ Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_re
     for (Vector3& p : frames[i]) p -= travelled;
     for (std::size_t s = 0; s < 2; ++s) {
       const double reach = frames[i][kHand[s]].x() - frames[i][kWaist].x();
-      if (reach > farthest[s]) farthest[s] = reach, when[s] = static_cast<double>(i) / rate;
+      if (reach > max_reach[s]) max_reach[s] = reach, when[s] = static_cast<double>(i) / rate;
     }
   }
   recording.frames = std::move(frames);
-  recording.taking = farthest[0] > farthest[1] ? Side::left : Side::right;
+  recording.taking = max_reach[0] > max_reach[1] ? Side::left : Side::right;
   recording.contact = when[recording.taking == Side::left ? 0 : 1];
   return recording;
 }

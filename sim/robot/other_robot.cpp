@@ -16,11 +16,11 @@ OtherRobotBody::OtherRobotBody(OtherRobotMotion motion)
 OtherRobotBody::Progress OtherRobotBody::progress(double time) const {
   const double since = time - motion_.begins_at, way = motion_.duration + motion_.pause;
   if (since <= 0.0 || motion_.duration <= 0.0) return {};
-  const auto ways = static_cast<long>(since / way);
-  const double s = std::min(1.0, (since - static_cast<double>(ways) * way) / motion_.duration);
+  const auto passes = static_cast<long>(since / way);
+  const double s = std::min(1.0, (since - static_cast<double>(passes) * way) / motion_.duration);
   const double fraction = s * s * s * (10.0 + s * (6.0 * s - 15.0));
   const double rate = 30.0 * s * s * (1.0 - s) * (1.0 - s) / motion_.duration;
-  return ways % 2 == 0 ? Progress{fraction, rate} : Progress{1.0 - fraction, -rate};
+  return passes % 2 == 0 ? Progress{fraction, rate} : Progress{1.0 - fraction, -rate};
 }
 
 void OtherRobotBody::place(double time) {
@@ -39,17 +39,17 @@ RobotReport OtherRobotBody::report(double time) {
 
 double OtherRobotBody::distance(const std::vector<LinkCapsule>& capsules,
                                 const std::vector<Pose>& T_world_link) const {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const LinkCapsule& capsule : capsules) {
     const Pose& T = T_world_link[static_cast<std::size_t>(capsule.link)];
     const Vector3 a = T * capsule.a, b = T * capsule.b;
     for (const MovingPart& part : parts_) {
       Vector3 on_a, on_b;
       const double axes_apart = std::sqrt(nearest_points(a, b, part.a, part.b, on_a, on_b));
-      least = std::min(least, axes_apart - capsule.radius - part.radius);
+      min_distance = std::min(min_distance, axes_apart - capsule.radius - part.radius);
     }
   }
-  return least;
+  return min_distance;
 }
 
 }  // namespace handsel::sim
