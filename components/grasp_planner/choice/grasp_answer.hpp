@@ -32,7 +32,7 @@ void write(const Choice& choice, const GraspList& list, GraspReply& reply);
 /// that of `side`.
 void add_partners(const GraspList& list, const TransferTable& pairs, Side side, GraspReply& reply);
 
-/// Returns the modelled time of the work, from its counts: about what one core needs.
+/// Returns the modelled time of the work on one core, from its counts.
 Duration choice_time(const Choice& choice);
 
 }  // namespace handsel::grasp_planner

@@ -54,7 +54,7 @@ struct PlatformSearch {
   std::uint64_t places{}, blocked{}, near_person{}, useless{};
 };
 
-/// What arm or hand would touch at grasps, for the reason of a failed choice.
+/// Contacts of arm or hand at grasps, for the reason of a failed choice.
 class NamedContacts {
  public:
   /// Returns whether enough contacts are counted: naming a contact costs a collision check.
@@ -97,7 +97,7 @@ struct Choice {
 
 /// Inputs of a choice.
 struct ChoiceInputs {
-  const GraspRequest& request;        ///< what is asked for
+  const GraspRequest& request;        ///< the request
   const GraspList& list;              ///< grasps of the hand of the robot on the object
   const Graspable& object;            ///< the object of the request
   const Scene& scene;                 ///< with the object of the request

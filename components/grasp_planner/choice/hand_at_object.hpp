@@ -29,7 +29,7 @@ class HandAtObject {
   /// below its foot.
   bool stands_in(const Grasp& g) const;
   /// Returns whether the hand, opened, closed or while it closes, touches a body as of
-  /// body_at_object(): by whatever configuration the arm gets there.
+  /// body_at_object(): for any configuration of the arm.
   /// Adds the tests of a hand to `tests`.
   bool touches(const HandShape::PlacedHand& body, const Grasp& g, std::uint64_t& tests);
   /// Returns the fraction of the object that is seen past the closed hand from an eye, frame of the

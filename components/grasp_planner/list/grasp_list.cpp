@@ -189,8 +189,8 @@ struct GraspLister::Impl {
     return known != 0;
   }
 
-  /// Fingers that share an axis must want the same of it; one without contact cannot while the
-  /// other has one.
+  /// Returns whether two fingers conflict on a shared axis: both need the same value, and a finger
+  /// without contact conflicts with one in contact.
   bool pull_apart(std::size_t g, int a, std::size_t f, int b) const {
     if (a < 0 && b < 0) return false;
     for (const int axis : hand_geometry->hand.fingers()[g].axes) {

@@ -51,7 +51,7 @@ class PinchSearch {
     double force{};                      ///< mean cosine between the surface and the pads
   };
   /// Tests the frame with this number, below frames(). `counters`: work done is added. `why` says
-  /// what was wrong when there is none.
+  /// the reason when there is none.
   std::optional<Found> frame(std::uint64_t id, GraspList& counters, FrameReason& why);
 
  private:

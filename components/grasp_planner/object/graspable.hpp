@@ -29,7 +29,7 @@ class Graspable {
   const std::string& name() const { return name_; }
   /// Returns the mended mesh, object frame [m].
   const TriangleMesh& mesh() const { return *mesh_; }
-  /// Returns what was found and mended in the mesh.
+  /// Returns the defects found and repaired in the mesh.
   const MeshFindings& findings() const { return findings_; }
   /// Contact points. Those more than 4 mm deep in one of the object's convex parts are left out:
   /// there its physical form is solid, or hollow and too narrow for a hand of several fingers.

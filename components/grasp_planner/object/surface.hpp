@@ -50,7 +50,7 @@ struct MeshFindings {
   std::uint32_t welded{};         ///< vertices that were there more than once
   std::uint32_t dropped{};        ///< triangles without area, or there more than once
 };
-/// What was found and what was done about it, a sentence each; none when the mesh is sound.
+/// Returns the defects and repairs, a sentence each; none for a valid mesh.
 std::vector<std::string> sentences(const MeshFindings& findings);
 /// Welds equal vertices, drops vertices no triangle has, and triangles that are degenerate or
 /// repeated; then orients it.

@@ -42,7 +42,7 @@ enum class RegraspStepKind { pick, pass, place, join };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
-  RegraspStepKind kind{};  ///< what happens to the object
+  RegraspStepKind kind{};  ///< kind of the transfer
   int from{-1}, to{-1};    ///< indices of the arm that releases and the arm that takes; -1: none
   std::size_t grasp_from{}, grasp_to{};   ///< indices into the lists of these arms
   Pose T_world_object{Pose::Identity()};  ///< where the object is during the step

@@ -10,8 +10,7 @@ namespace {
 
 // [N] of Grasp::margin: weaker grasps are used only where firmer ones give no plan.
 constexpr std::array kMinMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
-constexpr std::size_t kMinSteps =
-    3;  // min steps of a plan that passes the object from hand to hand
+constexpr std::size_t kMinSteps = 3;  // pick, pass and place: the min of a regrasp plan
 
 RegraspKind kind_of(RegraspStepKind kind) {
   switch (kind) {
@@ -47,7 +46,7 @@ handsel::RegraspStep message_of(const RegraspStep& step, const std::vector<Regra
   return out;
 }
 
-/// Returns the index of the arm that holds the object; -1: the object stands.
+/// Returns the index of the arm that holds the object; -1: on a support.
 int holder_of(const RegraspRequest& request, const std::vector<ArmGrasps>& arms) {
   const auto holder = std::find_if(
       arms.begin(), arms.end(), [&](const ArmGrasps& a) { return a.arm.name == request.holder; });

@@ -26,7 +26,7 @@ struct RegraspAnswer {
 std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
                       const std::vector<ArmGrasps>& arms, const ObjectLibrary& library);
 
-/// What an answer is worked out from.
+/// Inputs of an answer.
 struct RegraspStage {
   const RobotModel& robot;             ///< with all arms
   const std::vector<ArmGrasps>& arms;  ///< one or two
@@ -40,7 +40,7 @@ struct RegraspStage {
 RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
                              const ObjectModel& model, const std::function<bool()>& cancelled = {});
 
-/// Returns the modelled time of the work, from its counts: about what one core needs.
+/// Returns the modelled time of the work on one core, from its counts.
 Duration regrasp_time(const RegraspAnswer& answer);
 
 }  // namespace handsel::grasp_planner
