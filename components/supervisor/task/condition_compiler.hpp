@@ -10,7 +10,7 @@
 
 namespace handsel::supervisor {
 
-/// The variables that are known where a condition stands.
+/// The variables known at the place of a condition.
 struct Scope {
   std::vector<std::string> names;  ///< with "?"
   std::vector<Type> types;         ///< by variable

@@ -29,7 +29,7 @@ struct Literal {
 /// looked up or tested.
 struct Test {
   int enumerate{-1};      ///< variable; -1: `literal`
-  Literal literal;        ///< looked up to bind its free variables, or tested when none is free
+  Literal literal;        ///< binds its free variables, or is tested when none is free
   std::string otherwise;  ///< reason for people when the test fails; ?x stands for its value
 };
 
