@@ -31,7 +31,7 @@ struct ReplanSettings {
 };
 
 struct ReplanResult {
-  ReplanOutcome outcome{ReplanOutcome::kept};  ///< what was done with the running path
+  ReplanOutcome outcome{ReplanOutcome::kept};  ///< result for the running path
   /// Path with front() = start of the problem; unsolved if blocked, with the reason.
   Result result;
   double before{};  ///< price of the remaining path at present costs (infinite: blocked)
