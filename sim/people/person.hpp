@@ -76,7 +76,7 @@ struct PersonSettings {
   FreeGraspSettings taking;          ///< choice of a place on an object that the robot holds
 };
 
-/// What the person observes, by sight and by touch.
+/// The person's observations, by sight and by touch.
 struct PersonView {
   /// Position of the robot's mobile platform, world [m]; nullopt: the robot has none.
   std::optional<Vector3> platform{};
@@ -98,7 +98,7 @@ struct PersonView {
   Vector3 p_hand_object{Vector3::Zero()};
 };
 
-/// What the robot announces to a partner about an object.
+/// The robot's announcement to a partner about an object.
 enum class Announcement { none, offers, asks };
 
 enum class PersonPhase {

@@ -99,7 +99,7 @@ double PersonModel::hand_to_surface(const PersonView& view) const {
   return surface_distance(*view.object, view.T_world_object.inverse() * hand_target_);
 }
 
-/// Returns the recorded hand's position of farthest reach for a person at `feet`, world [m].
+/// Returns the recorded hand's position of max reach for a person at `feet`, world [m].
 Vector3 PersonModel::recorded_contact(const Vector3& feet) const {
   BodyPoints points;
   settings_.recording->sample(settings_.recording->contact, points);

@@ -92,7 +92,7 @@ std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
   return make_pose(*p_hand_object, turn);
 }
 
-/// Chooses anew how a partner holds what the robot asks for, while the robot's hand is far.
+/// Chooses a partner's grasp of the requested object anew while the robot's hand is far.
 void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_.reset();
   held_in_vain_.clear();
@@ -103,8 +103,8 @@ void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
 }
 
-/// Holds what the robot has not taken otherwise than before; keeps the hold where the hand has no
-/// other place.
+/// Changes the grasp of an object that the robot has not taken; keeps it where the hand has
+/// no other place.
 void PersonModel::hold_otherwise(const PersonView& view) {
   const bool is_far =
       view.object != nullptr && (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
@@ -149,7 +149,7 @@ Vector3 PersonModel::by_leaning(double lean) const {
 
 Vector3 PersonModel::upright_shoulder() const { return shoulder(hand_index()) - by_leaning(lean_); }
 
-/// Returns the least lean with which the wrist reaches the chosen place, else the lean that comes
+/// Returns the min lean with which the wrist reaches the chosen place, else the lean that comes
 /// nearest [rad].
 double PersonModel::lean_to_take(const PersonView& view) const {
   const int s = hand_index();

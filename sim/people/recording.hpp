@@ -23,7 +23,7 @@ struct Recording {
   std::vector<BodyPoints> frames;
   double stature{1.75};      ///< of the body whose trunk and legs fit the recording best [m]
   Side taking{Side::right};  ///< side of the hand that reaches farther
-  double contact{};          ///< time of that hand's farthest reach [s]
+  double contact{};          ///< time of that hand's max reach [s]
 
   /// Returns the time from the first frame to the last [s]; there must be a frame.
   double duration() const { return static_cast<double>(frames.size() - 1) / rate; }

@@ -41,7 +41,7 @@ double trunk_stature(const BodyPoints& p);
 /// Throws ConfigError unless the first frame, read from `line`, is a person in metres, z up.
 void check_body(const BodyPoints& p, const std::string& name, std::size_t line);
 
-/// Converts world points to the recording's frame and finds the farthest reach.
+/// Converts world points to the recording's frame and finds the max reach.
 Recording finish(std::vector<BodyPoints> frames, double rate, bool lower_body_recorded);
 
 /// Returns the positions of all joints of a body.

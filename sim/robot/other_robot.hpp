@@ -12,15 +12,15 @@
 
 namespace handsel::sim {
 
-/// What another robot does: moves between two configurations again and again, each motion in the
+/// Motion of another robot: moves repeatedly between two configurations, each motion in the
 /// same time and with minimum jerk.
 struct OtherRobotMotion {
   std::string id;                           ///< name in RobotReport
   std::shared_ptr<const RobotModel> model;  ///< not null
   Pose T_world_base{Pose::Identity()};      ///< of its root link
   Vector from, to;                          ///< all axes [rad, m]
-  double begins_at{};                       ///< stands at `from` until then [s]
-  double duration{};                        ///< of one way [s]; 0: stands for ever
+  double begins_at{};                       ///< at rest at `from` until then [s]
+  double duration{};                        ///< duration of one motion [s]; 0: always at rest
   double pause{};                           ///< at each end [s]
   bool silent{};                            ///< does not report itself
 };
@@ -31,7 +31,7 @@ class OtherRobotBody {
 
   /// Returns the report that the robot gives about itself; stamp left to the publisher.
   RobotReport report(double time);
-  /// Returns the least distance of capsules at these poses of their links in the world to the robot
+  /// Returns the min distance of capsules at these poses of their links in the world to the robot
   /// at the time of the last place() [m]; negative: overlapping.
   double distance(const std::vector<LinkCapsule>& capsules,
                   const std::vector<Pose>& T_world_link) const;
