@@ -1,5 +1,5 @@
-// What one step of the attentional system costs when every behaviour looks at once: the shipped
-// settings, two people close by, an arm in motion. Usage: bench_attention [rounds]
+// Time of one step of the attentional system in which every behaviour is active: the shipped
+// settings, two people near, an arm in motion. Usage: bench_attention [rounds]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -72,8 +72,8 @@ int run(int rounds) {
   for (const BehaviourState& b : state.behaviours)
     if (b.activations < static_cast<std::uint64_t>(rounds))
       return std::fprintf(stderr, "%s did not look each time\n", b.name.c_str()), 1;
-  const auto at = [&](double share) {
-    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
+  const auto at = [&](double fraction) {
+    return times[static_cast<std::size_t>(fraction * static_cast<double>(times.size() - 1))];
   };
   std::printf("%s\n", nlohmann::json{{"name", "attention/step"},
                                      {"behaviours", state.behaviours.size()},

@@ -1,6 +1,6 @@
-// What the bus costs on this machine: `bench_bus trip` measures DDS round trips between two
-// processes, `bench_bus load` plays the traffic of the table of topics with one process a component
-// and prints the processor share of each.
+// Cost of the bus on this machine: `bench_bus trip` measures DDS round trips between two
+// processes, `bench_bus load` replays the traffic of the table of topics with one process per
+// component and prints the processor load of each.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -168,8 +168,8 @@ int trip() {
   question.sequence = 0;
   publisher->publish(question);
   std::sort(micros.begin(), micros.end());
-  const auto at = [&](double share) {
-    return micros[static_cast<std::size_t>(share * static_cast<double>(micros.size() - 1))];
+  const auto at = [&](double fraction) {
+    return micros[static_cast<std::size_t>(fraction * static_cast<double>(micros.size() - 1))];
   };
   std::printf(
       "round trip, 22 axes each way, conversions and executors included: median %.0f us, p99 %.0f "

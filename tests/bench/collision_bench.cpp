@@ -1,4 +1,4 @@
-// States a second of the wide check against FCL's broad-phase manager, and capsule distances
+// States per second of the SIMD check against FCL's broad-phase manager, and capsule distances
 // against FCL's, in one run. Medians of rounds that alternate between the two. Needs the reference
 // data (HANDSEL_DATA). Usage: bench_collision [rounds]
 #include <algorithm>
@@ -176,15 +176,15 @@ void state_rates(int rounds) {
     std::vector<std::pair<Vector, Vector>> lines;
     std::normal_distribution<double> normal;
     while (static_cast<int>(lines.size()) < kLines) {
-      Vector from = problem->start, way = Vector::Zero(robot.dof());
+      Vector from = problem->start, offset = Vector::Zero(robot.dof());
       for (int i : arm) {
         const Axis& axis = robot.axes()[static_cast<std::size_t>(i)];
         from[i] = std::uniform_real_distribution<double>(axis.lower, axis.upper)(random);
-        way[i] = normal(random);
+        offset[i] = normal(random);
       }
       if (fcl.free(from))
-        lines.emplace_back(from,
-                           from + way * (0.02 * (kStatesOnLine - 1) / way.cwiseAbs().maxCoeff()));
+        lines.emplace_back(
+            from, from + offset * (0.02 * (kStatesOnLine - 1) / offset.cwiseAbs().maxCoeff()));
     }
     std::vector<double> at(kStatesOnLine);
     for (int i = 0; i < kStatesOnLine; ++i)
@@ -269,16 +269,16 @@ void capsule_distances(int rounds) {
     return detail::simd_kernels().distances(one.robot.data(), kRobot, one.person, 0.0f, distance);
   };
   const auto nearest_fcl = [&](const Case& one) {
-    double least = 1e9;
+    double min_distance = 1e9;
     fcl::DistanceRequestd request;
     for (std::size_t i = 0; i < kRobot; ++i)
       for (std::size_t k = 0; k < kPerson; ++k) {
         fcl::DistanceResultd result;
-        least =
-            std::min(least, fcl::distance(shapes[i].get(), one.T_robot[i], shapes[kRobot + k].get(),
-                                          one.T_person[k], request, result));
+        min_distance = std::min(
+            min_distance, fcl::distance(shapes[i].get(), one.T_robot[i], shapes[kRobot + k].get(),
+                                        one.T_person[k], request, result));
       }
-    return least;
+    return min_distance;
   };
   float sink = 0;
   for (int round = 0; round < rounds; ++round) {

@@ -1,7 +1,7 @@
-// Time of one control step of Jido (22 axes) while it works beside a person: p50, p99, p99.9 and
-// the share of each part of the story; of accepting a trajectory, which happens between two steps;
-// and of judging all of the path still to come against a person just seen. Prints; judges nothing
-// (times are the machine's). Usage: bench_control_step [steps] [repeats]
+// Time of one control step of Jido (22 axes) beside a person: p50, p99, p99.9 and the part of each
+// phase of the scenario; time to accept a trajectory, which happens between two steps; and time to
+// check the whole remaining path against a newly observed person. Prints times, without limits.
+// Usage: bench_control_step [steps] [repeats]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -62,7 +62,7 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
   people.people = {person};
   Go go;
   go.state_revision = 1;
-  core.on(go, now);  // the first one moves nothing
+  core.on(go, now);  // the first epoch permits no motion
   go.epoch = 1;
   go.allowed = true;
   AttentionAdvice advice;
@@ -116,7 +116,7 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
   return out;
 }
 
-/// A person walks past while the arm sweeps: each sample judges all of the path within the horizon.
+/// A person walks past while the arm sweeps: each sample checks the whole path within the horizon.
 std::vector<double> judge_paths(const RobotModel& robot, int times) {
   collision_checker::Forecaster forecaster(robot, {}, {}, {});
   const Group& arm = robot.require_group("arm");
@@ -159,11 +159,11 @@ int main(int argc, char** argv) {
       std::make_shared<const RobotModel>(RobotModel::load(robot_description("jido")));
   std::printf("%d axes, %zu robot capsules, %d capsules of a person\n", robot->dof(),
               robot_capsules(*robot).size(), kBodyCapsules);
-  std::vector<double> least;
+  std::vector<double> fastest;
   for (int k = 0; k < repeats; ++k) {
     Run r = run(robot, steps);
-    if (least.empty()) least = r.all;
-    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], r.all[i]);
+    if (fastest.empty()) fastest = r.all;
+    for (std::size_t i = 0; i < fastest.size(); ++i) fastest[i] = std::min(fastest[i], r.all[i]);
     if (k + 1 < repeats) continue;
     std::printf("last of %d runs, %llu trajectories:\n", repeats,
                 static_cast<unsigned long long>(r.trajectories));
@@ -174,8 +174,8 @@ int main(int argc, char** argv) {
     print("accepting", r.accepting);
   }
   std::printf("least of %d runs, step by step (the algorithm without the machine):\n", repeats);
-  print("all", least);
-  std::vector<double> judged = judge_paths(*robot, 2000);
+  print("all", fastest);
+  std::vector<double> path_times = judge_paths(*robot, 2000);
   std::printf("all of the path within 1.5 s against a person just seen:\n");
-  print("judging", judged);
+  print("judging", path_times);
 }

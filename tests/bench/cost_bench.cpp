@@ -1,5 +1,5 @@
-// The human-aware cost of a robot state against the distance part of it done with FCL, and how long
-// a refresh of the cost map takes. One run; medians and least of rounds that alternate. Usage:
+// Time of the human-aware cost of a robot state, against its distance term computed with FCL, and
+// of an update of the cost map. One run; medians and minima of alternating rounds. Usage:
 // bench_cost [rounds]
 #include <algorithm>
 #include <chrono>
@@ -36,7 +36,7 @@ struct Times {
     std::sort(all.begin(), all.end());
     return all[all.size() / 2];
   }
-  double least() const { return *std::min_element(all.begin(), all.end()); }
+  double minimum() const { return *std::min_element(all.begin(), all.end()); }
 };
 
 /// The robot's capsules against body cylinder and head, as the safety cost needs them.
@@ -58,15 +58,16 @@ class FclDistance {
   }
   double operator()(const Vector& q) {
     robot_.forward(q, T_root_link_);
-    double least = 1e9;
+    double minimum = 1e9;
     fcl::DistanceRequestd request;
     for (const LinkShape& link : links_) {
       const Pose T = T_root_link_[static_cast<std::size_t>(link.link)] * link.T_link_capsule;
       fcl::DistanceResultd a, b;
-      least = std::min({least, fcl::distance(&link.capsule, T, &cylinder_, T_cylinder_, request, a),
-                        fcl::distance(&link.capsule, T, &head_, T_head_, request, b)});
+      minimum =
+          std::min({minimum, fcl::distance(&link.capsule, T, &cylinder_, T_cylinder_, request, a),
+                    fcl::distance(&link.capsule, T, &head_, T_head_, request, b)});
     }
-    return least;
+    return minimum;
   }
 
  private:
@@ -134,7 +135,7 @@ void cost_of_states(const char* name, const RobotModel& robot, const std::vector
   std::printf(
       "%s, %zu capsules: cost of a state, 16 at once %.0f ns (least %.0f), one by one %.0f ns; "
       "FCL, distance alone %.1f us; ratio %.0f%s\n",
-      name, robot_capsules(robot).size(), 1e9 * wide.median(), 1e9 * wide.least(),
+      name, robot_capsules(robot).size(), 1e9 * wide.median(), 1e9 * wide.minimum(),
       1e9 * scalar.median(), 1e6 * peer.median(), peer.median() / wide.median(),
       sink == 0.5 ? " " : "");
 }
@@ -154,7 +155,7 @@ void refresh(int rounds) {
   std::printf(
       "cost map, four layers of 81^3 points: refreshed in %.1f ms (least %.1f); with new volumes "
       "of the arms %.0f ms\n",
-      1e3 * again.median(), 1e3 * again.least(), 1e3 * first.median());
+      1e3 * again.median(), 1e3 * again.minimum(), 1e3 * first.median());
 }
 
 }  // namespace

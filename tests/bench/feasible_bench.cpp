@@ -1,5 +1,5 @@
-// Paths among things, nobody there: ours against OMPL's RRT-Connect whose states are judged by FCL,
-// on the Panda problems of the reference data. One run, problem by problem in turn. Usage:
+// Path planning among obstacles without people, against OMPL's RRT-Connect with FCL, on the Panda
+// problems of the reference data. One run, the planners alternate per problem. Usage:
 // bench_feasible [problems]
 #include <algorithm>
 #include <cstdio>
@@ -16,16 +16,16 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr int kRepeats = 5;
-constexpr double kPatience = 2.0;  // [s] of a search of the peer
+constexpr double kPeerTimeLimit = 2.0;  // max time of a search of the peer [s]
 
-int compare(std::size_t most) {
+int compare(std::size_t max_runs) {
   if (!test::reference_data("problems/panda")) {
     std::printf("HANDSEL_DATA names no folder with problems/panda: nothing to compare\n");
     return 3;
   }
   const RobotModel robot = test::load_panda();
   const std::vector<test::PandaProblem> problems = test::panda_problems(robot);
-  const std::size_t runs = std::min(most, problems.size()), stride = problems.size() / runs;
+  const std::size_t runs = std::min(max_runs, problems.size()), stride = problems.size() / runs;
   CollisionWorld world(robot, nullptr), exact(robot, nullptr);
   HumanCost nobody(robot, {});
   std::vector<double> ends_times, search_times, smooth_times, verify_times, all_times, peer_times;
@@ -81,7 +81,7 @@ int compare(std::size_t most) {
     problem.stock = true;
     const double begin = test::thread_time();
     Hooks hooks;
-    hooks.cancelled = [&] { return test::thread_time() - begin > kPatience; };
+    hooks.cancelled = [&] { return test::thread_time() - begin > kPeerTimeLimit; };
     SearchSpace space(robot, exact, nobody, problem, {}, hooks);
     std::vector<Vector> goals;
     for (const Vector& goal : problem.goals)

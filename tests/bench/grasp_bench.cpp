@@ -166,9 +166,8 @@ void BM_frame_trees_first(benchmark::State& state) {
     }
   }
 }
-/// The same in the naive order: collision before the trees. Of every contact point the finger's
-/// posture is sought and tested for collision, and what is left is asked whether it lies in the
-/// finger's workspace.
+/// The same in the naive order: for every contact point the finger's configuration is computed and
+/// checked for collision; the remaining points are then tested against the finger's workspace.
 void BM_frame_collision_first(benchmark::State& state) {
   const Setup& s = setup();
   std::vector<Pose> T_step;
@@ -216,8 +215,8 @@ void BM_list_from_disk(benchmark::State& state) {
 }
 BENCHMARK(BM_list_from_disk)->Unit(benchmark::kMillisecond);
 
-/// Grasps of a list that serve on a table, the arm's posture and way in included; as many as asked
-/// for.
+/// Choice of the requested number of feasible grasps on a table, with arm configuration and
+/// approach.
 void BM_choose_from_list(benchmark::State& state) {
   const Setup& s = setup();
   static const auto robot =

@@ -1,7 +1,7 @@
-// A person moved: how long until the running path leads around them, or until it is cheaper for
-// them, against planning anew from where the arm is. Jido beside its table; the person comes so
-// near that something of the path is blocked (repair) or only dear (improve). One process,
-// alternating. Time of the thread. Usage: bench_live [cases]
+// Online replanning after a person has moved, against new planning from the present configuration:
+// time until the running path avoids the person, or until its cost falls. Jido beside its table;
+// the person blocks part of the path (repair) or raises its cost (improve). One process,
+// alternating; thread time. Usage: bench_live [cases]
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +19,7 @@ using test::seconds;
 using test::Times;
 
 constexpr unsigned kSeed = 20;
-constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
+constexpr std::uint64_t kBudget = 10000;  // max checks of a replanning request, as shipped
 
 int run(int cases) {
   const RobotModel robot =
@@ -59,7 +59,7 @@ int run(int cases) {
     problem.goals = {RobotModel::part(random_posture(), arm)};
     const Result first = plan(robot, world, cost, problem, {});
     if (!first.solved || first.length < 1.0) continue;
-    // The arm has run a tenth of it when the person stands where it leads to.
+    // The arm has passed a tenth of the first segment when the person stands at its end.
     const Vector on_way = first.path[0] + 0.1 * (first.path[1] - first.path[0]);
     const std::size_t edge = first.path.size() / 2;
     const Vector middle = 0.5 * (first.path[edge - 1] + first.path[edge]);

@@ -1,6 +1,6 @@
-// Paths of a platform past two people in a furnished room, as the path planner's process plans them
-// with its shipped settings, beside OMPL's BiTRRT on the same problems; then one of the people
-// steps into the path while it is driven. One process, alternating. Time of the thread. Usage:
+// Paths of a platform past two people in a furnished room, planned with the path planner's shipped
+// settings, against OMPL's BiTRRT on the same problems; then one person steps into the path during
+// the base motion. One process, alternating; thread time. Usage:
 // bench_navigation [rooms]
 #include <cmath>
 #include <cstdio>
@@ -23,8 +23,8 @@ using test::seconds;
 using test::Times;
 
 constexpr unsigned kSeed = 31;
-constexpr double kTimeLimit = 5;              // of a request [s]
-constexpr std::uint64_t kLiveBudget = 10000;  // what a live request is given as shipped
+constexpr double kTimeLimit = 5;              // max time of a request [s]
+constexpr std::uint64_t kLiveBudget = 10000;  // max checks of a replanning request, as shipped
 
 struct Room {
   Scene scene;
@@ -32,8 +32,8 @@ struct Room {
   PathRequest request;
 };
 
-/// A room of 6 m by 4 m with two pieces of furniture; two people between the platform and its goal,
-/// who talk to each other in every other room.
+/// Returns a room of 6 m by 4 m with two pieces of furniture and two people between the platform
+/// and its goal; they talk to each other in every second room.
 Room random_room(std::mt19937_64& random, const RobotModel& robot, int number) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution(low, high)(random);

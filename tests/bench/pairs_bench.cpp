@@ -1,5 +1,6 @@
-// Double grasps of two lists of 200, and the choice of a grasp for a person from cached lists.
-// Medians and minima of repeated runs; no peer does either. Usage: bench_pairs [rounds]
+// Times of double grasps of two lists of 200, and of the choice of a grasp for a person from cached
+// lists. Medians and minima of repeated runs; there is no peer to compare with. Usage: bench_pairs
+// [rounds]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

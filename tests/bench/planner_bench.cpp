@@ -1,6 +1,6 @@
-// Paths beside a person: ours (bidirectional T-RRT) against OMPL's BiT-RRT on the same costs,
-// judged state by state by FCL; both searches only, then ours with smoothing and the last check.
-// One run, query by query in turn. Usage: bench_planner [queries]
+// Paths beside a person: bidirectional T-RRT against OMPL's BiT-RRT with FCL on the same costs;
+// both searches alone, then the own search with smoothing and the final check. One run, the
+// planners alternate per query. Usage: bench_planner [queries]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +16,7 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr unsigned kSeed = 4;
-constexpr double kPatience = 2.0;  // [s] of a search of the peer
+constexpr double kPeerTimeLimit = 2.0;  // max time of a search of the peer [s]
 
 void compare(int queries) {
   test::BesideTheTable table(kSeed);
@@ -54,7 +54,7 @@ void compare(int queries) {
     problem.budget = UINT64_MAX / 2;
     const double begin = test::thread_time();
     Hooks hooks;
-    hooks.cancelled = [&] { return test::thread_time() - begin > kPatience; };
+    hooks.cancelled = [&] { return test::thread_time() - begin > kPeerTimeLimit; };
     SearchSpace space(table.robot, exact, one_by_one, problem, settings, hooks);
     peer_solved +=
         !search(space, problem.goals, PlannerKind::bitrrt, true, problem.seed).path.empty();

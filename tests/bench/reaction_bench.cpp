@@ -1,7 +1,7 @@
-// From a sample of a person put on the wire to the changed set-point on the wire, over DDS, with
-// the controller as its own process; beside it what the machine allows: a UDP round trip of as many
-// bytes and the wait for the next control tick. Usage: bench_reaction [reactions] [domain]. Prints;
-// judges nothing.
+// Time from the publication of a person sample to the changed set-point, over DDS, with the
+// controller as its own process; for comparison the lower bound of the machine: a UDP round trip of
+// the same size and the wait for the next control tick. Usage: bench_reaction [reactions] [domain].
+// Prints times, without limits.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -35,9 +35,9 @@
 namespace handsel {
 namespace {
 
-double at(std::vector<double>& sorted, double share) {
+double at(std::vector<double>& sorted, double fraction) {
   return sorted[std::min(sorted.size() - 1,
-                         static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
+                         static_cast<std::size_t>(fraction * static_cast<double>(sorted.size())))];
 }
 
 void print(const char* what, std::vector<double> us) {
@@ -206,18 +206,18 @@ class Probe {
     bus_.after(Duration(std::uniform_int_distribution<int>(0, 2'000'000)(random_)),
                [this, v = Vector(m.velocity)](TimePoint) { dart(v); });
   }
-  /// Somebody runs in against the way of the hand.
+  /// A person runs in against the motion of the hand.
   void dart(const Vector& velocity) {
     if (waiting_ || state_.position.size() == 0) return;
     const Vector3 p = robot_.link_pose(state_.position, robot_.tool_link()).translation();
-    Vector3 way =
+    Vector3 direction =
         robot_.link_pose(state_.position + 1e-3 * velocity, robot_.tool_link()).translation() - p;
-    way.z() = 0;
-    way.normalize();
+    direction.z() = 0;
+    direction.normalize();
     Person person;
     person.id = "anna";
-    person.joints = standing_body(Vector3(p.x(), p.y(), 0) + 0.75 * way, 0.0, 1.75);
-    for (BodyJoint& joint : person.joints) joint.velocity = -2.0 * way;
+    person.joints = standing_body(Vector3(p.x(), p.y(), 0) + 0.75 * direction, 0.0, 1.75);
+    for (BodyJoint& joint : person.joints) joint.velocity = -2.0 * direction;
     people_.people = {person};
     waiting_ = true;
     asked_ = monotonic_now();

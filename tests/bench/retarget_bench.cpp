@@ -1,7 +1,7 @@
-// The receiver steps aside while the object is carried to them: how long until a trajectory leads
-// to the new exchange point from the motion that runs - choosing the point, the path, the soft
-// motion, and what joins them - against stopping and planning anew from there. Jido; one process,
-// alternating. Time of the thread. Usage: bench_retarget [cases]
+// The receiver steps aside while the object is carried to them: time until a trajectory leads from
+// the running motion to the new exchange point (search of the point, path, jerk-limited trajectory
+// and the junction), against a stop and new planning. Jido; one process, alternating; thread time.
+// Usage: bench_retarget [cases]
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -24,8 +24,8 @@ using test::seconds;
 using test::Times;
 
 constexpr unsigned kSeed = 21;
-constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
-constexpr double kUnderWay = 0.4;  // share of the time of the carrying motion when it is left
+constexpr std::uint64_t kBudget = 10000;  // max checks of a replanning request, as shipped
+constexpr double kUnderWay = 0.4;  // fraction of the carrying motion's duration at the switch
 
 int run(int cases) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
@@ -83,10 +83,10 @@ int run(int cases) {
   int tried = 0, led = 0, led_anew = 0;
   for (int k = 0; k < cases; ++k) {
     const Vector3 feet{1.35 + 0.3 * unit(engine), -0.4 + 0.8 * unit(engine), 0};
-    const double way = 6.283185307179586 * unit(engine), step = 0.15 + 0.25 * unit(engine);
+    const double direction = 6.283185307179586 * unit(engine), step = 0.15 + 0.25 * unit(engine);
     const HumanState before = test::person_at(feet),
-                     after =
-                         test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
+                     after = test::person_at(
+                         feet + step * Vector3{std::cos(direction), std::sin(direction), 0});
     const Vector rest = robot.rest_configuration();
     put(before);
     path_planner::Problem problem;

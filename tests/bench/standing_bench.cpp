@@ -1,6 +1,6 @@
-// Places of a platform from which the arm hands a mug to a person in a furnished room: the search
-// that the action drive makes, with what of it goes into the check that the handover can be
-// reached. One process. Time of the thread. Usage: bench_standing [rooms]
+// Search of the platform places from which the arm hands a mug to a person in a furnished room, as
+// in the action drive, and the part spent on the check that the handover is reachable. One process;
+// thread time. Usage: bench_standing [rooms]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
-// Soft motion: time of a solution, evaluation, smoothing, control tick, switch. The problems of 7
-// axes are those of Ruckig's own benchmark: its generator and seeds, its test of what is valid.
-// With -DHANDSEL_RUCKIG=<path> Ruckig runs in between on the same problems: counters ours_ns and
+// Jerk-limited trajectories: time of a solution, evaluation, smoothing, control tick, switch. The
+// 7-axis problems are those of Ruckig's own benchmark: its generator, seeds and validity test.
+// With -DHANDSEL_RUCKIG=<path> Ruckig solves the same problems in alternation: counters ours_ns and
 // peer_ns are medians of interleaved passes [CPU ns], and every duration is compared.
 #include <benchmark/benchmark.h>
 

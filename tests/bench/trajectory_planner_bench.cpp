@@ -1,7 +1,7 @@
-// From ten nodes of Jido's arm among boxes to a smoothed trajectory, with and without the collision
-// tests of corners; and motions of the tool to TR_app, by 5 s of motion. The peer of the first is
-// MoveIt's TOTG: 2.8 ms for ten nodes of seven axes on such a machine. bench_trajectory_planner
-// [lines]. Each is timed several times and the least counts; quantiles are over the inputs.
+// Time from ten waypoints of Jido's arm among boxes to a smoothed trajectory, with and without the
+// collision checks of blends; and of tool motions approximated as TR_app, per 5 s of motion. The
+// peer of the first is MoveIt's TOTG: 2.8 ms for ten waypoints of seven axes on such a machine.
+// Usage: bench_trajectory_planner [lines]. Minima of repeated runs; quantiles over the inputs.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -16,18 +16,18 @@
 namespace handsel {
 namespace {
 
-constexpr double kTotg = 2.8e-3;  // [s]
+constexpr double kTotg = 2.8e-3;  // time of MoveIt's TOTG [s]
 constexpr int kTimes = 7;
 
 template <class Work>
 double least_time(Work&& work) {
-  double least = 1e9;
+  double minimum = 1e9;
   for (int k = 0; k < kTimes; ++k) {
     const double begin = test::thread_time();
     work();
-    least = std::min(least, test::thread_time() - begin);
+    minimum = std::min(minimum, test::thread_time() - begin);
   }
-  return least;
+  return minimum;
 }
 
 void lines(int count) {
@@ -63,8 +63,8 @@ void motions(const char* name, const RobotModel& robot, const Group& arm,
              const std::vector<int>& also, const Vector& home, int count, bool still = false) {
   CollisionWorld world(robot, nullptr);
   std::mt19937 random(5);
-  std::vector<double> share;
-  for (int tries = 0; tries < 4 * count && static_cast<int>(share.size()) < count; ++tries) {
+  std::vector<double> ratio;
+  for (int tries = 0; tries < 4 * count && static_cast<int>(ratio.size()) < count; ++tries) {
     auto request = test::tool_motion(robot, arm, also, home, world, random);
     if (still)
       for (auto& node : request.nodes) node.also = home(also);
@@ -73,10 +73,10 @@ void motions(const char* name, const RobotModel& robot, const Group& arm,
     const double lasted = least_time(
         [&] { motion = trajectory_planner::plan_cartesian(robot, arm, world, request); });
     if (motion.solved && motion.path.duration() > 2)
-      share.push_back(5 * lasted / motion.path.duration());
+      ratio.push_back(5 * lasted / motion.path.duration());
   }
   std::printf("%s, tool, %zu motions: 5 s of motion to TR_app in %.1f ms (p95 %.1f)\n", name,
-              share.size(), test::quantile_ms(share, 0.5), test::quantile_ms(share, 0.95));
+              ratio.size(), test::quantile_ms(ratio, 0.5), test::quantile_ms(ratio, 0.95));
 }
 
 }  // namespace

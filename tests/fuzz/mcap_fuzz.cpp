@@ -1,4 +1,4 @@
-// Recordings in MCAP come from other programs, too. For libFuzzer: clang++
+// Fuzzes MCAP recordings, which other programs also write. For libFuzzer: clang++
 // -fsanitize=fuzzer,address with the sources of common/record; here a corpus and its seeded
 // mutations are replayed.
 #include <cstdint>

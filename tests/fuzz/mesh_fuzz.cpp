@@ -1,4 +1,4 @@
-// Meshes are read from anybody's file. For libFuzzer: clang++ -fsanitize=fuzzer,address with the
+// Fuzzes mesh files of users. For libFuzzer: clang++ -fsanitize=fuzzer,address with the
 // sources of common/geometry; here a corpus and its seeded mutations are replayed.
 #include <cmath>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace handsel {
 
-/// True when the mesh was read. Aborts when an index or a number of what was read is wrong.
+/// Returns whether the mesh was read. Aborts on an invalid index or number in the result.
 bool read_mesh(const std::string& name, const std::string& content) {
   try {
     const TriangleMesh mesh = mesh::parse(name, content, Vector3::Ones());

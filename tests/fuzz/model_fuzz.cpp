@@ -1,5 +1,5 @@
-// URDF and SRDF come from anybody's robot. For libFuzzer: clang++ -fsanitize=fuzzer,address with
-// the sources of common/model; here corpora and their seeded mutations are replayed.
+// Fuzzes URDF and SRDF of users. For libFuzzer: clang++ -fsanitize=fuzzer,address with the
+// sources of common/model; here corpora and their seeded mutations are replayed.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,6 @@
-// Recordings are read from anybody's file. For libFuzzer: clang++ -fsanitize=fuzzer,address with
+// Fuzzes motion recordings of users. For libFuzzer: clang++ -fsanitize=fuzzer,address with
 // the sources of sim/recording and sim/bvh; here a corpus and its seeded mutations are replayed:
-// every input is read or refused in one sentence, none crashes.
+// every input is read or refused in one sentence, without a crash.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -11,7 +11,7 @@
 
 namespace handsel {
 
-/// True when it was read. Aborts when what was read is no recording, or the refusal is no sentence.
+/// Returns whether the text was read. Aborts on an invalid result or a refusal that is no sentence.
 bool read_fuzzed(bool bvh, std::string_view text) {
   try {
     const sim::Recording recording =

@@ -1,6 +1,6 @@
-// A corpus of files and seeded mutations of them, for the entry point of a parser. Files whose
-// names begin with good_ must be read, all others must be refused; a mutation may be either. Set
-// HANDSEL_FUZZ_MUTATIONS for more than the default number of mutations a file.
+// Runs the entry point of a parser on a corpus of files and on their seeded mutations. Files whose
+// names begin with good_ must be read, all others refused; a mutation may be either.
+// HANDSEL_FUZZ_MUTATIONS sets the number of mutations per file.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ inline std::string mutated(std::string text, const std::vector<std::string>& pie
       case 3:
         if (at < text.size()) text[at] = static_cast<char>(random());
         break;
-      case 4: {  // one number becomes another
+      case 4: {  // replaces a digit of a number
         const std::size_t digit = text.find_first_of("0123456789", at);
         if (digit == std::string::npos) break;
         const std::size_t end = text.find_first_not_of("0123456789.e+-", digit);

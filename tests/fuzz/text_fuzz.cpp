@@ -1,4 +1,4 @@
-// Settings, scenarios and stories are texts that people write. For libFuzzer: clang++
+// Fuzzes settings, scenarios and stories, which people write. For libFuzzer: clang++
 // -fsanitize=fuzzer,address with the sources of common/config and deploy/handsel/story/story.cpp;
 // here corpora and their seeded mutations are replayed.
 #include <cmath>

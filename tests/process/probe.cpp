@@ -1,4 +1,4 @@
-// The smallest component: answers every task goal with a status. For the tests of run_process.
+// A minimal component for the tests of run_process: answers every task goal with a status.
 #include "common/bus/process.hpp"
 #include "common/messages/task.hpp"
 

@@ -1,5 +1,5 @@
-// A component as a process: ready line, clean end, refusals with their exit codes, one of a kind in
-// a domain.
+// A component as a process: ready line, clean end, refusals with exit codes, one instance of a kind
+// per domain.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>

@@ -1,7 +1,7 @@
-// Random broken lines of Jido's arm among random boxes: never longer than with a stop at each node,
-// inside the limits, and free of contact at every millimetre. States the spheres around the links
-// clear are taken for free, the rest is FCL's; every kAlone-th line is FCL's alone. HANDSEL_RUNS:
-// how many lines (20); HANDSEL_FIRST: of those the first that is looked at (1).
+// Random polylines of Jido's arm among random boxes: never slower than with a stop at each
+// waypoint, inside the limits, and free of contact at every millimetre. Spheres around the links
+// prove most states free, FCL checks the rest; FCL alone checks every kAlone-th line. HANDSEL_RUNS:
+// number of lines (20); HANDSEL_FIRST: the first line that is checked (1).
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr unsigned kSeed = 44;
 constexpr int kAlone = 100;
-constexpr double kReach = 1.6;   // no point of arm and hand is farther from an axis [m]
-constexpr double kMost = 0.001;  // a point of the robot moves between two states [m]
+constexpr double kReach = 1.6;  // max distance of a point of arm and hand from an axis [m]
+constexpr double kMaxPointMotion = 0.001;  // motion of a point between two states [m]
 
 TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_free) {
   const char* asked = std::getenv("HANDSEL_RUNS");
@@ -64,27 +64,27 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
     const SegmentTable table(found);
     MotionState3 state = found.at(0);
     int cursor = 0;
-    CollisionWorld& judge = run % kAlone == 0 ? exact : wide;
+    CollisionWorld& checker = run % kAlone == 0 ? exact : wide;
     for (double t = 0; t <= table.duration();) {
       table.evaluate(t, cursor, state);
       ++states;
       const CollisionVerdict verdict =
-          judge.is_free(RobotModel::with(request.start, arm, state.position))
+          checker.is_free(RobotModel::with(request.start, arm, state.position))
               ? CollisionVerdict{}
-              : judge.check(RobotModel::with(request.start, arm, state.position));
+              : checker.check(RobotModel::with(request.start, arm, state.position));
       if (!verdict.free) {
         double off = 1e9;
         for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
-          const Vector leg = request.nodes[k + 1] - request.nodes[k];
+          const Vector segment = request.nodes[k + 1] - request.nodes[k];
           const double s = std::clamp(
-              (state.position - request.nodes[k]).dot(leg) / leg.squaredNorm(), 0.0, 1.0);
-          off = std::min(off, (state.position - request.nodes[k] - s * leg).norm());
+              (state.position - request.nodes[k]).dot(segment) / segment.squaredNorm(), 0.0, 1.0);
+          off = std::min(off, (state.position - request.nodes[k] - s * segment).norm());
         }
         FAIL() << "line " << run << " at " << t << " s, " << off
                << " rad off the legs: " << verdict.first << " touches " << verdict.second;
       }
       const double speed = kReach * state.velocity.cwiseAbs().sum();
-      t += std::clamp(kMost / std::max(speed, 1e-3), 2e-4, 0.02);
+      t += std::clamp(kMaxPointMotion / std::max(speed, 1e-3), 2e-4, 0.02);
     }
   }
   std::printf(

@@ -1,5 +1,5 @@
-// Cartesian motions of Jido's arm and of the iiwa from the reference data: where the tool is, what
-// the joints do. HANDSEL_RUNS: how many of each robot (12).
+// Cartesian motions of Jido's arm and of the iiwa of the reference data: pose of the tool, motion
+// of the joints. HANDSEL_RUNS: number of motions per robot (12).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -22,7 +22,7 @@ constexpr unsigned kSeed = 461;
 struct Tally {
   int wanted{}, solved{};
   double off{}, turned{}, step{}, slowest{1}, excess{};
-  std::vector<double> compression, share;  // share: time to compute / time of motion
+  std::vector<double> compression, time_ratio;  // ratio: computing time / duration
 };
 
 void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& also,
@@ -44,7 +44,7 @@ void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& a
       continue;
     }
     ++tally.solved;
-    tally.share.push_back(lasted / std::max(0.1, motion.path.duration()));
+    tally.time_ratio.push_back(lasted / std::max(0.1, motion.path.duration()));
     tally.compression.push_back(motion.executable.approximation.compression);
     tally.slowest = std::min(tally.slowest, motion.executable.slowest);
     const Trajectory& run = motion.executable.approximation.trajectory;
@@ -71,14 +71,14 @@ void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& a
       last = motion.samples[i];
     }
     for (std::size_t k = 0; k < request.nodes.size(); ++k) {
-      double least = 1;
+      double min_distance = 1;
       for (std::size_t i = 0; i < motion.samples.size(); i += 5)
-        least = std::min(
-            least,
+        min_distance = std::min(
+            min_distance,
             (motion.path.pose(static_cast<double>(i) * CartesianSettings().period).translation() -
              request.nodes[k].T_root_tool.translation())
                 .norm());
-      EXPECT_LT(least, 0.1) << "node " << k;
+      EXPECT_LT(min_distance, 0.1) << "node " << k;
     }
     const Pose end = motion.path.pose(motion.path.duration());
     EXPECT_LT((end.translation() - request.nodes.back().T_root_tool.translation()).norm(), 1e-6);
@@ -90,7 +90,7 @@ void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& a
 
 void report(const char* name, Tally& tally) {
   std::sort(tally.compression.begin(), tally.compression.end());
-  std::sort(tally.share.begin(), tally.share.end());
+  std::sort(tally.time_ratio.begin(), tally.time_ratio.end());
   std::printf(
       "%s, seed %u: %d of %d motions solved; tool within %.3f mm and %.4f deg of TR, joints move "
       "at most %.4f rad a period, slowest alpha "
@@ -98,7 +98,7 @@ void report(const char* name, Tally& tally) {
       name, kSeed, tally.solved, tally.wanted, 1e3 * tally.off, tally.turned * 180 / M_PI,
       tally.step, tally.slowest,
       tally.compression.empty() ? 0.0 : tally.compression[tally.compression.size() / 2],
-      tally.share.empty() ? 0.0 : 1e3 * tally.share[tally.share.size() / 2]);
+      tally.time_ratio.empty() ? 0.0 : 1e3 * tally.time_ratio[tally.time_ratio.size() / 2]);
 }
 
 int runs() {

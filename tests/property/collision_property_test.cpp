@@ -81,7 +81,7 @@ TEST(CollisionProperty, no_point_is_in_both_shapes_unless_they_touch) {
   EXPECT_LT(touching, 1300);
 }
 
-/// A mesh is its surface: what is inside it without touching it is free.
+/// Returns whether a shape is inside a mesh without contact: a mesh is its surface, so it is free.
 bool wholly_inside(const Shape& shape, const Pose& T, const Vector3& extents, const Pose& T_box) {
   const CollisionShapePtr bounds = CollisionShape::make(shape);
   const Vector3 center = T_box.inverse() * (T * bounds->box_center());

@@ -1,5 +1,5 @@
-// Random stories: whatever is said, forgotten or garbled, every set-point keeps the guard limits
-// and follows from the one before.
+// Random event sequences: for any commands, lost or malformed messages, every set-point keeps the
+// guard limits and continues the preceding one.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -107,7 +107,7 @@ class Story {
     bench.run(5.0);
     ++bench.go.epoch;
     bench.run(0.3);
-    // A motion of more axes than the arm's is not switched to one of the arm.
+    // A trajectory of arm and other axes is not replaced by one of the arm alone.
     for (int k = 0; k < 200 && bench.core.status_key().motion == MotionState::running; ++k)
       bench.run(0.1);
     Vector goal(3);
@@ -189,7 +189,7 @@ class Story {
   std::uint64_t id_{};
 };
 
-constexpr double kStopSlack = 0.05;  // [s] guarantee 2
+constexpr double kStopSlack = 0.05;  // max extra time of a stop, guarantee 2 [s]
 
 int steps_wanted() {
   const char* text = std::getenv("HANDSEL_STORY_STEPS");

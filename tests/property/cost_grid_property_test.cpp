@@ -1,4 +1,4 @@
-// The cost map against the analytic costs it stands for, on random people, furniture and points;
+// The cost map against the analytic costs that it samples, on random people, furniture and points;
 // the bounds are those of docs/costs.md.
 #include <algorithm>
 #include <cstdio>
@@ -15,7 +15,8 @@ namespace handsel::costmap::cost_grid_property_test {
 namespace {
 
 constexpr double kQuantum = 0.5 / 254;
-constexpr double kNearEyes = 0.15;  // [m] closer the angle of sight turns within a cell
+// Distance to the eyes below which the angle of sight varies within a cell [m].
+constexpr double kNearEyes = 0.15;
 
 unsigned seed() {
   const char* given = std::getenv("HANDSEL_SEED");
@@ -57,7 +58,7 @@ class Draw {
   std::mt19937 random_;
 };
 
-/// Least and most over the points within a cell of p.
+/// Returns min and max over the points within a cell of p.
 template <class F>
 std::pair<double, double> around(const Vector3& p, double cell, F&& f) {
   std::pair<double, double> range{1, 0};
@@ -118,13 +119,13 @@ TEST(CostGrid, arm_comfort_is_within_the_stated_error) {
         const double exact = exact_at(p);
         ++points;
         unlike += value.forbidden != (exact >= 1);
-        const auto [least, most] = around(p, comfort.resolution(), exact_at);
+        const auto [lowest, highest] = around(p, comfort.resolution(), exact_at);
         if (value.forbidden) {
-          ASSERT_EQ(most, 1.0) << "refused although all around is within reach";
+          ASSERT_EQ(highest, 1.0) << "refused although all around is within reach";
           continue;
         }
-        ASSERT_LT(least, 1.0) << "nothing around is within reach";
-        beyond = std::max({beyond, least - value.cost, most < 1 ? value.cost - most : 0});
+        ASSERT_LT(lowest, 1.0) << "nothing around is within reach";
+        beyond = std::max({beyond, lowest - value.cost, highest < 1 ? value.cost - highest : 0});
         if (exact >= 1) continue;
         ++reachable;
         sum += std::abs(value.cost - exact);
@@ -183,7 +184,7 @@ TEST(CostGrid, the_gradient_is_the_slope_of_the_value_and_points_away_from_the_b
   MapMaker maker({});
   const Person person = draw.person(1.75);
   const Layers& layers = maker.make(person, {});
-  int uphill = 0, judged = 0;
+  int uphill = 0, checked = 0;
   for (const std::size_t layer : {0, 2, 3}) {
     const CostGrid grid(layers[layer]);
     for (int i = 0; i < 3000; ++i) {
@@ -204,13 +205,13 @@ TEST(CostGrid, the_gradient_is_the_slope_of_the_value_and_points_away_from_the_b
       const SimplifiedBody body = simplified_body(person);
       const double d0 = simplified_distance(body, p, p, 0);
       if (d0 < 0.1 || d0 > 0.7) continue;
-      ++judged;
+      ++checked;
       const Vector3 q = p + 0.05 * at.gradient.normalized();
       uphill += simplified_distance(body, q, q, 0) < d0;
     }
   }
-  EXPECT_GT(judged, 300);
-  EXPECT_GE(uphill, judged * 99 / 100);
+  EXPECT_GT(checked, 300);
+  EXPECT_GE(uphill, checked * 99 / 100);
 }
 
 TEST(CostGrid, ends_at_its_edges_and_forbids_where_most_neighbours_are_forbidden) {

@@ -103,7 +103,7 @@ TEST(CostProperty, many_states_at_once_cost_what_they_cost_one_by_one) {
       Vector from = robot->rest_configuration(), to = from;
       if (k % 5 == 0)
         from[robot->dof() - 1] = to[robot->dof() - 1] +=
-            0.1;  // another axis moved: the robot is folded anew
+            0.1;  // another axis moved: the capsules are recomputed
       for (int axis : axes) from[axis] = angle(random), to[axis] = angle(random);
       std::vector<double> at, costs(40);
       for (int i = 0; i < 40; ++i) at.push_back(i / 39.0);

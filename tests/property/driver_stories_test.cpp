@@ -1,6 +1,6 @@
-// What each example driver does of its own, in one virtual time with the real controller and a fake
-// of the maker's side: lost messages, wires that jitter, jumps, reflexes, limits toward the joints'
-// ends, the gripper, the load; and hostile datagrams.
+// Each example driver in virtual time with the real controller and an emulated robot controller:
+// lost messages, jitter, jumps, reflexes, limits near the joint ends, the gripper, the load; and
+// hostile datagrams.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -157,8 +157,8 @@ TYPED_TEST(AnyDriver, a_wire_and_a_maker_that_jitter_never_make_the_references_j
   std::mt19937 random(seed);
   auto& s = this->stage_;
   s.start();
-  for (int leg = 0; leg < 4; ++leg) {
-    s.go_to(leg % 2 ? 0.0 : 1.0, leg % 2 ? 0.0 : 0.4, leg % 2 ? 0.0 : -0.5);
+  for (int stroke = 0; stroke < 4; ++stroke) {
+    s.go_to(stroke % 2 ? 0.0 : 1.0, stroke % 2 ? 0.0 : 0.4, stroke % 2 ? 0.0 : -0.5);
     for (int k = 0; k < 4000; ++k) {
       if (k % 40 == 0) s.late = 1 + static_cast<int>(random() % 12);
       if (k % 50 == 7) s.fake().events.drop = 1 + static_cast<int>(random() % 2);
@@ -217,8 +217,8 @@ TYPED_TEST(AnyDriver, what_the_hand_holds_is_told_to_the_maker_with_the_set_poin
   jumps.position[1] += 0.2;
   EXPECT_FALSE(s.driver().command(jumps, s.now()));
   EXPECT_EQ(s.fake().account.load, 0.4) << "nothing of a set-point that is refused";
-  s.run(0.1);  // the refused one stops the robot, which follows again once set-points rest where it
-               // is
+  s.run(0.1);  // the refused set-point stops the robot; it follows again set-points at rest at its
+  // position
   EXPECT_EQ(s.fake().account.load, 0.0) << "the controller says that nothing is held";
 }
 
@@ -229,8 +229,8 @@ TYPED_TEST(AnyDriver, a_silent_maker_stops_the_robot_and_it_goes_on_with_a_new_p
   s.run(1.0);
   s.fake().events.drop = 60;
   s.run(0.1);
-  // The reflex arm's own controller answers lost messages with a reflex, which a person ends; the
-  // position arm just waits.
+  // The reflex arm answers lost messages with a reflex, which a person must reset; the position arm
+  // only waits.
   constexpr bool kReflex = std::is_same_v<TypeParam, ReflexStage>;
   EXPECT_EQ(s.state.mode, kReflex ? DriveMode::protective_stop : DriveMode::braked);
   const std::string why = s.driver().trouble();

@@ -1,5 +1,5 @@
 // Random contact sets: the strict test of force closure against an independent linear program
-// (GLPK) on every one, epsilon against an independent hull (Qhull). HANDSEL_RUNS: how many (400).
+// (GLPK), and epsilon against an independent hull (Qhull). HANDSEL_RUNS: number of sets (400).
 #include <gtest/gtest.h>
 
 #include <glpk.h>
@@ -15,7 +15,7 @@
 namespace handsel::grasp_planner::grasp_oracles_test {
 namespace {
 
-/// Largest t with W lambda = 0, sum of lambda = 1, lambda >= t; -1 when there is none.
+/// Returns the max t with W lambda = 0, sum of lambda = 1, lambda >= t; -1: none.
 double closure_oracle(const WrenchMatrix& w) {
   const int rows = static_cast<int>(w.rows()), n = static_cast<int>(w.cols());
   // lambda = t + mu, mu >= 0: W mu + (W 1) t = 0, sum of mu + n t = 1.
@@ -52,8 +52,7 @@ std::vector<PointContact> random_contacts(std::mt19937_64& random, int count) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> friction(0.1, 1.0);
   const double mu = friction(random);
-  // From any set of points and normals to contacts that face each other on a body, of which more
-  // are closed.
+  // From random points and normals to opposed contacts on a body, which are more often closed.
   const double facing = std::uniform_real_distribution<double>(0, 3)(random);
   std::vector<PointContact> contacts;
   while (static_cast<int>(contacts.size()) < count) {
@@ -78,8 +77,8 @@ TEST(GraspOracles,
     const WrenchMatrix w =
         contact_wrenches(random_contacts(random, count), edges, Vector3::Zero(), 1.0);
     const double t = closure_oracle(w);
-    // Two opposed contacts balance; a third that can turn the object about their line one way only
-    // leaves t at 0: not closed, and not rare.
+    // Two opposed contacts balance; a third that turns the object about their line in one direction
+    // only leaves t at 0: a frequent case without closure.
     const bool expected = t > 1e-9 && wrench_rank(w) == 6;
     at_border += std::abs(t) <= 1e-9;
     ASSERT_EQ(force_closure(w), expected) << "trial " << trial << " seed " << seed << " t " << t;

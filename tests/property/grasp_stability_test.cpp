@@ -1,5 +1,5 @@
-// Force closure and epsilon against an independent hull (Qhull) on random contact sets, and where
-// the answer has a closed form.
+// Force closure and epsilon against an independent hull (Qhull) on random contact sets, and against
+// closed-form solutions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The squeeze of random grasps against oracles that share no code with it: balance, cones, caps,
-// the margin by sampled loads, and that no other squeeze is better.
+// Grip forces of random grasps against independent oracles: balance, friction cones, force limits,
+// the margin by sampled loads, and optimality.
 #include "common/grasp/grip_force.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Vector3 random_unit(Random& random) {
   return Vector3(n(random), n(random), n(random)).normalized();
 }
 
-/// Contacts on a ball of 4 cm, normals up to 20 degrees off it.
+/// Returns contacts on a ball of 4 cm with normals up to 20 degrees from the radial direction.
 std::vector<PointContact> random_contacts(Random& random, int count) {
   std::vector<PointContact> contacts;
   for (int i = 0; i < count; ++i) {
@@ -42,8 +42,7 @@ Eigen::MatrixXd grasp_matrix(const std::vector<PointContact>& contacts, const Ve
   return G;
 }
 
-/// What of the friction share is left at the worst contact under the worst of the sampled loads
-/// [N].
+/// Returns the min remaining friction force of the contacts over the sampled loads [N].
 double sampled_margin(const std::vector<PointContact>& contacts, const Vector3& com,
                       const Eigen::VectorXd& squeeze, double load, double share,
                       const std::vector<Vector3>& ways) {
@@ -87,8 +86,8 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
     const Eigen::MatrixXd G = grasp_matrix(contacts, com);
     EXPECT_LT((G * f).norm(), 1e-6 * std::max(1.0, f.norm()))
         << "seed " << GetParam() << " trial " << trial;
-    // The cone is linearised from outside: the true margin is at most the force by which the
-    // polygon is larger away from it.
+    // The linearised cone encloses the friction cone: the true margin is smaller by at most the
+    // difference of the two.
     const double true_margin =
         sampled_margin(contacts, com, f, load, settings.friction_fraction, ways);
     const double rough =
@@ -97,7 +96,7 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
         << "seed " << GetParam() << " trial " << trial;
     EXPECT_LT(grip.margin, true_margin + rough + 0.05 * std::abs(grip.margin));
     held += grip.margin > 0;
-    // Another squeeze: the margin is concave, so a better one would show near this one.
+    // Other grip forces: the margin is concave, so a better solution would exist nearby.
     const Eigen::MatrixXd free = Eigen::FullPivLU<Eigen::MatrixXd>(G).kernel();
     for (int k = 0; k < 200; ++k) {
       const Eigen::VectorXd step = free * Eigen::VectorXd::NullaryExpr(free.cols(), [&] {
@@ -181,8 +180,8 @@ TEST(GripForces, opposed_pads_press_with_all_they_may_and_what_cannot_be_held_sa
   ASSERT_EQ(grip.forces.size(), 3U);
   for (const Vector3& f : grip.forces)
     EXPECT_NEAR(f.norm(), settings.max_normal, 0.02) << "three equal pads share the load equally";
-  // Straight down each pad bears a third; sideways the equal springs of opposed pads leave no more
-  // than that.
+  // Vertically each pad bears a third; horizontally the equal springs of opposed pads allow no
+  // larger margin.
   EXPECT_GT(grip.margin, 0.8 * 0.6 * settings.max_normal - 0.1 * settings.acceleration);
   EXPECT_LT(grip.margin, 0.8 * 0.6 * settings.max_normal);
   EXPECT_LT(grip_forces({at(0), at(0.3), at(-0.3)}, Vector3::Zero(), 0.1, settings).margin, 0.0)
@@ -243,7 +242,7 @@ TEST(SharedGripForces, each_hand_balances_itself_and_the_margin_is_that_of_the_s
                                       (force - normal * c.inward_normal).norm());
         }
       }
-      // The cone is linearised from outside.
+      // The linearised cone encloses the friction cone.
       const double rough = (1 / std::cos(M_PI / settings.edges) - 1) * settings.friction_fraction *
                                0.6 * (settings.max_normal + 6) +
                            0.1;

@@ -1,5 +1,5 @@
-// Hands expected by SPARK beside where they went: recorded motions, seen at 30 Hz with noise. The
-// baselines are the hand that stays and the hand that goes on as fast as SPARK says it moves.
+// Hand predictions of SPARK against the true motion: recorded motions, observed at 30 Hz with
+// noise. Baselines: a hand at rest, and a hand with the constant velocity that SPARK reports.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kNoise = 0.01;  // of a joint [m]
-constexpr double kRate = 30;     // [Hz]
+constexpr double kNoise = 0.01;  // noise of a joint [m]
+constexpr double kRate = 30;     // sample rate [Hz]
 constexpr std::size_t kAheads = 5;
 
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
-/// Points by joint over time.
+/// Joint positions over time.
 struct Motion {
   std::string name;
   double rate{};
@@ -128,7 +128,7 @@ std::vector<Motion> other_motions(const fs::path& folder) {
           motion.frames.back()[kBodyJoints[i]] = points[i];
       }
       out.push_back(std::move(motion));
-    } catch (const std::exception&) {  // one of them is a posture
+    } catch (const std::exception&) {  // one file contains a single pose
     }
   }
   return out;
@@ -168,7 +168,7 @@ TEST(HandPrediction, on_recorded_walks_and_dances_the_balls_hold_the_hands) {
   }
 }
 
-/// Reaches of random length and time, minimum jerk, from seeds: made by a formula of its own.
+/// Seeded minimum-jerk reaches of random length and duration, by an independent formula.
 TEST(HandPrediction, on_random_reaches_it_beats_both_baselines_and_grows_with_time) {
   std::mt19937 random(20261121);
   std::printf("seed 20261121\n");

@@ -1,5 +1,5 @@
-// Supervisor core and controller core over random events and restarts of either: nothing may move
-// while a latch of a person stands, and once no latch stands it may again.
+// Supervisor core and controller core over random events and restarts of either: no motion while a
+// person's latch is set, and motion is permitted again after all latches are cleared.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -21,15 +21,14 @@ using supervisor::DurableState;
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 
-/// What people know without asking any process: the oracle.
+/// The oracle: the state that people know, independent of any process.
 struct Truth {
   bool paused{}, fault{}, stopped{};
   double override_factor{1.0};
   bool stands() const { return paused || fault || stopped; }
 };
 
-/// The supervisor's part, with a disk that takes a while and loses what was on its way when the
-/// process is killed.
+/// The supervisor, with a disk that is delayed and loses pending writes when the process is killed.
 class SupervisorPart {
  public:
   explicit SupervisorPart(const settings::SupervisorSettings& settings) : settings_(settings) {
@@ -67,7 +66,7 @@ class SupervisorPart {
          state.safety.override_factor, state.safety.reason},
         now);
   }
-  /// Has the disk everything that was decided?
+  /// Returns whether all decisions are on disk.
   bool settled() const { return !writing_ && stored_ == latches_->safety().revision; }
 
  private:
@@ -79,7 +78,7 @@ class SupervisorPart {
   std::optional<std::pair<std::uint64_t, std::string>> writing_;
 };
 
-/// The controller's part.
+/// The controller.
 class ControllerPart {
  public:
   void start() {
@@ -91,14 +90,14 @@ class ControllerPart {
   void receive(const Go& go, TimePoint now) {
     const auto refusal = gate_.receive(go);
     if (refusal == trajectory_controller::GoRefusal::older_epoch) return;
-    heard_ = now;
+    received_ = now;
     if (refusal == trajectory_controller::GoRefusal::none) go_ = go;
   }
   ExecutionStatus step(DriveMode drive, bool fault, TimePoint now) {
     gate_.receive(drive);
     trajectory_controller::ModeInputs in;
     in.robot_age = in.human_age = in.forecast_age = in.attention_age = 0.001;
-    in.go_age = go_ ? to_seconds(now - heard_) : -1;
+    in.go_age = go_ ? to_seconds(now - received_) : -1;
     in.at_rest = true;
     in.drive_enabled = drive == DriveMode::enabled;
     in.tracking_error = fault;
@@ -120,7 +119,7 @@ class ControllerPart {
   trajectory_controller::GoGate gate_;
   std::unique_ptr<trajectory_controller::ModeMachine> modes_;
   std::optional<Go> go_;
-  TimePoint heard_{};
+  TimePoint received_{};
 };
 
 class Latches {
@@ -147,11 +146,11 @@ class Latches {
   int moved() const { return moved_; }
   int blocked() const { return blocked_; }
 
-  /// A person puts everything right; then it must move within two seconds.
+  /// A person clears all latches; then motion must be possible within two seconds.
   void put_right() {
     drive_ = DriveMode::enabled;
     calm_ = true;
-    for (int k = 0; k < 20; ++k) cycle();  // the supervisor is back
+    for (int k = 0; k < 20; ++k) cycle();  // the supervisor restarts
     for (int k = 0; k < 100; ++k) {
       if (k == 0) person_acknowledges();
       if (k == 40) person_resumes();
@@ -173,7 +172,7 @@ class Latches {
   }
   bool chance(int one_in) { return random_() % static_cast<std::uint64_t>(one_in) == 0; }
 
-  /// A person is answered once the disk has it; what was not answered is not promised.
+  /// A person is answered after the state is on disk; an unanswered act may be lost.
   void person_pauses() {
     supervisor_.latches().pause();
     settle();
@@ -219,12 +218,12 @@ class Latches {
     else if (drive_ != DriveMode::enabled && chance(10))
       drive_ = DriveMode::enabled;
     if (drive_ != before && drive_ != DriveMode::enabled) truth_.stopped = true;
-    // The controller restarts once the supervisor has heard of what has happened: who else should
-    // know, when both died with it?
-    const bool told = supervisor_.alive() && supervisor_.settled() &&
-                      supervisor_.latches().safety().fault == truth_.fault &&
-                      supervisor_.latches().safety().awaits_person == truth_.stopped;
-    if (drive_ == DriveMode::enabled && !fault_ && told && chance(70)) {
+    // The controller restarts only after its report has reached the supervisor: otherwise the event
+    // would be lost with both processes.
+    const bool is_reported = supervisor_.alive() && supervisor_.settled() &&
+                             supervisor_.latches().safety().fault == truth_.fault &&
+                             supervisor_.latches().safety().awaits_person == truth_.stopped;
+    if (drive_ == DriveMode::enabled && !fault_ && is_reported && chance(70)) {
       controller_.start();
       if (latched_go_) controller_.receive(*latched_go_, now_);  // the last Go is transient local
     }

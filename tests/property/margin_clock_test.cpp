@@ -1,5 +1,5 @@
-// The clock law margin: between two looks nobody within the assumed speeds uses up the margin. The
-// oracle integrates the true distance in steps of 1 ms and computes its bounds on its own.
+// The adaptive clock by margin: between two activations no person within the assumed speeds uses up
+// the margin. The oracle integrates the true distance in steps of 1 ms and computes its own bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace handsel::attention::margin_clock_test {
 namespace {
 
-constexpr double kStep = 0.001;  // of the integration [s]
-constexpr double kTick = 0.01;   // at which the clock is asked [s]
+constexpr double kStep = 0.001;  // step of the integration [s]
+constexpr double kTick = 0.01;   // period of the clock's evaluation [s]
 constexpr double kPMin = 0.04, kPMax = 0.8;
 constexpr double kSensorPeriod = 0.03;
 
@@ -30,7 +30,7 @@ class Approach {
     left_ -= kStep;
     if (left_ <= 0) {
       left_ = draw(0.05, 1.5);
-      // Often as fast as assumed, else anything up to that, also away.
+      // Often the max assumed speed, else a random speed below it, also away.
       closing_ = draw(0, 1) < 0.4
                      ? person_speed_ + robot_speed_
                      : draw(-person_speed_, person_speed_) + draw(-robot_speed_, robot_speed_);
@@ -47,16 +47,16 @@ class Approach {
 };
 
 struct Watched {
-  int looks{};                ///< activations of the clock
+  int activation_count{};     ///< activations of the clock
   double time{};              ///< of all approaches [s]
-  int beyond{};               ///< looks whose period is not clamped to p_min
-  double excess{-1};          ///< max distance below what such a look guarantees [m]
-  double clamped_excess{-1};  ///< the same of the other looks [m]
-  double tightest{1e9};       ///< min distance above the guarantee of any look [m]
-  int surprises{};            ///< times the margin was used up without a look from p_min on
+  int beyond{};               ///< activations whose period is not clamped to p_min
+  double excess{-1};          ///< max distance below the guarantee of such an activation [m]
+  double clamped_excess{-1};  ///< the same of the other activations [m]
+  double tightest{1e9};       ///< min distance above the guarantee of any activation [m]
+  int surprises{};            ///< exhausted margins without an activation at p_min
 };
 
-/// Watches random approaches with a clock; `margin` is what the oracle assumes.
+/// Samples random approaches with a clock; `margin`: assumption of the oracle.
 Watched watch(const ClockSettings& clock_settings, const MarginSettings& margin, int approaches) {
   std::mt19937 random(20);
   Watched out;
@@ -65,33 +65,34 @@ Watched watch(const ClockSettings& clock_settings, const MarginSettings& margin,
     Approach person(random, margin.person_speed, margin.robot_speed);
     AdaptiveClock clock(clock_settings, from_seconds(0.5 * kTick), "avoid");
     std::deque<double> past;  // distances, newest last
-    double guaranteed = -1, least = 1e9;
+    double guaranteed = -1, min_distance = 1e9;
     bool clamped = true, looked = false;
     std::uniform_real_distribution<double> delay(margin.data_age - kSensorPeriod, margin.data_age);
     const int steps = static_cast<int>(8 / kStep);
     for (int i = 0; i < steps; ++i) {
       past.push_back(person.distance());
       if (past.size() > 400) past.pop_front();
-      least = std::min(least, person.distance());
+      min_distance = std::min(min_distance, person.distance());
       const TimePoint now(from_seconds(100 + i * kStep));
       if (i % 10 == 0 && clock.due(now)) {
         if (looked) {
-          const double above = least - guaranteed;
+          const double above = min_distance - guaranteed;
           out.tightest = std::min(out.tightest, above);
           (clamped ? out.clamped_excess : out.excess) =
               std::max(clamped ? out.clamped_excess : out.excess, -above);
-          out.surprises += !clamped && least < margin.distance;
+          out.surprises += !clamped && min_distance < margin.distance;
         }
         const auto age = std::min(past.size() - 1, static_cast<std::size_t>(delay(random) / kStep));
         const double seen = past[past.size() - 1 - age];
         clock.fire(seen, now);
-        ++out.looks;
-        // What is left when all of `use` is spent, or p_min passes, after the data were taken.
+        ++out.activation_count;
+        // Remaining distance after `use` is spent, or p_min has passed, since the capture of the
+        // data.
         clamped = clock.period() <= kPMin + 1e-9;
         guaranteed = clamped ? seen - speed * (kPMin + margin.data_age + 0.5 * kTick + kStep)
                              : seen - margin.use * (seen - margin.distance) - 1e-6;
         out.beyond += !clamped;
-        least = person.distance();
+        min_distance = person.distance();
         looked = true;
       }
       person.advance();
@@ -112,7 +113,7 @@ TEST(MarginClock, nobody_uses_up_the_margin_between_two_looks) {
     EXPECT_LE(run.clamped_excess, 1e-9) << "use " << use;
     EXPECT_EQ(run.surprises, 0) << "use " << use;
     std::printf("use %.2f: %d looks, every %.3f s, tightest %.3f m above the guarantee\n", use,
-                run.looks, run.time / run.looks, run.tightest);
+                run.activation_count, run.time / run.activation_count, run.tightest);
   }
 }
 
@@ -123,7 +124,7 @@ TEST(MarginClock, a_fixed_clock_with_as_many_looks_does_not_keep_it) {
   const Watched adaptive = watch(settings, margin, 200);
   ClockSettings fixed = settings;
   fixed.rule = ClockLaw::fixed;
-  fixed.period = adaptive.time / adaptive.looks;
+  fixed.period = adaptive.time / adaptive.activation_count;
   const Watched run = watch(fixed, margin, 200);
   EXPECT_GT(run.surprises, 0);
   EXPECT_GT(run.excess, 0);

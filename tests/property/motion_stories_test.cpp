@@ -1,6 +1,6 @@
-// Random stories of a running motion: switch, slow down, stop, recoil, resume, at random times.
-// Every sample is within the limits and follows from the one before. HANDSEL_RUNS=1000000 for the
-// long run.
+// Random event sequences of a running motion: switch, slow down, stop, recoil, resume, at random
+// times. Every sample is within the limits and continues the preceding one. HANDSEL_RUNS=1000000
+// for the long run.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -38,8 +38,8 @@ struct Story {
   Trajectory trajectory(const VectorXd& near) {
     const double reach = std::pow(10.0, draw(-2, 0.3));
     std::vector<VectorXd> nodes{near};
-    const int legs = 1 + pick(3);
-    for (int i = 0; i < legs; ++i) nodes.push_back(nodes.back() + point(reach));
+    const int segments = 1 + pick(3);
+    for (int i = 0; i < segments; ++i) nodes.push_back(nodes.back() + point(reach));
     Trajectory whole = smooth(nodes, planning).trajectory;
     return pick(3) == 0 ? cut(whole, draw(0, 0.9) * whole.duration(), whole.duration()) : whole;
   }
@@ -69,10 +69,10 @@ struct Story {
       const double V = guard.velocity[i], A = guard.acceleration[i], J = guard.jerk[i];
       const double x0 = last.position[i], v0 = last.velocity[i], a0 = last.acceleration[i];
       const double x1 = now.position[i], v1 = now.velocity[i], a1 = now.acceleration[i];
-      const double share = std::max({std::abs(v1) / V, std::abs(a1) / A,
+      const double ratio = std::max({std::abs(v1) / V, std::abs(a1) / A,
                                      std::abs(a1 - a0) / (J * dt), std::abs(law.jerk()[i]) / J});
-      largest = std::max(largest, share);
-      if (!(share <= 1 + kTolerance)) {
+      largest = std::max(largest, ratio);
+      if (!(ratio <= 1 + kTolerance)) {
         ADD_FAILURE() << told << "axis " << i << ": velocity " << v1 / V << ", acceleration "
                       << a1 / A << ", change of acceleration " << (a1 - a0) / (J * dt) << ", jerk "
                       << law.jerk()[i] / J << " of the limit";

@@ -1,5 +1,5 @@
-// The offer detector beside ground truth: labelled sequences of what people do with an object, seen
-// by emulated sensors, followed by SPARK on a LocalBus.
+// The offer detector against ground truth: labelled sequences of people with an object, observed by
+// emulated sensors and tracked by SPARK on a LocalBus.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,15 +25,15 @@ namespace fs = std::filesystem;
 using test::Act;
 using test::ActedSequence;
 
-// Limits of the figures: of 1000 fresh sequences the precision was 0.990 and the recall 0.997.
+// Lower bounds; 1000 new sequences had a precision of 0.990 and a recall of 0.997.
 constexpr double kMinPrecision = 0.98, kMinRecall = 0.98;
-constexpr double kObjectNoise = 0.001;  // of the tracker in the scenarios [m]
-constexpr double kStep = 0.01;          // of the ground truth [s]
-constexpr double kPlannerStep = 0.02;   // [s]
-constexpr double kMaxDelay = 0.3;       // [s]
-constexpr double kEarly = 0.3;          // before the rest, in which a detection counts as right [s]
-constexpr double kRestTime = 0.3;       // for which an offer must be at rest to begin [s]
-constexpr double kMaxOutlast = 1.0;     // by which a detection may outlast its offer [s]
+constexpr double kObjectNoise = 0.001;  // noise of the tracker in the scenarios [m]
+constexpr double kStep = 0.01;          // period of the ground truth [s]
+constexpr double kPlannerStep = 0.02;   // period of the planner [s]
+constexpr double kMaxDelay = 0.3;       // max delay of a detection [s]
+constexpr double kEarly = 0.3;          // max lead of a correct detection before the rest [s]
+constexpr double kRestTime = 0.3;       // time at rest after which an offer begins [s]
+constexpr double kMaxOutlast = 1.0;     // max time of a detection after its offer [s]
 
 fs::path deploy() { return fs::path(HANDSEL_SOURCE_DIR) / "deploy"; }
 
@@ -60,20 +60,20 @@ struct Found {
   double begin{}, end{};
 };
 
-/// A span of time in which somebody offers [s].
+/// The time span of an offer [s].
 struct Offered {
   double begin{};     ///< the object is offered
   double rest{-1};    ///< it is at rest for long enough, from here on; negative: never
   double end{};       ///< it is withdrawn
-  bool is_unclear{};  ///< nobody could tell the offer
+  bool is_unclear{};  ///< the offer is indistinguishable from keeping
 };
 
-/// What became of one sequence.
+/// Result of one sequence.
 struct Result {
   int right{}, wrong{}, offers{}, in_time{}, unclear{}, unclear_found{};
   std::vector<double> delays;               // [s]
   std::map<std::string, int> wrong_during;  // act -> count
-  std::string story;                        // what went wrong, a line each
+  std::string story;                        // failures, one per line
   void add(const Result& other) {
     right += other.right, wrong += other.wrong, offers += other.offers;
     in_time += other.in_time, unclear += other.unclear;
@@ -212,7 +212,7 @@ class Watched {
     state.velocity = state.effort = state.external_torque = Vector::Zero(state.position.size());
     robot_out_->publish(state);
   }
-  /// Adds what an object with force sensors feels, and the shape of one without a model.
+  /// Adds the forces of an object with force sensors, and the shape of one without a model.
   void complete(ObservedObject& observed, double seen) {
     if (model_.empty()) observed.primitive = {PrimitiveKind::box, {0.45, 0.03, 0.03}};
     for (const auto& [at, grips] : grips_)
@@ -236,8 +236,7 @@ class Watched {
     }
   }
 
-  /// An offer that ends before it has been at rest for long enough need not be found, but whoever
-  /// finds it is right.
+  /// Returns whether an offer must be detected; a shorter rest makes its detection optional.
   bool must_be_found(const Offered& offer) const {
     return offer.rest >= 0 && offer.end - offer.rest >= acts_.label().min_duration;
   }
@@ -254,7 +253,7 @@ class Watched {
     Result out;
     for (const Offered& offer : offers_)
       if (must_be_found(offer)) look_for(offer, out);
-    for (const Found& found : found_) judge(found, out);
+    for (const Found& found : found_) evaluate(found, out);
     return out;
   }
   /// Counts an offer and how it was found.
@@ -277,8 +276,8 @@ class Watched {
     if (delay < 1e8) out.delays.push_back(delay);
     if (!in_time) out.story += line("missed", offer.rest, offer.end, delay);
   }
-  /// Counts what was found as right or wrong.
-  void judge(const Found& found, Result& out) const {
+  /// Counts a detection as right or wrong.
+  void evaluate(const Found& found, Result& out) const {
     bool right = false;
     for (const Offered& offer : offers_) {
       if (offer.is_unclear && must_be_found(offer) && overlap(found, offer)) return;
@@ -338,8 +337,9 @@ std::uint64_t first_seed() {
 void print(const char* title, const Result& all) {
   std::vector<double> delays = all.delays;
   std::sort(delays.begin(), delays.end());
-  const auto at = [&](double share) {
-    return delays.empty() ? 0 : delays[static_cast<std::size_t>(share * double(delays.size() - 1))];
+  const auto at = [&](double fraction) {
+    return delays.empty() ? 0
+                          : delays[static_cast<std::size_t>(fraction * double(delays.size() - 1))];
   };
   std::printf(
       "%s: precision %.4f (%d of %d), recall %.4f (%d of %d within %.1f s), delay median "
@@ -350,7 +350,7 @@ void print(const char* title, const Result& all) {
     std::printf("  wrong during %s: %d\n", act.c_str(), count);
 }
 
-/// Runs sequences of the simulator and of the script, and prints what was found.
+/// Runs sequences of the simulator and of the script, and prints the results.
 Result run_sequences(int count, double object_noise) {
   setenv("HANDSEL_HOME", deploy().c_str(), 1);
   std::printf("seeds %llu to %llu\n", static_cast<unsigned long long>(first_seed()),
@@ -389,7 +389,7 @@ TEST(OfferDetection, a_noisier_tracker_delays_offers_and_hides_none) {
   EXPECT_GE(static_cast<double>(all.delays.size()), 0.95 * all.offers) << "found at all";
 }
 
-/// Runs one view of the recorded handover, and prints what was found.
+/// Runs one view of the recorded handover, and prints the results.
 Result run_recorded(const test::RecordedHandover& recording, test::RecordedView view,
                     const char* title) {
   const auto acts = test::recorded_sequence(recording, view);

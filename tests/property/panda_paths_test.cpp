@@ -1,6 +1,6 @@
-// The Panda problems of the reference data: how many are solved in five seconds, and that FCL alone
-// finds every path free at every millimetre and half degree. HANDSEL_RUNS: how many problems (14,
-// spread over the scenes; 0: all).
+// The Panda problems of the reference data: the number solved in five seconds, and FCL's check of
+// every path at every millimetre and half degree. HANDSEL_RUNS: number of problems (14, spread over
+// the scenes; 0: all).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -15,11 +15,11 @@
 namespace handsel::path_planner::panda_paths_test {
 namespace {
 
-constexpr double kTimeLimit = 5.0;  // [s]
-constexpr double kReach = 1.4;      // no point of arm and hand is farther from an axis [m]
-constexpr double kMost = 0.001;     // a point of the robot moves between two states [m]
-constexpr double kMostTurn =
-    0.5 * std::numbers::pi / 180;  // an axis turns between two states [rad]
+constexpr double kTimeLimit = 5.0;    // max time of a problem [s]
+constexpr double kReach = 1.4;        // max distance of a point of arm and hand from an axis [m]
+constexpr double kMaxMotion = 0.001;  // max motion of a point of the robot between two states [m]
+// Max rotation of an axis between two states [rad].
+constexpr double kMaxTurn = 0.5 * std::numbers::pi / 180;
 
 TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
   if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA is not set";
@@ -68,9 +68,9 @@ TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
         to[problem.axes[axis]] = result.path[i][static_cast<Eigen::Index>(axis)];
       }
       const Vector along = (to - from).cwiseAbs();
-      const int pieces = std::max(
-          1, static_cast<int>(
-                 std::ceil(std::max(along.sum() * kReach / kMost, along.maxCoeff() / kMostTurn))));
+      const int pieces =
+          std::max(1, static_cast<int>(std::ceil(std::max(along.sum() * kReach / kMaxMotion,
+                                                          along.maxCoeff() / kMaxTurn))));
       for (int piece = 0; piece <= pieces; ++piece, ++states) {
         const Vector q = from + (static_cast<double>(piece) / pieces) * (to - from);
         ASSERT_TRUE(exact.is_free(q)) << "problem " << k << " (" << problems[k].set << "), edge "

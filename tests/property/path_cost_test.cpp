@@ -1,6 +1,6 @@
-// What the transition test is for: with a person beside the table, bidirectional T-RRT against
-// RRT-Connect, all smoothed for the same time. Random queries in whose way the person is: the
-// straight line comes nearer to them than its ends. HANDSEL_RUNS: how many (60).
+// Benefit of the transition test: with a person beside the table, bidirectional T-RRT against
+// RRT-Connect, all smoothed for the same time. In each random query the straight line comes nearer
+// to the person than its ends. HANDSEL_RUNS: number of queries (60).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -18,8 +18,8 @@ namespace {
 using test::thread_time;
 
 constexpr unsigned kSeed = 2026;
-constexpr double kSmoothing = 0.004;  // [s] of this thread's time, for every path
-constexpr double kSame = 0.001;       // distances that differ by less are the same [m]
+constexpr double kSmoothing = 0.004;  // thread time of the smoothing of a path [s]
+constexpr double kSame = 0.001;       // max difference of equal distances [m]
 
 /// Two-sided, normal approximation, of pairs that differ.
 double wilcoxon_p(const std::vector<double>& a, const std::vector<double>& b) {
@@ -42,16 +42,16 @@ double median(std::vector<double> v) {
   return v.empty() ? 0.0 : v[v.size() / 2];
 }
 
-/// What one planner did, query by query.
+/// Results of one planner, by query.
 struct Record {
-  std::vector<double> integral, excess, least, search, smoothing;
+  std::vector<double> integral, excess, min_distance, search, smoothing;
 };
 
 class PathCost : public ::testing::Test, protected test::BesideTheTable {
  protected:
   PathCost() : BesideTheTable(kSeed) {}
 
-  /// Plans with the cost or, blind, as if nobody minded; people are obstacles all the same.
+  /// Plans with the cost or, if `blind`, without it; people are obstacles in both cases.
   bool run(PlannerKind kind, bool blind, Record& record) {
     problem.planner = kind;
     double begin = thread_time(), smoothing = begin;
@@ -67,7 +67,7 @@ class PathCost : public ::testing::Test, protected test::BesideTheTable {
     const CostSettings weights;
     const double ends = std::max(weighted_cost(cost.parts(problem.start), weights),
                                  weighted_cost(cost.parts(whole(problem.goals[0])), weights));
-    double integral = 0, excess = 0, least = std::numeric_limits<double>::infinity();
+    double integral = 0, excess = 0, min_distance = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < result.path.size(); ++i) {
       const Vector along = result.path[i] - result.path[i - 1];
       const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / 0.02)));
@@ -75,12 +75,12 @@ class PathCost : public ::testing::Test, protected test::BesideTheTable {
         const CostParts parts = cost.parts(whole(result.path[i - 1] + (k + 0.5) / pieces * along));
         integral += weighted_cost(parts, weights) * along.norm() / pieces;
         excess += std::max(0.0, weighted_cost(parts, weights) - ends) * along.norm() / pieces;
-        least = std::min(least, parts.distance);
+        min_distance = std::min(min_distance, parts.distance);
       }
     }
     record.integral.push_back(integral);
     record.excess.push_back(excess);
-    record.least.push_back(least);
+    record.min_distance.push_back(min_distance);
     record.search.push_back(smoothing - begin);
     record.smoothing.push_back(end - smoothing);
     return true;
@@ -91,9 +91,9 @@ class PathCost : public ::testing::Test, protected test::BesideTheTable {
   };
   Comparison compare(const Record& careful, const Record& other, const char* name) {
     int larger = 0, smaller = 0;
-    for (std::size_t i = 0; i < careful.least.size(); ++i) {
-      larger += careful.least[i] > other.least[i] + kSame;
-      smaller += careful.least[i] < other.least[i] - kSame;
+    for (std::size_t i = 0; i < careful.min_distance.size(); ++i) {
+      larger += careful.min_distance[i] > other.min_distance[i] + kSame;
+      smaller += careful.min_distance[i] < other.min_distance[i] - kSame;
     }
     Comparison c{sum(careful.excess) / sum(other.excess), wilcoxon_p(careful.excess, other.excess),
                  static_cast<double>(larger) / std::max(1, larger + smaller)};
@@ -102,7 +102,7 @@ class PathCost : public ::testing::Test, protected test::BesideTheTable {
         "distance larger in %d, smaller in %d of %zu; "
         "search %.2f and %.2f ms, smoothing %.2f and %.2f ms (medians)\n",
         name, c.ratio, c.p, sum(careful.integral) / sum(other.integral), larger, smaller,
-        careful.least.size(), 1e3 * median(careful.search), 1e3 * median(other.search),
+        careful.min_distance.size(), 1e3 * median(careful.search), 1e3 * median(other.search),
         1e3 * median(careful.smoothing), 1e3 * median(other.smoothing));
     return c;
   }

@@ -1,6 +1,6 @@
-// People through bad sources. The oracle knows the true bodies and the raw observations only:
-// nobody who is there may be missing from what SPARK holds occupied, and no place where a source
-// saw somebody may be given up while it is not ruled out. Seeds are printed.
+// People observed by faulty sources. The oracle knows only the true bodies and the raw
+// observations: SPARK must hold every present person's volume occupied, and every place where a
+// source observed a person until it is ruled out. Seeds are printed.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -14,11 +14,11 @@
 namespace handsel::spark::people_tracker_test {
 namespace {
 
-constexpr double kWalk = 1.6;     // nobody walks faster [m/s]
-constexpr double kRun = 2.2;      // nor leaves a place faster [m/s]
-constexpr double kNoise = 0.015;  // of joints [m]
-constexpr double kSlack = 0.12;   // noise, its outliers and what a filter may lag [m]
-constexpr double kHold = 0.3;     // a place somebody was seen at counts for so long at least [s]
+constexpr double kWalk = 1.6;     // max walking speed [m/s]
+constexpr double kRun = 2.2;      // max speed of leaving a place [m/s]
+constexpr double kNoise = 0.015;  // noise of joints [m]
+constexpr double kSlack = 0.12;   // noise, outliers and lag of a filter [m]
+constexpr double kHold = 0.3;     // min time for which an observed place stays occupied [s]
 
 TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
@@ -34,13 +34,13 @@ struct TruePerson {
     if ((goal - feet).norm() < 0.1)
       goal = room.low + (room.high - room.low).cwiseProduct(Vector3(unit(random), unit(random), 0)),
       goal.z() = 0;
-    const Vector3 way = (goal - feet).normalized();
-    feet += std::min(1.2 * dt, (goal - feet).norm()) * way;
-    yaw += std::clamp(std::remainder(std::atan2(way.y(), way.x()) - yaw, 2 * M_PI), -2.5 * dt,
-                      2.5 * dt);
+    const Vector3 direction = (goal - feet).normalized();
+    feet += std::min(1.2 * dt, (goal - feet).norm()) * direction;
+    yaw += std::clamp(std::remainder(std::atan2(direction.y(), direction.x()) - yaw, 2 * M_PI),
+                      -2.5 * dt, 2.5 * dt);
     swing += dt;
     body = standing_body(feet, yaw, 1.7);
-    const Vector3 forth = 0.15 * std::sin(4 * swing) * way;
+    const Vector3 forth = 0.15 * std::sin(4 * swing) * direction;
     for (BodyJoint& joint : body) {
       if (joint.name == "r_hand" || joint.name == "r_wrist") joint.position += forth;
       if (joint.name == "l_hand" || joint.name == "l_wrist") joint.position -= forth;
@@ -48,42 +48,42 @@ struct TruePerson {
   }
 };
 
-/// What the sources do wrong in a run.
+/// Injected faults of the sources in a run.
 struct Trouble {
   double dropped{}, missed_joint{}, jumped{}, swapped{}, renamed{}, late{}, old{}, repeated{};
   std::vector<std::pair<double, double>> gaps{};
 };
 
-/// Horizontal distance of a torso to what is held, less how far that may have gone; the age of what
-/// is held counts with the guard.
+/// Returns the horizontal distance of a torso to the occupied volume, less its possible motion; the
+/// age of the volume counts as in the guard.
 double missing(const HumanState& state, const Vector3& torso, double moved) {
-  double least = 1e9;
+  double min_distance = 1e9;
   for (const Person& person : state.people) {
     const Vector3 there =
         person.joints.at(static_cast<std::size_t>(body_joint_index("torso"))).position - torso;
-    least = std::min(least, std::hypot(there.x(), there.y()) - person.inflation -
-                                (person.inflation > 0 ? 0 : kWalk * person.age));
+    min_distance = std::min(min_distance, std::hypot(there.x(), there.y()) - person.inflation -
+                                              (person.inflation > 0 ? 0 : kWalk * person.age));
   }
-  return least - moved;
+  return min_distance - moved;
 }
 
 double missing_joint(const HumanState& state, const BodyJoint& joint) {
-  double least = 1e9;
+  double min_distance = 1e9;
   for (const Person& person : state.people) {
     const double d =
         (person.joints.at(static_cast<std::size_t>(body_joint_index(joint.name))).position -
          joint.position)
             .norm();
-    least = std::min(least, d - person.inflation - 2.5 * person.age);
+    min_distance = std::min(min_distance, d - person.inflation - 2.5 * person.age);
   }
-  return least;
+  return min_distance;
 }
 
 struct Source {
   std::string name;
   Coverage coverage;
   double rate{}, latency{}, phase{};
-  std::deque<std::pair<double, HumanObservation>> on_the_way;  // arrival
+  std::deque<std::pair<double, HumanObservation>> on_the_way;  // by time of arrival [s]
   double next{};
   int swap_until{};
 };
@@ -100,8 +100,8 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
 
   const Coverage room{{-3, -3, -0.5}, {3, 3, 2.6}}, walked{{-2.3, -2.3, 0}, {2.3, 2.3, 0}},
       reach{{-1, -1, 0.1}, {1, 1, 1.9}};
-  std::vector<Source> looks;
-  for (int i = 0; i < sources; ++i) {  // of two, each sees half of the room and a strip more
+  std::vector<Source> observers;
+  for (int i = 0; i < sources; ++i) {  // each of two observes half of the room and a strip more
     Source source{"source" + std::to_string(i),
                   room,
                   15 + 15 * unit(random),
@@ -113,7 +113,7 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
     if (sources == 2)
       (i == 0 ? source.coverage.high : source.coverage.low).x() = i == 0 ? 0.4 : -0.4;
     source.next = source.phase;
-    looks.push_back(source);
+    observers.push_back(source);
   }
   std::vector<TruePerson> people(1 + seed % 2);
   for (std::size_t i = 0; i < people.size(); ++i) {
@@ -132,12 +132,12 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
     for (TruePerson& person : people) {
       const Vector3 before = person.feet;
       person.walk(dt, random, walked);
-      for (const TruePerson& other : people)  // they give each other room
+      for (const TruePerson& other : people)  // people keep a distance from each other
         if (&other != &person && (other.feet - person.feet).head<2>().norm() < 0.9)
           person.feet = before;
       person.body = standing_body(person.feet, person.yaw, 1.7);
     }
-    for (Source& source : looks) {
+    for (Source& source : observers) {
       if (t < source.next) continue;
       source.next += 1 / source.rate;
       const bool gap = std::any_of(trouble.gaps.begin(), trouble.gaps.end(),
@@ -173,12 +173,12 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
       std::sort(source.on_the_way.begin(), source.on_the_way.end(),
                 [](const auto& a, const auto& b) { return a.first < b.first; });
     }
-    for (Source& source : looks)
+    for (Source& source : observers)
       for (; !source.on_the_way.empty() && source.on_the_way.front().first <= t;
            source.on_the_way.pop_front()) {
         const HumanObservation& observation = source.on_the_way.front().second;
         const double was = source.on_the_way.front().first -
-                           source.latency;  // a late one is taken for as old as the others
+                           source.latency;  // a late observation is assumed as old as the others
         tracker.observe(observation, at(was));
         if (happens(trouble.old)) {
           HumanObservation past = observation;
@@ -198,7 +198,7 @@ void play(unsigned seed, const Trouble& trouble, int sources, bool whole_bodies)
     for (std::size_t i = 0; i < people.size(); ++i) {
       const Vector3 torso =
           people[i].body[static_cast<std::size_t>(body_joint_index("torso"))].position;
-      // A lie no longer than a person walks between two looks cannot be told from the truth.
+      // A wrong jump shorter than a person's motion between two samples cannot be detected.
       const double believed = trouble.jumped > 0 ? 0.15 * kRun : 0;
       ASSERT_LE(missing(state, torso, 0.1 * kWalk + believed), kSlack)
           << "person " << i << " is missing at " << t << " s";

@@ -1,6 +1,6 @@
-// Two hundred exchanges: pulls of 2 to 20 N, bumps, tremor, false starts, and people who lift
-// without pulling. The object never falls, and the hand never opens unless a person's hand carries
-// the object at that moment.
+// Two hundred handovers: pulls of 2 to 20 N, bumps, tremor, false starts, and people who lift
+// without pulling. The object never falls, and the hand opens only while a person's hand carries
+// the object.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,23 +16,23 @@ namespace handsel::trajectory_controller::release_trials_test {
 namespace {
 
 constexpr double kDt = 0.001, kGravity = 9.81;
-constexpr double kThreshold = 1.5;  // [N]
+constexpr double kThreshold = 1.5;  // pull force that counts [N]
 
-/// What a person does to the object for a while.
+/// An action of a person on the object.
 struct Touch {
   double from{}, until{};          // [s]
-  double ramp{};                   // [s] to the full force
+  double ramp{};                   // time to the full force [s]
   Vector3 force{Vector3::Zero()};  // [N]
-  double lift{};                   // share of the weight borne, [0, 1]
+  double lift{};                   // fraction of the weight borne, [0, 1]
   double tremor{}, frequency{};    // [N], [Hz] sideways
-  bool carrying{};                 // the person's hand holds the object meanwhile
-  bool on_hand{};  // what is hit is the robot's hand: felt, but the object is not pushed out of it
+  bool carrying{};                 // the person's hand holds the object
+  bool on_hand{};  // the robot's hand is hit: measured, but the object is not pushed out
 };
 
-/// Fingers that press in proportion to how far they are told beyond the surface, as fast as the
-/// hand's axes are; friction that holds the object; a person. While friction does not bear what
-/// pulls at the object, it slides; after the length of a fingertip it is out: with the person who
-/// carries it, or it falls. Once the fingers are off, it is out too.
+/// Fingers that press in proportion to their set-point beyond the surface, with the speed of the
+/// hand's axes; friction that holds the object; a person. The object slides while friction does not
+/// bear the pull. After the length of a fingertip, or once the fingers are open, it leaves the
+/// hand: the person carries it, or it falls.
 class Exchange {
  public:
   Exchange(const PullSettings& settings, std::uint64_t seed, double mass, double bears)
@@ -87,10 +87,10 @@ class Exchange {
 
  private:
   static constexpr double kSqueeze = 0.15,
-                          kOpen = -0.5;  // of the finger's set-point beyond the surface [rad]
+                          kOpen = -0.5;  // set-point of an opened finger from the surface [rad]
   static constexpr double kPad = 0.02;   // [m]
-  static constexpr AxisLimits kComfort{2.85, 14.2, 107.0};   // of the hand's axes
-  static constexpr AxisLimits kLoosening{0.5, 14.2, 107.0};  // as slowly as the efforts fade
+  static constexpr AxisLimits kComfort{2.85, 14.2, 107.0};   // limits of the hand's axes
+  static constexpr AxisLimits kLoosening{0.5, 14.2, 107.0};  // limits while the efforts fade
   static constexpr AxisLimits kStop{3.14, 15.7, 118.0};
 
   void act(const Vector3& felt, double squeeze, bool carrying) {
@@ -123,11 +123,11 @@ const char* const kKinds[] = {"pull", "bumps", "tremor", "false starts", "lift"}
 struct Trials {
   int pulls{}, drops{}, to_nobody{}, in_vain{}, loosened_early{}, bumped_off{};
   std::uint64_t regrips{};
-  std::vector<double> latencies;  // from the pull's threshold passed to the object free [s]
+  std::vector<double> latencies;  // from the pull's threshold to the release [s]
   std::string first_bad;
 };
 
-/// 200 trials; each ends with a pull that goes on.
+/// Runs 200 trials; each ends with a lasting pull.
 Trials run_trials(const PullSettings& settings, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto real = [&](double low, double high) {
@@ -166,11 +166,11 @@ Trials run_trials(const PullSettings& settings, std::uint64_t seed) {
     while (exchange.time() < quiet_until && !exchange.over()) exchange.step(touches);
     out.loosened_early += (kind == 1 || kind == 2) && exchange.loosened() ? 1 : 0;
     const bool early = exchange.over();
-    // Who lifts takes the weight and pulls with the least there is.
+    // A person who lifts bears the weight and pulls with the min force.
     const double pull = kind == 4 ? 2.0 : real(2.0, 20.0), ramp = real(0.02, 0.3),
                  lift = kind == 4 ? real(0.7, 1.0) : real(0.0, 1.0);
-    const Vector3 way = Vector3(1.0, real(-0.3, 0.3), real(-0.2, 0.6)).normalized();
-    touches.push_back({t, t + 10.0, ramp, pull * way, lift, 0.0, 0.0, true, false});
+    const Vector3 direction = Vector3(1.0, real(-0.3, 0.3), real(-0.2, 0.6)).normalized();
+    touches.push_back({t, t + 10.0, ramp, pull * direction, lift, 0.0, 0.0, true, false});
     while (exchange.time() < quiet_until + 3.0 && !exchange.over()) exchange.step(touches);
     const bool in_vain = !exchange.over();
     out.drops += exchange.dropped() ? 1 : 0;
@@ -226,7 +226,7 @@ TEST(Release, a_thousand_more_of_other_seeds) {
   }
 }
 
-/// What the trials are worth: a hand that opens as soon as it is pulled lets objects fall in them.
+/// Sensitivity of the trials: a hand that opens at the first pull drops objects.
 TEST(Release, a_hand_that_opens_at_the_first_pull_drops_some) {
   PullSettings hasty;
   hasty.commit_time = hasty.impulse = 0.0;

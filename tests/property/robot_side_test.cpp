@@ -1,5 +1,5 @@
-// Whatever set-points come, the reference that the robot side gives its servos stays within the
-// limits: judged by finite differences of the positions alone.
+// For any set-points, the reference of the robot side's servos stays within the limits, evaluated
+// by finite differences of the positions alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ class Oracle {
  public:
   explicit Oracle(double room = 1.0, double jerk_room = 8.0 / 3, Eigen::Index axes = 100)
       : room_(room), jerk_room_(jerk_room), axes_(axes) {}
-  /// `slack`: a set-point puts right what was extrapolated for so long [s]; the differences begin
-  /// anew.
+  /// `slack`: duration of the extrapolation that a set-point corrects [s]; restarts the
+  /// differences.
   void see(const Vector& position, double slack = 0) {
     for (int k = 3; k > 0; --k) last_[k] = last_[k - 1];
     last_[0] = position;
@@ -79,8 +79,8 @@ class Oracle {
   int count_{0};
 };
 
-/// A controller that moves between random postures with the guard limits nearly used, as long as it
-/// is followed; else it stands where the robot was measured.
+/// A controller that moves between random configurations close to the guard limits while the robot
+/// follows; else it rests at the measured configuration.
 class Rightful {
  public:
   Rightful(std::mt19937_64& random, const Vector& start) : random_(random) {
@@ -204,13 +204,13 @@ Outcome play(std::uint64_t seed, double garbage_rate, double loss, int steps) {
   const Vector start = Vector::Zero(robot().dof());
   RobotSide side(robot(), start, checked());
   Rightful rightful(random, start);
-  // Nothing but garbage: each followed set-point may use up its bounds against the one before by
-  // itself, which makes 11/3 J h^3 of three steps; one that follows a missing one is off by up to
-  // 4/3 J h^3 more, which the third difference counts three times.
+  // Only random set-points: each accepted one may reach its bounds against the preceding one, which
+  // gives 11/3 J h^3 over three steps; after a missing one the error is up to 4/3 J h^3 larger,
+  // which the third difference counts three times.
   Oracle oracle(1.0, garbage_rate < 1 ? 8.0 / 3 : 23.0 / 3);
   Outcome out;
   int accepted_before = 1;
-  std::uint64_t number = 0;  // of the set-point accepted last
+  std::uint64_t number = 0;  // of the last accepted set-point
   for (int k = 0; k < steps && !testing::Test::HasFailure(); ++k) {
     const double now = kStep * k;
     const bool followed = side.follows();
@@ -229,8 +229,8 @@ Outcome play(std::uint64_t seed, double garbage_rate, double loss, int steps) {
     if (chance(garbage_rate)) give(garbage(c, random));
     side.step(now, kStep);
     out.resumed += side.follows() && !followed;
-    // Numbers that jump, and set-points after steps without one, may use up the bounds of several
-    // periods at once.
+    // After jumps of the number or missing set-points, a step may reach the bounds of several
+    // periods.
     const bool regular = accepted == 0 || (accepted == 1 && accepted_before == 1 && in_turn) ||
                          (accepted == 1 && !followed);
     oracle.see(side.position(), regular ? 0.0 : 0.04);
@@ -302,8 +302,8 @@ TEST(RobotSideGate, lost_set_points_are_ridden_out_within_the_limits) {
   }
 }
 
-/// What a driver sends to the arm is smooth also where set-points come late or early: differences
-/// fade with a tenth of the limits.
+/// The output of a driver is smooth also for late or early set-points: differences fade with a
+/// tenth of the limits.
 TEST(DriverGate, no_garbage_makes_references_outside_the_limits) {
   constexpr double kFade = 0.1;
   for (int round = 0; round < 30; ++round) {
@@ -322,8 +322,8 @@ TEST(DriverGate, no_garbage_makes_references_outside_the_limits) {
         Vector::Zero(robot().dof());
     measured.mode = DriveMode::enabled;
     Rightful rightful(random, measured.position);
-    // After missing set-points, 20 at most, the acceleration changes at once by what the jerk
-    // changes it meanwhile.
+    // After missing set-points, at most 20, the acceleration jumps by what the jerk would have
+    // changed in that time.
     Oracle oracle(1 + kFade, 20 + 8.0 / 3, 3);
     std::uint64_t followed = 0;
     for (int k = 0; k < 20000 && !HasFailure(); ++k) {

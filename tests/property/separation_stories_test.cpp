@@ -1,5 +1,5 @@
-// A person darts in from anywhere at up to 2.2 m/s while the arm works: the arm stands or moves
-// away before they meet.
+// A person runs in from any side at up to 2.2 m/s while the arm moves: the arm is at rest or moves
+// away before contact.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@
 namespace handsel::trajectory_controller::separation_stories_test {
 namespace {
 
-constexpr double kRounding = 1e-9;  // [m/s] of a difference of positions
+constexpr double kRounding = 1e-9;  // rounding error of a finite difference [m/s]
 
 class Watch {
  public:
@@ -31,8 +31,8 @@ class Watch {
     bench_.robot->forward(
         bench_.core.set_point().position + kStep * bench_.core.set_point().velocity, links_);
     const Vector3 p = links_[static_cast<std::size_t>(s.link)] * (T.inverse() * s.on_robot);
-    const Vector3 way = (s.distance < 0 ? -1.0 : 1.0) * (s.on_person - s.on_robot);
-    return way.norm() < 1e-9 ? 0.0 : (p - s.on_robot).dot(way.normalized()) / kStep;
+    const Vector3 direction = (s.distance < 0 ? -1.0 : 1.0) * (s.on_person - s.on_robot);
+    return direction.norm() < 1e-9 ? 0.0 : (p - s.on_robot).dot(direction.normalized()) / kStep;
   }
 
  private:
@@ -61,19 +61,19 @@ TrajectoryCommand round_corners(const test::ControllerBench& b, std::vector<Eige
 /// as fast as they ever do [m].
 double separation_needed(const test::ControllerBench& b, double v_h, double age) {
   const KinematicLimits &fastest = b.robot->comfort_limits(), &stop = b.robot->stop_limits();
-  double longest = 0.0;
+  double max_duration = 0.0;
   for (Eigen::Index i = 0; i < 3; ++i)
-    longest = std::max(
-        longest,
+    max_duration = std::max(
+        max_duration,
         measure_stop(fastest.velocity[i], 0.0, stop.acceleration[i], stop.jerk[i]).duration);
   const GuardSettings& g = b.settings.guard;
   const double v_r = 0.9 * 2 * fastest.velocity[0], reaction = g.reaction + age;
-  return v_h * (reaction + longest) + v_r * reaction + v_r * longest / 2 + g.intrusion +
+  return v_h * (reaction + max_duration) + v_r * reaction + v_r * max_duration / 2 + g.intrusion +
          g.uncertainty_human + g.uncertainty_robot;
 }
 
-// Starting from at least the separation the rule asks for, what the controller knows of them up to
-// 100 ms old.
+// The person starts at or beyond the separation that SSM requires; the controller's data of the
+// person are up to 100 ms old.
 TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) {
   const auto seed = static_cast<std::uint64_t>(number("HANDSEL_SEPARATION_SEED", 77));
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));

@@ -1,5 +1,5 @@
-// Closed-form inverse kinematics of the LWR and the iiwa: every branch leads back to the pose it
-// was asked for. HANDSEL_POSES sets how many random poses; the label full runs 100 000.
+// Closed-form inverse kinematics of the LWR and the iiwa: every branch reaches the requested pose.
+// HANDSEL_POSES sets the number of random poses; the label full runs 100 000.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

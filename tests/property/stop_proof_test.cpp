@@ -1,6 +1,6 @@
-// People move at random within their bounds, from anywhere: whoever touches the arm during a stop
-// that was found harmless touches a link at rest or slow enough for the contact. The oracle samples
-// both stops and the people finely and knows nothing of how the proof bounds them.
+// People move at random within their bounds: a person who touches the arm during a stop that passed
+// the proof touches a link at rest or slow enough for the contact limits. The oracle samples both
+// stops and the people finely, independent of the bounds of the proof.
 #include "components/trajectory_controller/supervise/stop/stop_proof.hpp"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST_F(StopProofStories,
       state.velocity[axis] = pace * 0.9 * both(random) * guard.velocity[axis];
       state.acceleration[axis] = pace * 0.3 * both(random) * guard.acceleration[axis];
     }
-    // One part of one person, somewhere about the hand.
+    // One part of one person, at random near the hand.
     robot_.forward(state.position, before);
     Wanderer person;
     const auto region = static_cast<std::size_t>(unit(random) * kBodyRegions);
@@ -108,7 +108,7 @@ TEST_F(StopProofStories,
     ++harmless;
     ++done;
     const bool robot_side = unit(random) < 0.5;
-    // What the part does: straight at the arm half of the time, else anything.
+    // Half of the time the part moves straight at the arm, else at random.
     const bool attacks = unit(random) < 0.5;
     constexpr double kStep = 2e-3;
     std::vector<AxisState> axes;

@@ -1,6 +1,5 @@
-// Random worlds: a plan reaches its goal when it is carried out, costs as little as the best of all
-// sequences of actions, and a supervised task ends whatever happens. HANDSEL_RUNS worlds of each
-// kind.
+// Random worlds: a plan reaches its goal, has the min cost of all sequences of actions, and a
+// supervised task ends after any event. HANDSEL_RUNS worlds of each kind.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -29,7 +28,7 @@ int between(std::mt19937& random, int low, int high) {
 }
 
 const std::map<std::string, int> kPlaces{
-    {"stool", 1}, {"tray", 2}, {"shelf", 9}, {"table", 9}};  // by their sizes below
+    {"stool", 1}, {"tray", 2}, {"shelf", 9}, {"table", 9}};  // capacity, see the sizes below
 
 TaskWorld random_world(std::mt19937& random, int most_objects) {
   TaskWorld world;
@@ -92,8 +91,8 @@ Wanted random_goal(std::mt19937& random, const TaskWorld& world) {
   }
 }
 
-/// Least cost of any sequence of actions that reaches the goal, by Dijkstra's search over where
-/// everything is; negative: none.
+/// Returns the min cost of all sequences of actions that reach the goal, by Dijkstra's search over
+/// the places of all objects; negative: none.
 double least_cost(const TaskWorld& start, const Wanted& wanted) {
   using Where = std::map<std::string, std::string>;  // "@robot", "@anna" or a surface
   Where from;
@@ -152,15 +151,15 @@ TEST(TaskPlans, reach_their_goal_at_the_least_cost) {
     ASSERT_EQ(query.reason, "");
     const Plan plan = make_plan(shipped(), world, query.task, query.args, {}, {100000, 24});
     const bool whole = plan.found && left_out(plan).empty();
-    // People who are handed something to get rid of it are no surface: the search may, the domain
-    // may not.
+    // The domain does not hand objects to people to free the hand; the exhaustive search would, so
+    // it runs without people.
     TaskWorld alone = start;
     if (wanted.kind != TaskKind::give) alone.people.clear();
     if (wanted.kind == TaskKind::give) alone.people.erase("bert");
-    const double least = least_cost(alone, wanted);
+    const double min_cost = least_cost(alone, wanted);
     if (wanted.kind == TaskKind::give && start.in_hand() == "thing0" && wanted.object != "thing0")
       continue;  // as above, for anna
-    ASSERT_EQ(whole, least >= 0) << plan.reason << left_out(plan);
+    ASSERT_EQ(whole, min_cost >= 0) << plan.reason << left_out(plan);
     whole ? ++solved : ++unsolved;
     if (!whole) {
       EXPECT_FALSE((plan.reason + left_out(plan)).empty());
@@ -175,7 +174,7 @@ TEST(TaskPlans, reach_their_goal_at_the_least_cost) {
       if (action.kind == ActionKind::go_to) cost -= 3;
     }
     EXPECT_TRUE(wanted.reached(then));
-    EXPECT_NEAR(cost, least, 1e-9);
+    EXPECT_NEAR(cost, min_cost, 1e-9);
   }
   EXPECT_GT(solved, runs(300) / 2);
   EXPECT_GT(unsolved, runs(300) / 30);
@@ -218,7 +217,7 @@ TEST(TaskPlans, supervised_end_whatever_happens) {
         rig.world.held_by.erase(*object);
         rig.world.on[*object] = "table";
       } else if (event == 2) {
-        rig.action = {};  // the planner was started anew
+        rig.action = {};  // the planner restarts
       }
       ASSERT_LE(rig.last().tree.size(), 128u);
       ASSERT_LE(rig.last().plan.size(), 64u);

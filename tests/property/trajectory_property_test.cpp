@@ -1,6 +1,6 @@
-// Seven axes from any state to any state, ending together: every motion is judged on its exact
-// extremes, a share of them against the slow solver of the tests. HANDSEL_CASES sets the number of
-// problems, HANDSEL_SLOW every how many of them the slow solver looks at.
+// Seven axes from any state to any state, synchronised: every motion is checked at its exact
+// extremes, a fraction of them against the slow solver of the tests. HANDSEL_CASES sets the number
+// of problems, HANDSEL_SLOW at which interval the slow solver checks one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,8 +83,8 @@ struct Hash {
   }
 };
 
-/// Empty, or what is wrong with a motion whose start is outside the limits: once inside it must
-/// stay, and meanwhile nothing may grow.
+/// Returns the fault of a motion that starts outside the limits: no excess may grow, and once
+/// inside the motion must stay inside; empty: none.
 std::string why_wrong_outside(const Case& c, const AxisProfile& p) {
   if (std::string why = test::why_wrong(c, p, false, 1e-8); !why.empty()) return why;
   AxisState s = c.from;
@@ -109,7 +109,7 @@ struct Tally {
   double longest_against_slow{-1};
 };
 
-/// The least common duration by the slow solver, or a negative number where it does not know.
+/// Returns the min common duration by the slow solver; negative: unknown.
 double slow_common(const Problem& p) {
   std::vector<std::vector<double>> bounds(kAxes);
   double T = 0;
@@ -121,7 +121,7 @@ double slow_common(const Problem& p) {
     bounds[i] = test::slow_bounds(start, c.to, c.limits, 200);
     if (bounds[i].size() == 2)
       bounds[i].insert(bounds[i].begin(),
-                       bounds[i][0]);  // one motion of one duration, nothing else near
+                       bounds[i][0]);  // an isolated duration with a single motion
     if (bounds[i].size() % 2 == 0) return -1;
     for (double& t : bounds[i]) t += inside;
     T = std::max(T, bounds[i][0]);
@@ -153,16 +153,16 @@ double scalar_common(const Problem& p) {
   return T;
 }
 
-void judge(const Problem& p, const SynchronisedBatch& solved, int k, Tally& tally, bool with_slow) {
+void check(const Problem& p, const SynchronisedBatch& solved, int k, Tally& tally, bool with_slow) {
   ASSERT_EQ(solved.outcome(k), AxisOutcome::ok)
       << reason(solved.outcome(k)) << " axis " << solved.axis(k) << ": " << p.axis(solved.axis(k));
   const double T = solved.duration(k);
-  double least = 0;
+  double min_duration = 0;
   int far_axes = 0;
   for (int i = 0; i < kAxes; ++i) {
     const Case c = p.axis(i);
     const AxisProfile& profile = solved.profile(k, i);
-    least = std::max(least, solved.minimum(k, i));
+    min_duration = std::max(min_duration, solved.minimum(k, i));
     const bool far = outside(c.from, c.limits);
     far_axes += far;
     ASSERT_EQ(far ? why_wrong_outside(c, profile) : test::why_wrong(c, profile, true, kTight), "")
@@ -171,9 +171,9 @@ void judge(const Problem& p, const SynchronisedBatch& solved, int k, Tally& tall
   }
   ++tally.problems;
   tally.axes += kAxes;
-  ASSERT_GE(T, least * (1 - 1e-12));
+  ASSERT_GE(T, min_duration * (1 - 1e-12));
   ASSERT_NEAR(T, scalar_common(p), kTight * T) << "differs from one axis at a time";
-  const bool waited = T > least * (1 + 1e-9);
+  const bool waited = T > min_duration * (1 + 1e-9);
   tally.blocked += waited;
   tally.outside += far_axes;
   if (!with_slow) return;
@@ -212,18 +212,18 @@ class Peer {
     const double more = peer.duration() > 0 ? T / peer.duration() - 1 : T;
     equal_ += std::abs(more) <= kTight;
     shorter_ += more < -kTight;
-    if (more > kTight) ++longer_, longest_ = std::max(longest_, more);
+    if (more > kTight) ++longer_, max_excess_ = std::max(max_excess_, more);
   }
   void print() const {
     std::printf(
         "Ruckig: %ld equal within 1e-9, ours shorter %ld, longer %ld (largest %.1e), %ld it does "
         "not solve\n",
-        equal_, shorter_, longer_, longest_, unsolved_);
+        equal_, shorter_, longer_, max_excess_, unsolved_);
   }
 
  private:
   long equal_{}, shorter_{}, longer_{}, unsolved_{};
-  double longest_{};
+  double max_excess_{};
 };
 #else
 struct Peer {
@@ -265,7 +265,7 @@ TEST(SevenAxes, end_together_inside_the_limits_and_as_soon_as_the_slow_solver) {
     ASSERT_NEAR(single.duration(), batch.duration(0), 1e-12 * single.duration())
         << "seed " << seed << " problem " << first;
     for (int k = 0; k < kBatch; ++k) {
-      judge(problems[static_cast<std::size_t>(k)], batch, k, tally,
+      check(problems[static_cast<std::size_t>(k)], batch, k, tally,
             every > 0 && (first + k) % every == 0);
       peer.compare(problems[static_cast<std::size_t>(k)], batch.duration(k));
       if (::testing::Test::HasFatalFailure()) FAIL() << "seed " << seed << " problem " << first + k;
@@ -434,18 +434,18 @@ TEST(SevenAxes, imposed_durations_are_inside_the_limits_whenever_that_is_possibl
   for (int k = 0; k < 20000; ++k) {
     Problem p;
     for (int i = 0; i < kAxes; ++i) p.set(i, cases.next(0));
-    double least = 0;
+    double min_duration = 0;
     std::vector<AxisProblem> axes(kAxes);
     for (int i = 0; i < kAxes; ++i) {
       const Case c = p.axis(i);
       ASSERT_EQ(axes[i].init(c.from, c.to, c.limits), AxisOutcome::ok);
-      least = std::max(least, axes[i].minimum());
+      min_duration = std::max(min_duration, axes[i].minimum());
     }
-    const double wanted = least * cases.uniform(0.97, 1.3);
+    const double wanted = min_duration * cases.uniform(0.97, 1.3);
     bool blocked = false;
     for (const AxisProblem& a : axes) blocked = blocked || a.earliest(wanted) > wanted;
     const Solution s = solve(p.from, p.to, p.limits, Sync::time, wanted);
-    if (wanted < least * (1 - 1e-9)) {
+    if (wanted < min_duration * (1 - 1e-9)) {
       ASSERT_NE(s.reason, "");
       ++short_;
       continue;

@@ -1,5 +1,5 @@
-// What is held stays upright, and no axis leaves its limits, on every sample of every path: random
-// queries with and without a person. HANDSEL_RUNS: how many (10).
+// The held object stays upright and every axis within its limits at every sample of every path:
+// random queries with and without a person. HANDSEL_RUNS: number of queries (10).
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -13,8 +13,8 @@ namespace handsel::path_planner::upright_paths_test {
 namespace {
 
 constexpr unsigned kSeed = 77;
-constexpr double kMost = 0.35;       // [rad]
-constexpr double kSampling = 0.002;  // [rad], max norm
+constexpr double kTiltBound = 0.35;  // max tilt of the held object [rad]
+constexpr double kSampling = 0.002;  // step between samples, max norm [rad]
 
 TEST(UprightPaths, keep_tilt_and_limits_on_every_sample) {
   const RobotModel robot =
@@ -26,7 +26,7 @@ TEST(UprightPaths, keep_tilt_and_limits_on_every_sample) {
   world.set_scene(scene);
   Problem problem;
   problem.axes = robot.require_group("arm").axes;
-  problem.upright = Upright{Vector3::UnitZ(), Vector3::UnitZ(), kMost};
+  problem.upright = Upright{Vector3::UnitZ(), Vector3::UnitZ(), kTiltBound};
   problem.budget = 400000;
   std::mt19937 random(kSeed);
   const auto tilt = [&](const Vector& q) {
@@ -38,14 +38,14 @@ TEST(UprightPaths, keep_tilt_and_limits_on_every_sample) {
       for (int axis : problem.axes)
         q[axis] = std::uniform_real_distribution<double>(robot.axes()[axis].lower,
                                                          robot.axes()[axis].upper)(random);
-    } while (tilt(q) > kMost || !world.check(q).free);
+    } while (tilt(q) > kTiltBound || !world.check(q).free);
     return q;
   };
   const char* asked = std::getenv("HANDSEL_RUNS");
   const int queries = asked != nullptr ? std::atoi(asked) : 10;
   int solved = 0, lines_that_lean = 0;
   std::size_t samples = 0;
-  double most = 0;
+  double max_tilt = 0;
   for (int k = 0; k < queries; ++k) {
     const HumanState people = k % 2 == 1 ? test::person_at({1.2, 0.05, 0}) : HumanState{};
     world.set_people(people);
@@ -58,7 +58,7 @@ TEST(UprightPaths, keep_tilt_and_limits_on_every_sample) {
     problem.seed = kSeed + static_cast<unsigned>(k);
     bool leans = false;
     for (double t = 0; t <= 1; t += 0.01)
-      leans = leans || tilt(problem.start + t * (goal - problem.start)) > kMost;
+      leans = leans || tilt(problem.start + t * (goal - problem.start)) > kTiltBound;
     lines_that_lean += leans;
     const Result result = plan(robot, world, cost, problem, {});
     if (!result.solved) {
@@ -80,15 +80,15 @@ TEST(UprightPaths, keep_tilt_and_limits_on_every_sample) {
           ASSERT_LE(q[problem.axes[axis]], robot.axes()[problem.axes[axis]].upper + 1e-9)
               << "query " << k;
         }
-        most = std::max(most, tilt(q));
-        ASSERT_LE(tilt(q), kMost + 1e-6) << "query " << k;
+        max_tilt = std::max(max_tilt, tilt(q));
+        ASSERT_LE(tilt(q), kTiltBound + 1e-6) << "query " << k;
       }
     }
   }
   std::printf(
       "seed %u: %d of %d solved, the straight line leans too far in %d; largest tilt %.4f of %.2f "
       "rad in %zu samples\n",
-      kSeed, solved, queries, lines_that_lean, most, kMost, samples);
+      kSeed, solved, queries, lines_that_lean, max_tilt, kTiltBound, samples);
   EXPECT_GT(lines_that_lean, queries / 2);
   EXPECT_GE(solved, queries * 9 / 10);
 }

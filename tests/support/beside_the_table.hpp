@@ -1,5 +1,5 @@
-// Jido, a table and a person beside it: random queries in whose way the person is, for tests and
-// measurements.
+// Jido, a table and a person beside it: random queries obstructed by the person, for tests and
+// benchmarks.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Random broken lines of Jido's arm among random boxes; their legs are free.
+// Random polylines of Jido's arm among random boxes; their segments are free.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,11 @@ struct BrokenLine {
   TrajectoryRequest request;
 };
 
-/// `world`: of the robot; the scene is set. `most`: how many nodes, at least 3 and at most.
+/// Returns a random polyline with `least` to `most` waypoints, at least 3; sets the scene of
+/// `world`.
 inline BrokenLine broken_line(const RobotModel& robot, CollisionWorld& world, int least, int most,
                               std::mt19937& random) {
-  constexpr double kLegStep = 2e-4;  // of the path planner's last check [rad]
+  constexpr double kLegStep = 2e-4;  // step of the path planner's final check [rad]
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };

@@ -1,5 +1,5 @@
-// Preloaded: the wall clock of every forked process jumps ahead by one second 0.5 s after its fork.
-// The monotonic clock does not.
+// Preloaded library: the wall clock of every forked process jumps ahead by one second 0.5 s after
+// its fork; the monotonic clock does not.
 #include <dlfcn.h>
 #include <pthread.h>
 #include <time.h>

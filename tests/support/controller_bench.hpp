@@ -1,5 +1,4 @@
-// A controller in virtual time with a robot that follows perfectly (or not), people, and everybody
-// else who speaks to it.
+// A controller in virtual time with an ideal or faulty robot, people, and all other senders.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +25,7 @@ class ControllerBench {
     measured = measured_velocity = Vector::Zero(robot->dof());
     people.covered = true;
     people.views = {live_view()};
-    Go first;  // moves nothing: the controller waits for a newer one
+    Go first;  // permits no motion: the controller requires a newer one
     first.state_revision = 1;
     core.on(first, now);
     go.epoch = 1;
@@ -59,7 +58,7 @@ class ControllerBench {
       core.on(seen_.front().second, human_at_);
     }
     if (go_speaks && ticks % 100 == 1) {
-      go.state_revision = go.epoch + 1;  // each new epoch here is a person's
+      go.state_revision = go.epoch + 1;  // each new epoch follows an act of a person
       core.on(go, now);
       go_told_ = go.allowed;
     }
@@ -140,22 +139,22 @@ class ControllerBench {
   Vector measured, measured_velocity;
   bool follows{true};
   DriveMode drive{DriveMode::enabled};
-  std::string refusal;       ///< why the robot side stands although its drives are enabled
+  std::string refusal;       ///< why the robot side is at rest although its drives are enabled
   ServoReference reference;  ///< of the robot side; empty: not known
   Vector external_torque;    ///< empty: not measured
   bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true},
       attention_speaks{true};
   HumanState people;
-  double human_age{};  ///< what is told of people was so this long ago, or a sample's period longer
+  double human_age{};  ///< min age of the reported people; max: one sample period more [s]
                        ///< [s]
   Go go;
   TrajectoryForecast forecast;
   AttentionAdvice advice;
 
-  // Oracle over every set-point sent, written apart from the controller's own check.
+  // Oracle over every set-point sent, independent of the controller's own check.
   double worst_velocity{}, worst_acceleration{}, worst_jerk{}, worst_jump{};
-  // And over every stop: at rest by detection + the fastest stop from the state at that moment + 50
-  // ms.
+  // Oracle over every stop: at rest within detection time + the fastest stop from the state at that
+  // moment + 50 ms.
   int stops{}, holds{};                         ///< begun in motion
   double latest_stop{-1.0}, latest_hold{-1.0};  ///< beyond the fastest stop [s]; 0.05 is promised
   std::uint64_t (*count_allocations)(){};       ///< where the heap is watched
@@ -202,7 +201,7 @@ class ControllerBench {
         !stop && (!go_told_ || (running && since > t.forecast && silent(forecast_at_, t.forecast)));
     const double least = fastest_stop();
     stop_.look(stop, at_rest(), now, least, stops, latest_stop);
-    // A stop that becomes a hold demands nothing new: an arm that has rested may give way.
+    // A stop that becomes a hold adds no requirement: an arm that was at rest may comply.
     hold_.look(stop || hold, at_rest(), now, least, holds, latest_hold);
   }
   std::deque<std::pair<TimePoint, HumanState>> seen_;

@@ -1,4 +1,4 @@
-// What the controller's tests ask of a bench.
+// Common expectations of the controller's tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A layer that somebody outside lays over the cost map.
+// A layer that an external process adds to the cost map.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The robot with two arms before a table, and the lists of both its hands on an object.
+// The robot with two arms before a table, and the grasp lists of both hands on an object.
 #pragma once
 
 #include "components/grasp_planner/regrasp/regrasp.hpp"

@@ -9,7 +9,7 @@
 
 namespace handsel::test {
 
-/// At rest in `posture`, all axes [rad].
+/// Returns an executor at rest in the configuration `posture`, all axes [rad].
 inline std::unique_ptr<trajectory_controller::HandExecutor> fingers_of(const RobotModel& robot,
                                                                        const Group& hand,
                                                                        const Vector& posture) {

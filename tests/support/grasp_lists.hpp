@@ -1,4 +1,4 @@
-// Lists of grasps for tests: hands and objects of the project by name, made once a process.
+// Grasp lists for tests: hands and objects of the project by name, made once per process.
 #pragma once
 
 #include <filesystem>

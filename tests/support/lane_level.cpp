@@ -1,5 +1,5 @@
-// HANDSEL_LANES=avx512|avx2|base runs the tests this is linked into with registers of that width.
-// What this processor does not have is skipped: ctest counts exit code 77 so.
+// HANDSEL_LANES=avx512|avx2|base selects the SIMD width of the linked tests. A width that the
+// processor lacks is skipped by exit code 77.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
-// Random problems of one axis, of every family that has broken a solver, and the judgement of an
-// answer.
+// Random problems of one axis, of every family that has broken a solver, and the check of a
+// solution.
 #pragma once
 
 #include <cmath>
@@ -58,8 +58,8 @@ class Cases {
   }
 
  private:
-  /// Accelerations of one sign whose direct way touches zero in between, exactly or by rounding:
-  /// where short durations become isolated.
+  /// Sets accelerations of one sign whose direct motion touches zero in between, exactly or by
+  /// rounding: short durations then become isolated.
   void through_zero(Case& c) {
     const double side = pick(2) ? 1 : -1, V = c.limits.velocity, A = c.limits.acceleration,
                  J = c.limits.jerk;

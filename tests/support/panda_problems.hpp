@@ -1,5 +1,5 @@
-// The Panda and its planning problems from the reference data (environment HANDSEL_DATA), for tests
-// and measurements.
+// The Panda and its planning problems of the reference data (environment HANDSEL_DATA), for tests
+// and benchmarks.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// How people could take an upright object.
+// Grasps of people on an upright object.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Robots, recordings and problems made by others, which the environment's HANDSEL_DATA points to.
+// Third-party robots, recordings and problems in the folder of the environment's HANDSEL_DATA.
 #pragma once
 
 #include <cstdlib>
@@ -9,8 +9,8 @@
 
 namespace handsel::test {
 
-/// A part of them by its path there; nullopt without HANDSEL_DATA: what needs it is left out. Where
-/// that is set and has no such part, a check would be left out unseen: throws std::runtime_error.
+/// Returns a file or folder of the reference data; nullopt without HANDSEL_DATA: its tests are
+/// skipped. Throws std::runtime_error if HANDSEL_DATA lacks the part, to prevent a silent skip.
 inline std::optional<std::filesystem::path> reference_data(const std::string& part) {
   const char* data = std::getenv("HANDSEL_DATA");
   if (data == nullptr || *data == '\0') return std::nullopt;

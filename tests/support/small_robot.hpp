@@ -1,5 +1,5 @@
-// A small robot made for tests: arm of three axes, hand of two, pan-tilt head; written to a folder
-// of its own and loaded like any other.
+// A small robot for tests: arm of three axes, hand of two, pan-tilt head; written to a temporary
+// folder and loaded like any other.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Somebody who stands there.
+// A person who stands at rest.
 #pragma once
 
 #include <numbers>
@@ -7,7 +7,7 @@
 
 namespace handsel::test {
 
-/// Anna, 1.75 m, facing -x, her feet at `feet` (world, m); nobody else.
+/// Returns anna alone, 1.75 m, facing -x, her feet at `feet`, world [m].
 inline HumanState person_at(const Vector3& feet) {
   HumanState state;
   Person person;

@@ -1,4 +1,4 @@
-// A supervisor in a world of facts: the rest of the system as it sees it.
+// A supervisor in a symbolic world of facts that emulates the rest of the system.
 #pragma once
 
 #include <algorithm>
@@ -28,9 +28,9 @@ struct Failure {
   Failure(const char* why = "", ActionFailure of = ActionFailure::other) : reason(why), kind(of) {}
 };
 
-/// Plays the rest of the system: spark tells what holds in `world`, the controller obeys Go, the
-/// manipulation planner needs `action_time` for an action and fails as `fails` says; by hand where
-/// the test ends actions itself.
+/// Emulates the rest of the system: SPARK reports the facts of `world`, the controller obeys Go,
+/// the manipulation planner takes `action_time` per action and fails as `fails` states, unless the
+/// test ends actions itself.
 class TaskRig {
  public:
   explicit TaskRig(bool by_hand = false, const Ability& ability = {})

@@ -1,5 +1,5 @@
-// A world of facts that actions change as they should: things on surfaces, in the robot's hand or
-// in people's hands.
+// A symbolic world of facts with the nominal effects of actions: objects on surfaces, in the
+// robot's hand or in people's hands.
 #pragma once
 
 #include <map>
@@ -21,7 +21,7 @@ struct TaskWorld {
   std::map<std::string, Vector3> surfaces{{"table", {0.7, 0.7, 0.7}},
                                           {"shelf", {0.7, 0.7, 0.7}}};  ///< size [m]
   std::map<std::string, bool> people;  ///< and whether they are attentive
-  std::set<std::string> offering;      ///< people who hold out what they have
+  std::set<std::string> offering;      ///< people who offer their object
 
   std::set<std::string> objects() const {
     std::set<std::string> out;
@@ -93,7 +93,7 @@ struct TaskWorld {
     return out;
   }
 
-  /// What a successful action leaves behind; false: it cannot be done here.
+  /// Applies the effects of a successful action; false: the action is impossible here.
   bool perform(ActionKind kind, const std::string& object, const std::string& human,
                const std::string& surface) {
     const std::string hand = in_hand();

@@ -1,4 +1,4 @@
-// Random motions of the tool of an arm of shoulder, elbow and wrist, near a posture.
+// Random tool motions of an arm with shoulder, elbow and wrist, near a configuration.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace handsel::test {
 
-/// Two to five nodes, every other with its elbow; no nodes when the draw was in vain. `also`:
-/// further active axes.
+/// Returns a motion with two to five waypoints, every second one with its elbow; without waypoints
+/// if none was found. `also`: further active axes.
 inline trajectory_planner::CartesianRequest tool_motion(const RobotModel& robot, const Group& arm,
                                                         const std::vector<int>& also,
                                                         const Vector& home, CollisionWorld& world,
@@ -60,7 +60,7 @@ inline std::vector<int> hand_and_head(const RobotModel& robot) {
   return axes;
 }
 
-/// A posture of the iiwa with room around it.
+/// Returns a configuration of the iiwa with free space around it.
 inline Vector iiwa_home() {
   Vector home(7);
   home << 0.2, 0.6, -0.3, -1.4, 0.3, 0.9, 0.1;

@@ -1,8 +1,8 @@
-// No arm moves blind, over real processes: while it carries a mug about beside a person, the
-// sources of people fall silent, freeze, repeat an empty picture, are late or look elsewhere. The
-// arm comes to rest in time, the cause is named, it rests as long as that lasts, and completes its
+// No arm moves blind, over real processes: while the arm carries a mug beside a person, the sources
+// of people fall silent, freeze, repeat an empty sample, are late or observe another space. The arm
+// comes to rest in time, the cause is named, the arm rests during the disturbance and completes its
 // task afterwards. Without HANDSEL_RUNS: each kind once. HANDSEL_RUNS=n: n times at random moments;
-// HANDSEL_FIRST_SEED: of the first.
+// HANDSEL_FIRST_SEED: of the first run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,17 +21,17 @@ using test::BusySystem;
 using test::environment;
 
 constexpr int kDomain = 215;
-constexpr double kRest = 1e-3;    // [rad] the arm stands
-constexpr double kGoesOn = 0.01;  // [rad] it moves
-constexpr double kNamed = 1.0;    // [s] within which the cause is named
-constexpr double kLasts = 2.0;    // [s] of a disturbance
+constexpr double kRest = 1e-3;       // max motion of an arm at rest [rad]
+constexpr double kMinMotion = 0.01;  // min motion of an arm that continues [rad]
+constexpr double kNamed = 1.0;       // max time until the cause is named [s]
+constexpr double kLasts = 2.0;       // duration of a disturbance [s]
 constexpr Duration kMoves = std::chrono::seconds(20), kCompletes = std::chrono::seconds(60);
 
-// The last good picture was captured before the disturbance began, or one period of the sensor
-// after (a source that freezes repeats the first picture). A view counts for max_view_age after
-// that; the stop takes no longer than the longest of an axis; P2 allows 50 ms more. Then the
-// messages of the disturbance and of the set-points, and the servo of the simulated robot, 60
-// rad/s, which has followed to 1 mrad after 0.1 s.
+// Terms of the max time to rest [s]. The last valid sample is captured before the disturbance or
+// one sensor period later (a frozen source repeats its first sample). A view is live for
+// max_view_age after that; the stop lasts at most the longest stop of an axis; P2 allows 50 ms
+// more. Added are the transport of messages and the servo of the simulated robot (60 rad/s, 1 mrad
+// after 0.1 s).
 constexpr double kViewAge = 0.25, kSensorPeriod = 1.0 / 30, kPromised = 0.05, kTransport = 0.02,
                  kServo = 0.1;
 
@@ -115,7 +115,7 @@ class BlindOverDds : public testing::Test {
     s.mark();
     s.disturb(SimAction::restore);
     const TimePoint restored = monotonic_now();
-    EXPECT_TRUE(s.wait(kMoves, [] { return busy_->deviation() > kGoesOn; }))
+    EXPECT_TRUE(s.wait(kMoves, [] { return busy_->deviation() > kMinMotion; }))
         << what << ": it does not go on: " << s.now().execution.sample.reason;
     const double resumed = to_seconds(monotonic_now() - restored);
     const auto over = [&] {

@@ -1,4 +1,4 @@
-// Two systems on one processor are slower, not broken. HANDSEL_RUNS: how often (1).
+// Two systems on one processor are slower but work. HANDSEL_RUNS: number of runs (1).
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// A table with six things is cleared while a person comes and takes one of them; where everything
-// is in the end, the sensors say.
+// A table with six objects is cleared while a person comes and takes one of them; the final places
+// are those of the emulated sensors.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -1,5 +1,5 @@
-// The command as its user meets it: exit codes, one sentence for each mistake, no process left
-// behind.
+// The command from the user's side: exit codes, one sentence for each mistake, no remaining
+// process.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-// The doctor against real faults, each made on purpose: broken DDS settings, occupied ports and
-// indices, namespaces without a network, clocks that are off, descriptions with files missing. It
-// must name each and be silent when all is well.
+// `handsel doctor` against injected faults: broken DDS settings, occupied ports and indices,
+// namespaces without a network, clock offsets, descriptions with missing files. It must name each
+// fault and report nothing on a correct system.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ void expect_finding(const Diagnosis& diagnosis, int exit_code, const std::string
   EXPECT_TRUE(diagnosis.err.empty()) << diagnosis.err;
 }
 
-/// Nothing but what the machine itself may lack (processors, permission for real time).
+/// Expects no finding except of the machine itself (processors, permission for real time).
 void expect_silence(const Diagnosis& diagnosis) {
   EXPECT_EQ(diagnosis.exit_code, 0) << diagnosis.all();
   EXPECT_TRUE(diagnosis.err.empty()) << diagnosis.err;

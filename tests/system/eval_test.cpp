@@ -1,5 +1,5 @@
-// handsel eval as its users call it: several conditions with the same seeds, shards that come
-// together, and the same trial elsewhere.
+// `handsel eval` from the user's side: several conditions with the same seeds, merged shards, and
+// the same trial on another machine.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

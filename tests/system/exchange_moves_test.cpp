@@ -1,5 +1,5 @@
-// The person who is to be given something steps aside while the arm carries it to them: the running
-// path is led to another exchange point, without a stop. The whole system in lock-step.
+// The receiver steps aside while the arm carries the object to them: the running path is redirected
+// to another exchange point without a stop. The whole system in lock-step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,20 +26,20 @@ people { id: "anna" x: 1.4 y: -0.05 yaw: 3.1416 stature: 1.72 behaviour: EXTERNA
 object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0.001 }
 timeout: 90
 )";
-constexpr double kPace = 0.8;  // of the person [m/s]
-// Of the wrist of a person from the middle of the mug, in any grasp of the mug [m].
+constexpr double kSideSpeed = 0.8;  // speed of the person [m/s]
+// Max distance of a person's wrist from the middle of the mug in any grasp [m].
 constexpr double kMaxWrist = 0.22;
 
 struct Carried {
   bool offered{};
-  std::string ended;   ///< how and why, if it was not offered
-  double moved{};      ///< from the point the first path to the person led to [m]
-  int switches{};      ///< commands that take over from one that runs
-  double standing{};   ///< longest the arm stood still on its way after the first step [s]
-  double aside{};      ///< offered point beside the person's middle, as they stand at the end [m]
-  bool reached{};      ///< the point lies within their reach
-  bool has_partner{};  ///< the offer is planned for a grasp of the person
-  double partner_strain{};    ///< of the person's wrist and arm there
+  std::string ended;        ///< how and why, if it was not offered
+  double moved{};           ///< distance from the point of the first path to the person [m]
+  int switches{};           ///< commands that replace a running one
+  double standing{};        ///< max time of the arm at rest after the person's step [s]
+  double aside{};           ///< lateral distance of the offered point from the person's middle [m]
+  bool reached{};           ///< the point lies within their reach
+  bool has_partner{};       ///< the offer is planned for a grasp of the person
+  double partner_strain{};  ///< of the person's wrist and arm there
   double partner_distance{};  ///< of their wrist from the offered point [m]
 };
 
@@ -60,7 +60,7 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
     return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal()));
   };
   double walked = 0, carrying = 0,
-         still = 0;  // carrying: since the first path to the person has begun to run
+         still = 0;  // carrying: time since the start of the first path to the person [s]
   std::uint64_t first_path = 0;
   Vector3 first_point = Vector3::Zero();
   const auto body = [&] {
@@ -86,7 +86,7 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
     out.standing = std::max(out.standing, still);
   });
   seat.every(from_seconds(1.0 / 30), [&](TimePoint) {
-    if (carrying > after) walked = std::min(step, walked + kPace / 30);
+    if (carrying > after) walked = std::min(step, walked + kSideSpeed / 30);
     HumanObservation seen;
     seen.source = "body_tracker";
     seen.coverage = {{-2, -3, 0}, {4, 3, 2.5}};
@@ -124,8 +124,8 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
   return out;
 }
 
-/// Least distance that the exchange point moves when the person walks on by 0.5 m [m]. In nine
-/// seeds it moved by 0.11 to 0.21 m; the rest is reached by the arm of the person.
+/// Min motion of the exchange point when the person walks by 0.5 m [m]. In nine seeds the point
+/// moved by 0.11 to 0.21 m; the arm of the person covers the rest.
 constexpr double kMinMoved = 0.1;
 
 TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_stop) {

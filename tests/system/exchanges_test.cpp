@@ -1,6 +1,6 @@
-// People who differ, over real processes in real time: they give and take; and whatever process
-// dies meanwhile, the task is finished or given up in order. HANDSEL_RUNS: trials of each;
-// HANDSEL_FIRST_SEED: of the first one.
+// Handovers in both directions with varied people, over real processes in real time. If a process
+// dies, the task is completed or given up in order. HANDSEL_RUNS: trials of each;
+// HANDSEL_FIRST_SEED: of the first trial.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -23,17 +23,17 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kSuccess = 0.94;
-constexpr double kGiving = 15.0, kReceiving = 27.0;  // such a task lasts at least about so long [s]
+constexpr double kGiving = 15.0, kReceiving = 27.0;  // approximate min duration of such a task [s]
 constexpr int kDomain = 209;
-const Duration kPatience = std::chrono::minutes(4);
-const Duration kRestPatience = std::chrono::seconds(10);
+const Duration kTaskTimeout = std::chrono::minutes(4);
+const Duration kRestTimeout = std::chrono::seconds(10);
 
 std::uint64_t number(const char* variable, std::uint64_t otherwise) {
   const char* value = std::getenv(variable);
   return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
 }
 
-/// Who dies, when [s] after the task was given.
+/// The process that dies, and the time after the goal [s].
 struct Death {
   std::string process;
   double at{};
@@ -63,7 +63,7 @@ Performance perform(const std::string& name, std::uint64_t seed,
   inputs.before = counters(session.snapshot());
   inputs.ground_truth_before = session.snapshot().ground_truth.sample;
   if (death) {
-    system.wait(kPatience, [&] {
+    system.wait(kTaskTimeout, [&] {
       return performer.finished() ||
              (performer.started() &&
               session.bus().now() - performer.begin() > from_seconds(death->at));
@@ -71,8 +71,8 @@ Performance perform(const std::string& name, std::uint64_t seed,
     out.killed_in = phase_text(session.snapshot().action.sample);
     if (const pid_t pid = system.launcher().pid(death->process); pid > 0) ::kill(pid, SIGKILL);
   }
-  out.over = system.wait(kPatience, [&] { return performer.finished(); });
-  out.at_rest = system.wait(kRestPatience, [&] {
+  out.over = system.wait(kTaskTimeout, [&] { return performer.finished(); });
+  out.at_rest = system.wait(kRestTimeout, [&] {
     return !session.snapshot().ground_truth.sample.robot_moving &&
            session.snapshot().action.sample.state != ActionState::running;
   });
@@ -138,7 +138,7 @@ TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {
   const std::uint64_t runs = number("HANDSEL_RUNS", 50), first = number("HANDSEL_FIRST_SEED", 7001);
   std::vector<std::string> mortal;
   for (const std::string process : kProcesses)
-    if (process != "sim") mortal.push_back(process);  // the simulator is the world
+    if (process != "sim") mortal.push_back(process);  // the simulator is the environment
   std::uint64_t done = 0;
   for (std::uint64_t seed = first; seed < first + runs; ++seed) {
     std::mt19937_64 random(seed);

@@ -1,5 +1,5 @@
-// The facts of simulated handovers beside the simulator's truth, in lock-step. HANDSEL_RUNS: how
-// many seeds (3).
+// The facts of simulated handovers against the simulator's ground truth, in lock-step.
+// HANDSEL_RUNS: number of seeds (3).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,15 +17,15 @@
 namespace handsel::facts_truth_test {
 namespace {
 
-constexpr double kAgree = 0.2;         // [s]
-constexpr double kRounding = 1e-9;     // [s] of times that are multiples of 20 ms
-constexpr double kOffTheTable = 0.01;  // [m]
+constexpr double kAgree = 0.2;         // max difference of times [s]
+constexpr double kRounding = 1e-9;     // rounding error of multiples of 20 ms [s]
+constexpr double kOffTheTable = 0.01;  // min height above the table of a lifted object [m]
 
 struct Steps {
   std::optional<double> lifted, reaches, taken, released;  // [s]
 };
 
-/// What truly happened, from the true body and from who truly carries the object.
+/// Records the true events, from the true body and the true holder of the object.
 class Truth {
  public:
   void see(const GroundTruth& ground_truth) {
@@ -57,7 +57,7 @@ class Truth {
   std::map<std::string, Vector3> before_;
 };
 
-/// What SPARK said.
+/// Records the facts of SPARK.
 class Told {
  public:
   void hear(const Facts& facts, double t, const std::string& object) {
@@ -78,7 +78,7 @@ class Told {
     before_ = now;
   }
   Steps steps;
-  std::map<std::string, int> begun;  // how often each fact began
+  std::map<std::string, int> begun;  // number of begins of each fact
   int doubled{};
 
  private:

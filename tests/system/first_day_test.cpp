@@ -1,6 +1,6 @@
-// The first day on hardware, told to both example drivers as processes: dry run, walls, override,
-// emergency stop, user stop, brake; and what each kind has of its own. A fake of the maker's
-// controller stands behind each, playing a script; the controller is the real one.
+// Commissioning on hardware with both example drivers as processes: dry run, walls, override,
+// emergency stop, user stop, brake; and the specifics of each kind. A scripted emulation of the
+// maker's controller is behind each driver; the trajectory controller is the real one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using test::FirstDayPlan;
 using test::in_real_time;
 using testing::HasSubstr;
 
-constexpr double kAway = -0.3;  // of the motions [rad]; the wall is on the other side
+constexpr double kAway = -0.3;  // target of the motions [rad]; the wall is on the other side
 
 FirstDayPlan position_arm() {
   return {HANDSEL_BINARIES, "position_arm", "jido", "", 0, HANDSEL_TEST_DOMAIN, false};
@@ -61,8 +61,8 @@ class FirstDayOf : public testing::Test {
                  });
   }
 
-  /// Stops in the middle of a motion by `event`; the robot stands, a new permission alone does not
-  /// help, a person's word and a new permission after it do.
+  /// Stops by `event` in the middle of a motion: the robot rests; a new permission alone has no
+  /// effect, but an act of a person and a new permission after it have.
   static void stopped_by(FirstDay& day, const std::string& event, DriveMode mode,
                          const std::string& said) {
     day.play("moving 0.2 " + event + " on\nstanding 0.3 " + event + " off\n");
@@ -106,7 +106,7 @@ class FirstDayOf : public testing::Test {
     ASSERT_TRUE(day.wait([&] { return day.status().mode < Mode::hold; })) << day.where();
     go_back(day);
   }
-  /// To the rest posture; then the maker's side must have had nothing to complain about.
+  /// Moves to the rest configuration, then expects no error of the maker's controller.
   static void go_back(FirstDay& day) {
     day.move_to(0.0);
     ASSERT_TRUE(day.wait([&] { return day.arrived() && std::abs(day.angle()) < 0.005; }))

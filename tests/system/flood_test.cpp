@@ -1,6 +1,6 @@
 // A flood of objects, people, goals and requests under ever-new names against SPARK, the supervisor
-// and two planners in one process: the nearest stay, the rest is counted, memory is flat, and what
-// a person asks for is still done.
+// and two planners in one process: the nearest are kept, the rest is counted, memory is constant,
+// and a person's goal is still carried out.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -27,7 +27,7 @@ using std::chrono::milliseconds;
 
 constexpr int kObjects = 1000, kPeople = 200, kBoxes = 300;
 constexpr std::uint64_t kRequests = 10000;  // of each kind
-constexpr double kFlood = 4;                // [s] with ever-new names
+constexpr double kFlood = 4;                // duration of the flood [s]
 
 /// give_mug with many more boxes, farther away than the arm reaches.
 std::filesystem::path crowded_place(const std::filesystem::path& folder) {
@@ -43,7 +43,7 @@ std::filesystem::path crowded_place(const std::filesystem::path& folder) {
 
 double heap_in_use() { return static_cast<double>(mallinfo2().uordblks); }
 
-/// The arm a little off its rest posture.
+/// Returns a configuration with the arm near its rest configuration.
 Vector moved(const RobotModel& robot) {
   Vector out = RobotModel::part(robot.rest_configuration(), robot.require_group("arm"));
   for (Eigen::Index i = 0; i < out.size(); ++i) out[i] += out[i] > 0 ? -0.1 : 0.1;
@@ -303,7 +303,7 @@ TEST_F(Flood, a_person_pauses_in_the_flood_and_asks_for_work_after_it) {
 
   stranger.stop_asking();
   stranger.keep_names();
-  network_.run_for(from_seconds(6));  // what was admitted is worked off
+  network_.run_for(from_seconds(6));  // completes the admitted requests
   PathRequest request;
   request.id = {kClient, 1};
   request.group = "arm";

@@ -1,5 +1,6 @@
-// The receiver waits with a raised hand and changes to the other while the arm carries the object:
-// point and wrist are those of the new hand, which takes the object. The whole system in lock-step.
+// The receiver waits with a raised hand and changes to the other hand while the arm carries the
+// object: exchange point and wrist follow the new hand, which takes the object. The whole system in
+// lock-step.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -34,7 +35,7 @@ TEST(HandChange, who_changes_hands_is_given_the_object_for_the_new_hand) {
   LockstepSystem system(system_context(file, "", 1));
   Bus& seat = system.bus();
   auto goals = seat.advertise<TaskGoal>();
-  ActionStatus first, last;  // of the carrying: its begin, and the offer
+  ActionStatus first, last;  // of the carrying: at its start, and at the offer
   bool is_carrying = false;
   GroundTruth truth;
   HumanState people;
@@ -64,7 +65,7 @@ TEST(HandChange, who_changes_hands_is_given_the_object_for_the_new_hand) {
   ASSERT_TRUE(last.has_partner);
   EXPECT_EQ(last.partner_side, Side::left) << "the plan is still for the hand that was lowered";
   EXPECT_LE(last.partner_strain, 1.0);
-  // Faces -x: the left is at -y.
+  // The person faces -x: the left hand is at -y.
   EXPECT_LT(last.exchange_point.y(), first.exchange_point.y() - 0.08)
       << "the point did not follow the hand";
   EXPECT_TRUE(truth.taken);

@@ -1,5 +1,5 @@
-// The main job, judged by the simulator's oracle: over DDS and in lock-step, with people who take,
-// who never move, who were recorded, and a robot that never lets go.
+// The handover, checked by the simulator's oracle: over DDS and in lock-step, with people who take,
+// people who never move, recorded people, and a robot that never releases.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -118,8 +118,8 @@ TEST(Mutants, fail_with_a_reason) {
   }
 }
 
-/// Long enough for a person who takes it: the mug is lifted and held out, and nobody else's failure
-/// passes for the mutant's.
+/// Long enough for a person who takes the mug: it is lifted and offered, so that the only failure
+/// is the injected fault.
 TEST(Handover, mutants_fail_over_dds_too) {
   for (const char* scenario : kMutants) {
     const Json report = over_dds(scenario, 1, "25");

@@ -1,6 +1,5 @@
-// The deployment of docker-compose.yml without a container engine: every service with an address of
-// its own, in a network namespace; and perception on another host than the rest, with the cable
-// between them pulled.
+// The deployment of docker-compose.yml without a container engine: every service in a network
+// namespace with its own address; and perception on another host, with an interrupted link.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,14 +59,14 @@ class OnHosts : public testing::Test {
   void TearDown() override {
     if (HasFailure()) note("timeline:\n" + timeline_);
     for (const auto& [host, one] : running_)
-      one->send(SIGTERM);  // all at once; each is waited for as it goes
+      one->send(SIGTERM);  // all at once, then waits for each
   }
   static void note(const std::string& text) {
     std::printf("%s\n", text.c_str());
     std::fflush(stdout);  // before another process inherits it
   }
 
-  /// Keeps what happens, to be printed after a failure.
+  /// Records the events, printed after a failure.
   void keep_timeline(Session& session) {
     session.observer().on_event([this](const TimelineEvent& event) {
       timeline_ += seconds(event.at.time_since_epoch()) + "  " + event.text + "\n";
@@ -100,7 +99,7 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
   for (const auto& [service, text] : services)
     if (service != "spark") start_service(service);
 
-  // Perception is not there: nothing moves, and it is said who is missing.
+  // Perception is missing: no motion, and the missing source is named.
   Session session(kDomain);
   keep_timeline(session);
   const Snapshot& now = session.snapshot();
@@ -219,8 +218,7 @@ TEST_F(OnHosts, who_loses_the_network_for_good_can_still_end) {
   EXPECT_EXIT(lose_it(), testing::ExitedWithCode(0), "");
 }
 
-/// A process that is told something wrong says it in one sentence and ends; nothing was started
-/// that could move.
+/// A wrong setting: the process reports it in one sentence and ends before any motion is possible.
 struct Mistake {
   const char* variables;
   const char* command;

@@ -1,4 +1,4 @@
-// What `cmake --install` installs is enough: the command works from there, and a program outside
+// The tree of `cmake --install` is complete: the command works from there, and a program outside
 // the build takes part.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST_F(Install, a_program_in_c_outside_the_build_matches_every_topic_and_is_hear
                               "/client > " + client + ".out")
                                  .c_str(),
                              "w");
-  const auto all_matched = [&] {  // each has one end here and one there
+  const auto all_matched = [&] {  // each topic has one end in this process and one in the other
     for (const auto& writer : writers)
       if (writer->readers() < 2) return false;
     for (const SubscriptionStatus* reader : readers)

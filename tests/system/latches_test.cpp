@@ -1,9 +1,8 @@
-// What a person, a fault or a stop of the robot has halted stays halted whichever process dies,
-// over real processes: the arm is latched in the middle of a motion, a process is killed, it comes
-// back, and nothing moves until a person says so; then it moves. Without HANDSEL_RUNS: one death
-// for each latch and the processes that keep it. HANDSEL_RUNS=n: every process n times for each
-// latch, at random moments; HANDSEL_FIRST_SEED: of the first; HANDSEL_LATCH, HANDSEL_PROCESS: only
-// these (names separated by commas).
+// Latches survive the death of any process, over real processes: the arm is latched in the middle
+// of a motion, a process is killed and restarts, and nothing moves before a person permits motion;
+// then the arm moves. Without HANDSEL_RUNS: one death for each latch and the processes that keep
+// it. HANDSEL_RUNS=n: every process n times for each latch, at random moments; HANDSEL_FIRST_SEED:
+// of the first run; HANDSEL_LATCH, HANDSEL_PROCESS: only these (names separated by commas).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -26,12 +25,12 @@ using test::BusySystem;
 using test::environment;
 
 constexpr int kDomain = 212;
-constexpr double kRest = 5e-4;  // [rad] the arm stands: 0.000
-constexpr double kTenth = 0.1;  // of the speed
+constexpr double kRest = 5e-4;  // max motion of an arm at rest, shown as 0.000 [rad]
+constexpr double kTenth = 0.1;  // speed override
 constexpr Duration kMoves = std::chrono::seconds(20);
 constexpr Duration kBack = std::chrono::seconds(10);
-constexpr Duration kWatched = std::chrono::milliseconds(
-    2000);  // after the process is back: it resumed after 1.3 s when latches died
+// Observation time after the restart: without surviving latches, motion resumes after 1.3 s.
+constexpr Duration kWatched = std::chrono::milliseconds(2000);
 
 enum class Latch { pause, fault, protective_stop, override_speed };
 constexpr const char* kLatchNames[] = {"pause", "fault", "protective_stop", "override"};
@@ -54,7 +53,7 @@ bool named(const std::string& list, const std::string& name) {
 class LatchesOverDds : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    // Latches of this test stay in this test, whatever becomes of it.
+    // Keeps the latches of this test in its own folder.
     setenv("HANDSEL_STATE", folder().path().c_str(), 1);
     busy_ = std::make_unique<BusySystem>(kDomain);
     ASSERT_TRUE(busy_->ready());
@@ -174,7 +173,7 @@ class LatchesOverDds : public testing::Test {
            {Latch::pause, Latch::fault, Latch::protective_stop, Latch::override_speed})
         for (const std::string process : kProcesses) {
           ++seed;
-          // The simulator is the world: with another one the arm stands elsewhere.
+          // The simulator is the environment: after its restart the arm is elsewhere.
           if (process != "sim" && named(environment("HANDSEL_LATCH"), name(latch)) &&
               named(environment("HANDSEL_PROCESS"), process))
             out.push_back({latch, process, seed});

@@ -1,7 +1,7 @@
-// Live runs in lock-step: the arm is on its way when a person walks up and reaches into it. The
-// whole system; judged from the simulator's truth by an exact collision check of its own.
-// HANDSEL_RUNS: how many (seeds 1 ...), HANDSEL_FIRST: the first seed, HANDSEL_LIVE_PERIOD: another
-// live_period (0: without, for comparison; what is asked of live paths then fails).
+// Online replanning in lock-step: the arm moves when a person walks up and reaches into its path.
+// The whole system, checked on the simulator's ground truth by an independent exact collision
+// check. HANDSEL_RUNS: number of runs (seeds 1 ...), HANDSEL_FIRST: the first seed,
+// HANDSEL_LIVE_PERIOD: another live_period (0: without replanning; its expectations then fail).
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -30,38 +30,38 @@ namespace {
 using Json = nlohmann::json;
 using path_planner::Random;
 
-constexpr double kKeepsOff =
-    0.12;  // nobody pushes a hand or their body nearer than this to the robot [m]
-constexpr double kLimit = 45;  // of one run [s]
+// Min distance to the robot at which the person stops [m].
+constexpr double kMinApproach = 0.12;
+constexpr double kLimit = 45;  // max duration of a run [s]
 
-/// Walks up, reaches out once, draws back and goes. Where they would come too near the robot they
-/// wait.
+/// A person who walks up, reaches out once, withdraws and leaves; waits where the robot is too
+/// near.
 class Visitor {
  public:
-  /// Reaches for a place near `way`, where the robot's hand will come by.
-  Visitor(Random& random, const Vector3& way)
+  /// `p_path`: point on the path of the robot's hand near which the person reaches [m].
+  Visitor(Random& random, const Vector3& p_path)
       : from_(random.between(2.4, 3.2), random.between(-0.3, 1.2), 0),
         to_(random.between(1.1, 1.4), random.between(0.0, 0.6), 0),
-        target_(way + 0.1 * Vector3(random.normal(), random.normal(), random.normal())),
+        target_(p_path + 0.1 * Vector3(random.normal(), random.normal(), random.normal())),
         pace_(random.between(0.7, 1.2)),
         hand_speed_(random.between(0.5, 1.0)),
         waits_(random.between(0.0, 0.4)),
         holds_(random.between(1.0, 2.5)) {}
 
-  /// Advances by dt; `too_near` judges where they would be.
+  /// Advances by dt [s] unless `too_near` refuses the new body.
   template <class TooNear>
   void step(double dt, TooNear&& too_near) {
     Visitor next = *this;
     next.advance(dt);
     if (too_near(next.body())) {
       if (phase_ != Phase::reaching) return;
-      phase_ = Phase::holding;  // does not get there: draws back after a while
+      phase_ = Phase::holding;  // does not reach the target: withdraws after a while
       return;
     }
     *this = next;
   }
   std::vector<BodyJoint> body() const {
-    const Vector3 way = to_ - from_, feet = from_ + walked_ * way;
+    const Vector3 walk = to_ - from_, feet = from_ + walked_ * walk;
     std::vector<BodyJoint> joints = standing_body(feet, std::atan2(-feet.y(), -feet.x()), 1.72);
     const auto at = [&](const char* name) -> Vector3& {
       return std::find_if(joints.begin(), joints.end(),
@@ -131,7 +131,7 @@ class Visitor {
   Phase phase_{Phase::waiting};
 };
 
-/// The exact check on what is true: people and posture as the simulator has them.
+/// Exact check on ground truth: people and configuration of the simulator.
 class Oracle {
  public:
   explicit Oracle(const NodeContext& context)
@@ -160,8 +160,8 @@ class Oracle {
   CollisionWorld world_;
 };
 
-/// What of the old path remains, against what is taken instead, for the people and the scene of
-/// that moment; with instances of our own.
+/// Compares the remaining old path with its replacement, for people and scene of that time, with
+/// independent checks.
 class Judge {
  public:
   explicit Judge(const NodeContext& context)
@@ -170,7 +170,7 @@ class Judge {
         world_(robot_, context.objects),
         cost_(robot_, {}) {}
 
-  /// Integral cost of what remains of the path, for the people now [rad].
+  /// Returns the integral cost of the remaining path for the present people [rad].
   double remaining(const PathRequest& request, const std::vector<Vector>& path,
                    const HumanState& people) {
     cost_.set_people(people);
@@ -178,7 +178,7 @@ class Judge {
   }
   struct Change {
     bool was_blocked{}, rejoins{};
-    double before{}, after{};  // integral cost [rad]
+    double before{}, after{};  // integral cost of the path [rad]
   };
   Change compare(const PathRequest& request, const std::vector<Vector>& old,
                  const std::vector<Vector>& taken, const Scene& scene, const HumanState& people) {
@@ -233,7 +233,7 @@ class Judge {
   HumanCost cost_;
 };
 
-/// An empty room with a table, the arm somewhere, the visitor's body as we tell it.
+/// Returns a scenario: an empty room with a table, the arm at `start`, an external person.
 std::string scenario_text(const RobotModel& robot, const Vector& start) {
   std::string text = R"(name: "live_run" robot: "jido"
 boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 }
@@ -310,7 +310,7 @@ Json run(std::uint64_t seed, const std::string& folder) {
   Scene scene;
   HumanState people;
   std::optional<PathRequest> request;
-  std::vector<double> remaining;  // cost of what is left of the path, at each look
+  std::vector<double> remaining;  // cost of the remaining path, at each sample
   std::vector<Vector> path, offered;
   int looks = 0, taken = 0, cheaper = 0, repaired = 0, replanned = 0, stops = 0, touching = 0;
   double fell = 0, least_distance = 1e9, standing = 0, blocked_told = 0;
@@ -352,7 +352,7 @@ Json run(std::uint64_t seed, const std::string& folder) {
     if (robot.position.size() > 0)
       visitor.step(1.0 / 30, [&](const std::vector<BodyJoint>& body) {
         const double d = oracle.distance(body, robot);
-        return d < kKeepsOff && d < oracle.distance(visitor.body(), robot);
+        return d < kMinApproach && d < oracle.distance(visitor.body(), robot);
       });
     HumanObservation seen;
     seen.source = "body_tracker";

@@ -1,5 +1,5 @@
-// The whole system in virtual time: the same seed gives the same bits, another seed another world;
-// a crash is one failed trial.
+// The whole system in virtual time: the same seed gives the same bits, another seed another run; a
+// crash is one failed trial.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Robots that are not the project's own, by description alone: a Panda with its hand, an iiwa with
-// a parallel gripper. Their URDFs are reference data.
+// Third-party robots by description alone: a Panda with its hand, an iiwa with a parallel gripper.
+// Their URDFs are reference data.
 #include <gtest/gtest.h>
 
 #include <filesystem>

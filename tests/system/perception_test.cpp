@@ -1,6 +1,6 @@
-// The perception example as its author would work with it: built from an installed tree in an empty
-// folder, its person receives the mug from the robot. And broken in one way each: `handsel doctor
-// --perception` names every fault.
+// The perception example from its author's side: built from an installed tree in an empty folder,
+// its person receives the mug from the robot. With one injected fault each, `handsel doctor
+// --perception` names the fault.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 constexpr int kDomain = 83, kFirstVariant = 84;
-constexpr std::size_t kAtOnce = 5;  // variants looked at side by side
+constexpr std::size_t kAtOnce = 5;  // variants tested in parallel
 
 std::string text_of(const fs::path& file) {
   std::ostringstream text;
@@ -34,14 +34,14 @@ struct Edit {
   std::string find, replace;
 };
 
-/// The example with some lines changed, and what the doctor must say.
+/// The example with changed lines, and the required finding of the doctor.
 struct Variant {
   std::string name;
   std::vector<Edit> edits;
   std::string subject, words;
 };
 
-/// A writer of one's own, for who does not use Handsel's.
+/// Returns edits for a writer that does not use the project's library.
 std::vector<Edit> own_writer(
     const std::string& topic, const std::string& tweak,
     const std::string& descriptor = "handsel_find_topic(\"human_observation\")->descriptor") {
@@ -264,7 +264,7 @@ TEST_F(Perception, robot_hands_the_mug_to_the_person_published_from_outside) {
   for (const char* file : {"perception.c", "CMakeLists.txt"})
     fs::copy_file(example() / file, mine / file);
   const Background perception(run_example(build(mine) + "/perception", kDomain));
-  const auto [code, said] = doctor(kDomain, "--inputs-only");  // meanwhile the person has come
+  const auto [code, said] = doctor(kDomain, "--inputs-only");  // the person has arrived
   EXPECT_EQ(code, 0) << said;
   EXPECT_THAT(said, HasSubstr("from body_tracker"));
   const std::string report = (folder() / "report.json").string();

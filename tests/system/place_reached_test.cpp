@@ -1,5 +1,5 @@
-// Who reaches for what the robot is putting down is given it; who merely passes is not
-// (HANDSEL_RUNS: trials of each).
+// A person who reaches for an object that the robot is putting down receives the object; a person
+// who only passes does not (HANDSEL_RUNS: trials of each).
 #include <gtest/gtest.h>
 
 #include "common/config/resources.hpp"

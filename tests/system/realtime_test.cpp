@@ -1,5 +1,5 @@
-// The controller's own thread: real time and locked memory where that is permitted, and a plain
-// word where it is not.
+// The controller's thread: real-time scheduling and locked memory where permitted, else a clear
+// message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 
 struct Started {
-  std::string says;  // the line it prints when ready
+  std::string says;  // its ready line
   int policy{};
   long locked_kb{};
 };

@@ -1,5 +1,5 @@
-// A study's run is recorded whole, with its marks; replayed into a system without a robot, it shows
-// the same person again.
+// A study's run is recorded completely, with its marks; its replay into a system without a robot
+// shows the same person.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -89,7 +89,7 @@ timeout: 40
   EXPECT_EQ(recorded.marks[1].text, "done");
   EXPECT_EQ(recorded.marks[1].participant, "p07");
   EXPECT_EQ(recorded.marks[1].trial, 3u);
-  // Fast topics are there whole: the truth comes at a tenth of the rate of the robot's state.
+  // Fast topics are complete: ground truth has a tenth of the rate of the robot's state.
   EXPECT_GT(recorded.samples.at("handsel/robot_state"),
             9 * recorded.samples.at("handsel/ground_truth"));
   for (const char* topic : {"attention_state", "attention_advice", "task_status", "costmap",

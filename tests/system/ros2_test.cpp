@@ -1,5 +1,5 @@
 // A publisher and readers with the names and types of ROS 2, made with Cyclone alone, beside a
-// whole system with its lane to ROS 2.
+// whole system with its ROS 2 bridge.
 #include <dds/dds.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,8 +94,8 @@ void publish(dds_entity_t writer, std::vector<Frame> frames) {
   dds_write(writer, &message);
 }
 
-/// The body of somebody at `feet` whose right hand is at `hand`, below a camera's frame, as a
-/// tracker for ROS4HRI tells it.
+/// Returns a person at `feet` with the right hand at `hand`, in the frame of a camera, as a ROS4HRI
+/// tracker publishes it.
 std::vector<Frame> body(const Vector3& feet, const Vector3& hand) {
   const Vector3 camera(0.5, -1.0, 1.5);
   std::vector<Frame> out{{"world", "mast", camera}};
@@ -113,7 +113,7 @@ Vector3 joint_of(const std::vector<BodyJoint>& joints, const std::string& name) 
   return Vector3::Constant(1e9);
 }
 
-/// give_mug_external with a person that follows the lane.
+/// Returns give_mug_external with a person from the ROS 2 bridge.
 std::string scenario() {
   std::ostringstream text;
   text << std::ifstream(HANDSEL_SOURCE_DIR "/sim/scenarios/give_mug_external.txtpb").rdbuf();
@@ -128,7 +128,7 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
   setenv("CYCLONEDDS_URI", "file://" HANDSEL_SOURCE_DIR "/deploy/dds/loopback.xml", 1);
   const std::string place = scenario();
-  // Read before the person is published: a person not seen meanwhile may be anywhere.
+  // Loaded before the person is published: during a pause the person would count as lost.
   const NodeContext context = load_context("jido");
   Background up({HANDSEL_COMMAND, "up", "--ros2", "--headless", "--port", "0", "--domain",
                  std::to_string(kDomain), "--scenario", place});
@@ -153,8 +153,8 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   const Vector3 feet(2.2, 0.3, 0);
   Vector3 hand(1.7, 0.45, 1.0), goal = hand;
   bus.every(std::chrono::milliseconds(33), [&](TimePoint) {
-    const Vector3 way = goal - hand;
-    hand += way * std::min(1.0, 0.015 / std::max(1e-9, way.norm()));  // at half a metre a second
+    const Vector3 remaining = goal - hand;
+    hand += remaining * std::min(1.0, 0.015 / std::max(1e-9, remaining.norm()));  // at 0.5 m/s
     goal.z() += 1e-5;
     publish(tf, body(feet, hand));
   });
@@ -203,7 +203,7 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   ASSERT_EQ(position.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(names[i], context.robot->axes()[i].name);
-    const bool moves = names[i].starts_with("head");  // it looks at the person
+    const bool moves = names[i].starts_with("head");  // the head follows the person
     EXPECT_NEAR(position[i], robot.position[static_cast<Eigen::Index>(i)], moves ? 0.1 : 2e-3)
         << names[i];
   }
@@ -236,8 +236,8 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
         from_seconds(10));
     return result;
   };
-  std::string result;  // on a busy machine the robot may have been stopped on the path; then it is
-                       // asked once more
+  std::string result;  // on a busy machine the robot may be stopped on the path: then the request
+  // is repeated
   for (int tries = 0; tries < 3 && result != "done"; ++tries) result = ask(names[axis], target);
   EXPECT_EQ(result, "done");
   EXPECT_NEAR(robot.position[static_cast<Eigen::Index>(axis)], target, 0.01);

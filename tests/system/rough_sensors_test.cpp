@@ -1,5 +1,5 @@
-// The give under sensors as they are, and under data that lies for a while; judged by the
-// simulator's oracle, in lock-step.
+// The give task with realistic sensors and with temporarily wrong data; checked by the simulator's
+// oracle, in lock-step.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -91,8 +91,8 @@ struct Standstill {
   std::uint64_t ssm_violations{};
 };
 
-/// The give with seed 3; calls with every sample of the truth whether the arm moves along a
-/// trajectory.
+/// Runs the give task with seed 3; calls back with every sample of ground truth and whether the arm
+/// moves along a trajectory.
 std::uint64_t give(const std::string& scenario, double seconds,
                    const std::function<void(const GroundTruth&, bool)>& see) {
   LockstepSystem system(scenario, "", 3);
@@ -107,8 +107,8 @@ std::uint64_t give(const std::string& scenario, double seconds,
   return system.snapshot().ground_truth.sample.ssm_violations;
 }
 
-/// When the arm, were all well, is in the middle of its longest motion with the mug [s]: the same
-/// seed gives the same bits until a fault.
+/// Returns the middle of the longest motion with the mug in a run without faults [s]: the same seed
+/// gives the same bits until a fault.
 double on_its_way() {
   const Changed scenario([](config::SensorDescription&) {});
   double begun = -1, last = -1, longest = 0, middle = 0;

@@ -1,6 +1,6 @@
-// A second writer on each topic with one writer, in a running system over DDS, at rest and in
-// motion: no axis leaves its place because of that writer, it is named within a second, and nothing
-// breaks a limit. HANDSEL_RUNS: runs of each topic and kind (default: a selection, once).
+// A second writer on each topic with a pinned writer, in a running system over DDS, at rest and in
+// motion: no axis moves because of that writer, the writer is named within a second, and no limit
+// is exceeded. HANDSEL_RUNS: runs of each topic and kind (default: a selection, once).
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -30,10 +30,10 @@ namespace handsel::second_writer_test {
 namespace {
 
 constexpr int kDomain = 206;
-constexpr double kPlace = 0.01;           // [rad]
-constexpr double kNamed = 1.0;            // [s]
-constexpr std::ptrdiff_t kFollowed = 50;  // set-points of which the robot follows one
-const Duration kPatience = std::chrono::seconds(30);
+constexpr double kPlace = 0.01;           // max displacement of an axis at rest [rad]
+constexpr double kNamed = 1.0;            // max time until the writer is named [s]
+constexpr std::ptrdiff_t kFollowed = 50;  // the robot follows one of so many set-points
+const Duration kTimeout = std::chrono::seconds(30);
 
 std::uint64_t runs() {
   const char* value = std::getenv("HANDSEL_RUNS");
@@ -47,7 +47,7 @@ const char* name(Kind kind) {
                                   : "of another name";
 }
 
-/// What the rightful writers said last, for second writers that imitate them.
+/// Last samples of the pinned writers, for second writers that imitate them.
 struct Known {
   std::mutex mutex;
   JointCommand set_point;
@@ -69,7 +69,7 @@ JointCommand forged(Known& known, std::uint64_t count) {
   for (Eigen::Index i = 0; i < m.position.size(); ++i) m.position[i] += 1.0;
   return m;
 }
-/// Full speed, whatever was decided.
+/// Returns full speed, regardless of the override.
 template <>
 Go forged(Known& known, std::uint64_t count) {
   Go m = known.go;
@@ -221,7 +221,7 @@ std::vector<Topic> all_topics() {
           topic<RobotState>(),        topic<Scene>(),       topic<ActionStatus>()};
 }
 
-/// What a second writer brought about.
+/// Effects of a second writer.
 struct Effect {
   double off{};          ///< largest distance of an arm axis from the place it should have [rad]
   double named_after{};  ///< [s]; negative: never
@@ -255,7 +255,7 @@ class SecondWriterTest : public testing::Test {
   }
   void SetUp() override {
     ASSERT_TRUE(system_.wait_ready(kReadyTimeout).has_value());
-    ASSERT_TRUE(session_.wait(kPatience, [&] {
+    ASSERT_TRUE(session_.wait(kTimeout, [&] {
       return known_.set_point.position.size() > 0 && known_.go.allowed && at_rest();
     }));
   }
@@ -302,7 +302,7 @@ class SecondWriterTest : public testing::Test {
     if (goal.kind == TaskKind::place) goal.surface = "table";
     picks_ = !picks_;
     ASSERT_TRUE(session_.send(goal));
-    ASSERT_TRUE(session_.wait(kPatience, [&] {
+    ASSERT_TRUE(session_.wait(kTimeout, [&] {
       const GroundTruth& ground_truth = session_.snapshot().ground_truth.sample;
       return ground_truth.robot_moving &&
              session_.snapshot().execution.sample.motion == MotionState::running;
@@ -400,7 +400,7 @@ class SecondWriterTest : public testing::Test {
     Stamp stamp;
     Vector position;
   };
-  std::vector<Sent> states_, set_points_;  // those accepted while a second writer was there
+  std::vector<Sent> states_, set_points_;  // accepted in the presence of a second writer
   bool watching_{false}, picks_{true};
 };
 
@@ -431,12 +431,12 @@ TEST_F(SecondWriterTest, is_not_what_a_restarted_controller_is_taken_for) {
   ASSERT_GT(system_.launcher().pid("trajectory_controller"), 0);
   const TimePoint killed = session_.bus().now();
   ::kill(system_.launcher().pid("trajectory_controller"), SIGKILL);
-  ASSERT_TRUE(session_.wait(kPatience, [&] {
+  ASSERT_TRUE(session_.wait(kTimeout, [&] {
     const auto& health = session_.snapshot().health.at("trajectory_controller").sample;
     return health.incarnation != incarnation && health.state == HealthState::ok;
   }));
   const double ready = to_seconds(session_.bus().now() - killed);
-  ASSERT_TRUE(session_.wait(kPatience, [&] {
+  ASSERT_TRUE(session_.wait(kTimeout, [&] {
     const GroundTruth& ground_truth = session_.snapshot().ground_truth.sample;
     return ground_truth.commanders == 2 && ground_truth.set_points > before + 200 &&
            session_.snapshot().execution.sample.mode == Mode::normal;

@@ -1,6 +1,6 @@
-// From an observation on the wire to the Scene and the HumanState that hold it, over DDS, with
-// SPARK as a process of its own. The figures are printed; what is asserted holds on a busy machine
-// too. HANDSEL_RUNS: how many observations (100).
+// Latency from an observation on the wire to the Scene and HumanState that contain it, over DDS,
+// with SPARK as its own process. Prints the figures; the assertions also hold on a busy machine.
+// HANDSEL_RUNS: number of observations (100).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace handsel::spark_latency_test {
 namespace {
 
 constexpr Duration kEvery = std::chrono::milliseconds(20);
-constexpr double kStep = 0.02;  // from one observation to the next [m]
+constexpr double kStep = 0.02;  // motion between two observations [m]
 
 struct Delays {
   std::vector<double> milliseconds;
@@ -91,7 +91,7 @@ TEST(SparkLatency, an_observation_is_in_the_scene_at_once) {
       << spark.said();
   int n = 0;
   ASSERT_TRUE(bus.run_until(
-      [&, next = bus.now()]() mutable {  // until both lanes are up
+      [&, next = bus.now()]() mutable {  // until both topics are connected
         if (bus.now() >= next) observe(n++), next = bus.now() + kEvery;
         return !scenes.milliseconds.empty() && !states.milliseconds.empty();
       },

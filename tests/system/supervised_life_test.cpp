@@ -1,8 +1,7 @@
-// Processes that hang or die under a running system: each is replaced and useful again within 5 s,
-// the task goes on or ends with its reason, nobody is approached faster than the distance allows.
-// By default three blows; HANDSEL_PHASES: so many random phases of SIGSTOP and kill -9 for each of
-// HANDSEL_PROCESSES (comma separated; default: every process). HANDSEL_FIRST_SEED: of the random
-// choices.
+// Processes of a running system hang or die: each is replaced and works again within 5 s, the task
+// continues or ends with its reason, and the speed stays within SSM. By default three faults;
+// HANDSEL_PHASES: number of random phases of SIGSTOP and kill -9 for each of HANDSEL_PROCESSES
+// (comma separated; default: every process). HANDSEL_FIRST_SEED: of the random choices.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -27,21 +26,21 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kDomain = 214;
-constexpr double kBack = 5.0;          // [s] promised
-constexpr double kLongestPhase = 8.0;  // [s] after the task was given; a pick or place lasts longer
-const Duration kPatience = std::chrono::seconds(90), kRestPatience = std::chrono::seconds(10);
+constexpr double kBack = 5.0;      // max time until the process works again [s]
+constexpr double kMaxPhase = 8.0;  // max time of a fault after the goal, below a pick's [s]
+const Duration kTimeout = std::chrono::seconds(90), kRestTimeout = std::chrono::seconds(10);
 
 struct Blow {
   std::string process;
   int signal{};
-  double at{};  // after the task was given [s]; negative: as soon as the robot moves
+  double at{};  // time after the goal [s]; negative: at the start of motion
 };
 
 struct Outcome {
-  double back{-1.0};  // after the blow [s]
-  std::string phase;  // of the action that was struck
+  double back{-1.0};  // time from the fault to the recovery [s]
+  std::string phase;  // of the action during the fault
   TaskStatus task;
-  std::uint64_t ssm_violations{}, limit_violations{};  // since the blow
+  std::uint64_t ssm_violations{}, limit_violations{};  // since the fault
   bool over{}, at_rest{}, dropped{};
 };
 
@@ -64,7 +63,7 @@ class Life {
   }
   bool ready() { return system_.wait_ready(kReadyTimeout).has_value(); }
   Outcome strike(const Blow& blow);
-  /// What happened since the last task was given.
+  /// Returns the events since the last goal.
   std::string timeline() const {
     std::ostringstream out;
     for (const TimelineEvent& event : events_)
@@ -123,12 +122,12 @@ void Life::remind() {
 
 Outcome Life::strike(const Blow& blow) {
   Outcome out;
-  until(kRestPatience, [&] {
+  until(kRestTimeout, [&] {
     return !now().ground_truth.sample.robot_moving && not_ready(now()).empty() &&
            now().execution.sample.mode < Mode::hold;
   });
   give_task();
-  until(kPatience, [&] {
+  until(kTimeout, [&] {
     if (task_over()) return true;
     return blow.at < 0 ? now().ground_truth.sample.robot_moving
                        : monotonic_now() - task_at_ > from_seconds(blow.at);
@@ -140,8 +139,8 @@ Outcome Life::strike(const Blow& blow) {
   ::kill(old, blow.signal);
   if (until(from_seconds(3 * kBack), [&] { return is_back(blow.process, old); }))
     out.back = to_seconds(monotonic_now() - struck);
-  out.over = until(kPatience, [&] { return task_over(); });
-  out.at_rest = until(kRestPatience, [&] { return !now().ground_truth.sample.robot_moving; });
+  out.over = until(kTimeout, [&] { return task_over(); });
+  out.at_rest = until(kRestTimeout, [&] { return !now().ground_truth.sample.robot_moving; });
   if (const auto task = now().tasks.find(goal_.id); task != now().tasks.end())
     out.task = task->second;
   const GroundTruth& after = now().ground_truth.sample;
@@ -183,7 +182,7 @@ std::vector<Blow> all_blows(int phases, std::mt19937_64& random) {
     for (int k = 0; k < phases; ++k)
       for (const int signal : {SIGSTOP, SIGKILL})
         blows.push_back(
-            {process, signal, std::uniform_real_distribution<double>(0.0, kLongestPhase)(random)});
+            {process, signal, std::uniform_real_distribution<double>(0.0, kMaxPhase)(random)});
   return blows;
 }
 
@@ -205,7 +204,7 @@ TEST(SupervisedLife, whoever_hangs_or_dies_is_replaced_and_the_task_ends_in_orde
     late += outcome.back < 0.0 || outcome.back > kBack;
     slowest = std::max(slowest, outcome.back);
     if (!outcome.over || outcome.dropped ||
-        outcome.back < 0.0) {  // the next one deserves a sound world
+        outcome.back < 0.0) {  // the next fault needs a working system
       life.reset();
       life = std::make_unique<Life>(random());
       ASSERT_TRUE(life->ready());
@@ -221,7 +220,7 @@ TEST(SupervisedLife, whoever_hangs_or_dies_is_replaced_and_the_task_ends_in_orde
 /// own.
 struct Installation {
   test::TemporaryFolder folder;
-  fs::path broken = folder.path() / "broken";  // while this file is there the planner ends at once
+  fs::path broken = folder.path() / "broken";  // while this file exists, the planner exits at once
 
   Installation() {
     const fs::path bin = folder.path() / "bin", home = folder.path() / "home",
@@ -229,7 +228,7 @@ struct Installation {
     fs::create_directories(bin);
     fs::create_directories(home / "config");
     fs::copy_file(HANDSEL_COMMAND,
-                  bin / "handsel");  // a process finds the others beside its own file
+                  bin / "handsel");  // a process finds the others in its own folder
     for (const auto& entry : fs::directory_iterator(built)) {
       const std::string program = entry.path().filename();
       if (program.starts_with("handsel_") && program != "handsel_path_planner")

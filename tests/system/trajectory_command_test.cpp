@@ -1,4 +1,4 @@
-// `handsel trajectory solve | smooth | sample` as its user meets it: real process, exit codes,
+// `handsel trajectory solve | smooth | sample` from the user's side: real process, exit codes,
 // exact sentences.
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ TEST(TrajectoryCommand, each_axis_for_itself_and_imposed_durations) {
   const std::string open = problem().substr(0, problem().size() - 1);
   const Answers none = ask("solve", open + R"(,"sync":"none"})");
   EXPECT_EQ(none.exit_code, 0);
-  // The first axis has arrived before the second and waits.
+  // The first axis arrives before the second and waits.
   const json& segments = none.lines.at(0).at("axes")[0].at("segments");
   EXPECT_EQ(segments.back()[1], 0);
   EXPECT_NEAR(segments.back()[0].get<double>(), 4 - 4 * std::cbrt(0.5), 1e-12);
@@ -200,16 +200,17 @@ TEST(TrajectoryCommand, on_the_way_to_the_cassette_the_corner_over_the_lid_keeps
   const Answers with = ask_example("cartesian --robot jido", "cassette/cassette.jsonl");
   EXPECT_EQ(with.exit_code, 0) << with.err;
   ASSERT_EQ(with.lines.size(), 1u);
-  const json& way = with.lines[0];
-  ASSERT_TRUE(way.at("solved").get<bool>()) << way;
-  ASSERT_EQ(way.at("corners").size(), 2u);
-  EXPECT_EQ(way.at("corners")[0].at("method"), "stop");
-  EXPECT_NE(way.at("corners")[0].at("reason").get<std::string>().find("collides"),
+  const json& answer = with.lines[0];
+  ASSERT_TRUE(answer.at("solved").get<bool>()) << answer;
+  ASSERT_EQ(answer.at("corners").size(), 2u);
+  EXPECT_EQ(answer.at("corners")[0].at("method"), "stop");
+  EXPECT_NE(answer.at("corners")[0].at("reason").get<std::string>().find("collides"),
             std::string::npos);
-  EXPECT_NE(way.at("corners")[1].at("method"), "stop");
-  const double saved = way.at("saved_s").get<double>();
+  EXPECT_NE(answer.at("corners")[1].at("method"), "stop");
+  const double saved = answer.at("saved_s").get<double>();
   EXPECT_GT(saved, 0.3);
-  EXPECT_NEAR(way.at("duration").get<double>(), way.at("duration_ptp").get<double>() - saved, 1e-9);
+  EXPECT_NEAR(answer.at("duration").get<double>(), answer.at("duration_ptp").get<double>() - saved,
+              1e-9);
   const Answers without =
       ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
         auto& things = line.at("obstacles");
@@ -218,7 +219,8 @@ TEST(TrajectoryCommand, on_the_way_to_the_cassette_the_corner_over_the_lid_keeps
       });
   ASSERT_EQ(without.lines.size(), 1u);
   EXPECT_NE(without.lines[0].at("corners")[0].at("method"), "stop");
-  EXPECT_LT(without.lines[0].at("duration").get<double>(), way.at("duration").get<double>() - 0.3);
+  EXPECT_LT(without.lines[0].at("duration").get<double>(),
+            answer.at("duration").get<double>() - 0.3);
 }
 
 TEST(TrajectoryCommand, what_the_tool_cannot_do_is_said_and_the_way_before_it_is_there) {
@@ -231,25 +233,25 @@ TEST(TrajectoryCommand, what_the_tool_cannot_do_is_said_and_the_way_before_it_is
           change(line.at("nodes"));
         });
     ASSERT_EQ(a.lines.size(), 1u) << what;
-    const json& way = a.lines[0];
-    ASSERT_TRUE(way.contains("solved")) << way;
+    const json& answer = a.lines[0];
+    ASSERT_TRUE(answer.contains("solved")) << answer;
     EXPECT_EQ(a.exit_code, 1) << what;
-    EXPECT_NE(way.at("reason").get<std::string>().find(what), std::string::npos)
-        << way.at("reason");
-    EXPECT_EQ(way.at("reached"), reached) << what;
-    EXPECT_EQ(way.at("duration").get<double>() > 0.5, reached > 0) << what;
+    EXPECT_NE(answer.at("reason").get<std::string>().find(what), std::string::npos)
+        << answer.at("reason");
+    EXPECT_EQ(answer.at("reached"), reached) << what;
+    EXPECT_EQ(answer.at("duration").get<double>() > 0.5, reached > 0) << what;
   };
   expect("out of reach", 1, [](json& nodes) { nodes[1]["p"][0] = 4; });
   expect("half a turn", 1, [](json& nodes) {
     const json q = nodes[0]["q"];  // turned by pi about its own z axis
     nodes[1]["q"] = {q[1], -q[0].get<double>(), q[3], -q[2].get<double>()};
   });
-  // Behind the shoulder: only through the stretched arm or on another branch.
+  // Behind the shoulder: reachable only through the stretched arm or on another branch.
   expect("node 2", 1, [](json& nodes) {
     nodes[1]["p"][0] = -nodes[0]["p"][0].get<double>();
     nodes[1]["p"][1] = -0.6;
   });
-  // Equal nodes, and one where the tool is, are no motion.
+  // Equal waypoints, and a waypoint at the tool, give no motion.
   const Answers same =
       ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
         line.erase("obstacles");
@@ -267,7 +269,7 @@ TEST(TrajectoryCommand, the_platform_drives_beneath_the_tool) {
     line.erase("obstacles");
     json& nodes = line.at("nodes");
     nodes.erase(nodes.begin() + 1, nodes.end());
-    nodes[0]["p"][0] = nodes[0]["p"][0].get<double>() + 0.8;  // out of reach from where it stands
+    nodes[0]["p"][0] = nodes[0]["p"][0].get<double>() + 0.8;  // beyond reach without driving
     nodes[0]["also"] = {{"platform_x", 0.8}, {"platform_y", 0.05}, {"platform_heading", 0.1}};
   };
   const Answers a =
@@ -285,10 +287,10 @@ TEST(TrajectoryCommand, beside_people_the_speed_follows_the_cost_of_the_way) {
   EXPECT_EQ(a.exit_code, 0) << a.err;
   ASSERT_EQ(a.lines.size(), 3u);
   std::vector<double> slowest;  // middle of the slowest zone
-  for (const json& way : a.lines) {
-    EXPECT_TRUE(way.at("solved").get<bool>());
+  for (const json& answer : a.lines) {
+    EXPECT_TRUE(answer.at("solved").get<bool>());
     double begin = 0, least = 2, middle = 0;
-    for (const json& zone : way.at("speeds")[0]) {
+    for (const json& zone : answer.at("speeds")[0]) {
       if (zone[1].get<double>() < least) {
         least = zone[1].get<double>();
         middle = 0.5 * (begin + zone[0].get<double>());

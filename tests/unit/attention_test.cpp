@@ -314,8 +314,7 @@ TEST_F(AttentionTest, the_exchanging_hand_does_not_stop_the_robot_once_engaged) 
   EXPECT_FALSE(engaged.advice().has_target_shift);
 }
 
-/// A receiver whose right hand and wrist are held out at a place, and who is to be given something
-/// at another.
+/// A receiver whose right hand is extended at one place, with an offer planned at another.
 class ShiftTest : public AttentionTest {
  protected:
   ShiftTest() {

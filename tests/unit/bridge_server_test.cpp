@@ -1,4 +1,4 @@
-// The server as a hostile or clumsy client meets it, over real sockets.
+// The server with hostile or faulty clients, over real sockets.
 #include "components/bridge/server.hpp"
 
 #include <gmock/gmock.h>
@@ -77,7 +77,7 @@ struct BridgeServer : testing::Test {
     const std::string answer = ask("GET", "/counters.json");
     return Json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
   }
-  /// Asks the server again and again, for at most 5 s, until `holds`, which asks something of it.
+  /// Repeats `holds`, which sends a request to the server, until it is true; at most 5 s.
   template <class Holds>
   bool comes_true(const Holds& holds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
@@ -103,7 +103,7 @@ struct BridgeServer : testing::Test {
     const std::string id =
         "after " +
         std::to_string(
-            channel);  // messages are taken in order: its answer comes after the subscription
+            channel);  // messages are processed in order: the answer follows the subscription
     client.frame(WebSocketClient::kText,
                  R"({"op":"getParameters","parameterNames":[],"id":")" + id + R"("})");
     EXPECT_THAT(client.read(id), HasSubstr(id));
@@ -234,7 +234,7 @@ TEST_F(BridgeServer, garbage_frames_are_answered_or_cut_counted_and_cost_others_
   talker->frame(WebSocketClient::kBinary, std::string("\x01\0\0\0\0", 5));
   EXPECT_THAT(talker->read("publishing"), HasSubstr("only shows"));
   const auto liar = viewer();
-  liar->send(std::string(20, '\xff'));  // no frame
+  liar->send(std::string(20, '\xff'));  // not a frame
   liar->read();
   const auto large = viewer();
   large->frame(WebSocketClient::kText, std::string(10'000'000, '{'));
@@ -263,7 +263,7 @@ TEST_F(BridgeServer, many_connections_and_floods_leave_memory_flat) {
     for (int i = 0; i < 100; ++i) idle.emplace_back(server->port());
     for (HttpClient& client : idle) client.request("GET", "/../../etc/passwd");
     idle.clear();
-    // The server notices one by one that they are gone.
+    // The server detects one by one that they have disconnected.
     ASSERT_TRUE(comes_true([&] { return !ask("GET", "/").starts_with("HTTP/1.1 503"); }));
     const auto flooder = viewer();
     for (int i = 0; i < 3000; ++i)

@@ -1,4 +1,4 @@
-// The protocol without a socket: what a viewer is told, what it may ask, what waits for it.
+// The protocol without a socket: messages to a viewer, its requests, its queue.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST(Outbox, queues_are_bounded_and_lose_their_oldest) {
   for (const char* next : {"first", "second", "2", "3", "4"}) EXPECT_EQ(body(outbox.pop()), next);
 }
 
-/// Whatever comes, the bounds hold and the books agree with what is handed out.
+/// For any traffic the bounds hold and the counters match the messages handed out.
 TEST(Outbox, bounds_hold_for_random_traffic) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -90,7 +90,7 @@ TEST(Outbox, bounds_hold_for_random_traffic) {
             const std::size_t before = outbox.bytes();
             outbox.forget(subscription);
             EXPECT_LE(outbox.bytes(), before);
-            forgotten += 3;  // at most so many instances
+            forgotten += 3;  // max number of instances
           }
       }
       EXPECT_LE(outbox.bytes(), std::max<std::size_t>(settings.max_bytes, 200));
@@ -248,8 +248,8 @@ TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
   EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
 }
 
-/// Messages of a client, damaged at random: none is fatal, and what is refused is answered as long
-/// as the viewer is not cut.
+/// Randomly damaged messages of a client: none is fatal, and each refusal is answered while the
+/// viewer is connected.
 TEST_F(ViewerTest, damaged_messages_are_never_fatal) {
   const std::vector<std::string> good{
       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":3}]})",
@@ -319,7 +319,7 @@ TEST_F(ViewerTest, learns_what_changed_in_the_graph) {
   skip_greeting();
   hub.set_graph({.writers = {{"a", {"sim"}}, {"b", {"spark"}}}, .readers = {{"a", {"spark"}}}});
   viewer.graph_changed();
-  EXPECT_TRUE(viewer.outbox().empty());  // it did not ask
+  EXPECT_TRUE(viewer.outbox().empty());  // not subscribed
   say({{"op", "subscribeConnectionGraph"}});
   const Json all = next();
   EXPECT_EQ(all["publishedTopics"].size(), 2u);
@@ -365,7 +365,7 @@ TEST(Drawing, is_what_a_panel_needs_to_draw_robot_person_and_object) {
   scene.objects.back().T_world_object.translation() = Vector3(0.5, 0, 0.8);
   drawing.take(scene);
 
-  // Chained from the world, the transforms give every link where the model has it.
+  // The chained transforms give the pose of every link in the model.
   foxglove::FrameTransforms transforms;
   ASSERT_TRUE(transforms.ParseFromString(drawing.transforms(5'000'000'007)));
   ASSERT_EQ(static_cast<std::size_t>(transforms.transforms_size()), robot->links().size());

@@ -118,7 +118,7 @@ void add_numeric_keys(std::vector<const Descriptor*> path, const std::string& be
   for (int i = 0; i < type->field_count(); ++i) {
     const FieldDescriptor& field = *type->field(i);
     if (field.message_type() == path.front()) continue;  // a scenario in a variant of a scenario
-    // A wall of a part is a part, once.
+    // A wall of a part is a part itself: expanded only once.
     if (std::count(path.begin(), path.end(), field.message_type()) > 1) continue;
     path.back() = field.message_type();
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
@@ -174,7 +174,7 @@ TEST(TextProto, a_number_out_of_its_range_is_refused_and_the_range_is_named) {
                                 supervisor);
               }),
               HasSubstr("s.txtpb:1:value: is nan, must be a number in [0, 1000]"));
-  load_text_proto(folder.write("spark.txtpb", "grip_force: -0\n"), spark);  // minus zero is zero
+  load_text_proto(folder.write("spark.txtpb", "grip_force: -0\n"), spark);  // counts as 0
 }
 
 TEST(TextProto, names_that_are_no_text_and_keys_given_twice_are_refused) {

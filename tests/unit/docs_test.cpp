@@ -1,4 +1,4 @@
-// What the documents say is there, is there.
+// Everything that the documents name exists.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -79,7 +79,7 @@ TEST(Docs, the_project_speaks_of_itself_only) {
     for (fs::recursive_directory_iterator at(kRoot / folder), end; at != end; ++at) {
       const fs::directory_entry& entry = *at;
       if (entry.path().filename() == "node_modules")
-        at.disable_recursion_pending();  // fetched, not ours
+        at.disable_recursion_pending();  // third-party code
       const std::set<std::string> read{".hpp", ".cpp",   ".md", ".proto", ".txtpb", ".idl",
                                        ".txt", ".cmake", ".sh", ".story", ".js"};
       if (!entry.is_regular_file() || !read.count(entry.path().extension())) continue;

@@ -135,7 +135,7 @@ TEST(Mesh, a_file_that_the_mesh_names_is_not_opened) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "pipe");
   const std::filesystem::path pipe = folder.path() / "pipe" / "m.mtl";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // opening it for reading waits for ever
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // opening the pipe for reading blocks
   const auto mesh = load_mesh(folder.write(
       "t.obj", "mtllib " + pipe.string() + "\n" + kTetrahedron + "usemtl red\nf 1 2 3\n"));
   EXPECT_EQ(mesh.triangles.size(), 5u);

@@ -1,4 +1,4 @@
-// Dependencies point one way, and only wire and bus know DDS: read from the #include lines of the
+// Dependencies are acyclic, and only wire and bus use DDS: checked on the #include lines of the
 // whole tree.
 #include <gtest/gtest.h>
 
@@ -135,8 +135,8 @@ TEST(Includes, rooms_of_common_point_downward) {
 TEST(Includes, cores_know_no_clock_thread_or_logger) {
   const std::set<std::string> outside{
       "thread", "mutex", "condition_variable", "spdlog/spdlog.h", "unistd.h", "time.h", "ctime"};
-  // Processes, their nodes and what binds a part to the bus, and the files that are there for the
-  // outside: the page's server, the file of found grasps, the file of the safety state.
+  // Processes, nodes, bindings of a part to the bus, and files with external interfaces: the page's
+  // server, the file of found grasps, the file of the safety state.
   const std::set<std::string> thin{
       "node.cpp",        "node.hpp",         "main.cpp",        "server.cpp",
       "server.hpp",      "server_state.hpp", "ros_topics.hpp",  "trajectory_link.hpp",

@@ -1,4 +1,4 @@
-// The lane to ROS 2 in virtual time: its topics on one side, ours on the other.
+// The ROS 2 bridge in virtual time: ROS 2 topics on one side, system topics on the other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

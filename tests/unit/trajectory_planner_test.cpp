@@ -91,7 +91,7 @@ double velocity_share(const RobotModel& robot, const MotionState3& state) {
 TEST_F(MotionPlanning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhere) {
   const TrajectoryRequest sweep = request_over({{-1.5, 0, 0}, {1.5, 0, 0}});
   const std::vector<Vector3> places = {{1.7, 0.2, 0}, {0.9, 1.5, 0}, {0.9, -1.5, 0}};
-  std::vector<double> slowest;  // shoulder angle where it is
+  std::vector<double> slowest;  // shoulder angle at the slowest sample
   for (const Vector3& place : places) {
     beside(test::person_at(place));
     const Result result = run(sweep);
@@ -99,24 +99,24 @@ TEST_F(MotionPlanning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_e
     ASSERT_EQ(result.reply.speeds.size(), 1);
     const SpeedAlong people(robot_, cost_, around_, {});
     const auto cost_at = [&](double x) { return people.at(Vector3(x, 0, 0)).cost; };
-    // What it is told is no more than the cost allows, and where it runs long enough it uses it.
+    // The speed is at most what the cost allows, and reaches that value on long sections.
     const Trajectory& found = result.reply.trajectory;
-    double least = 1, most = 0, sum_c = 0, sum_v = 0, sum_cc = 0, sum_vv = 0, sum_cv = 0;
+    double min_ratio = 1, max_ratio = 0, sum_c = 0, sum_v = 0, sum_cc = 0, sum_vv = 0, sum_cv = 0;
     int count = 0;
     slowest.push_back(0);
-    double least_at_cruise = 2;
+    double min_at_cruise = 2;
     for (int i = 1; i < 400; ++i) {
       const MotionState3 state = found.at(found.duration() * i / 400);
-      const double x = state.position[0], cost = cost_at(x), share = velocity_share(robot_, state);
-      EXPECT_LE(share, 1 - 0.5 * cost + 0.02) << "at " << x;
-      if (std::abs(x) > 1.1) continue;  // beyond: it starts and stops
-      if (share < least_at_cruise) {
-        least_at_cruise = share;
+      const double x = state.position[0], cost = cost_at(x), ratio = velocity_share(robot_, state);
+      EXPECT_LE(ratio, 1 - 0.5 * cost + 0.02) << "at " << x;
+      if (std::abs(x) > 1.1) continue;  // beyond: starting and stopping
+      if (ratio < min_at_cruise) {
+        min_at_cruise = ratio;
         slowest.back() = x;
       }
-      least = std::min(least, share), most = std::max(most, share);
-      sum_c += cost, sum_v += share, sum_cc += cost * cost, sum_vv += share * share,
-          sum_cv += cost * share, ++count;
+      min_ratio = std::min(min_ratio, ratio), max_ratio = std::max(max_ratio, ratio);
+      sum_c += cost, sum_v += ratio, sum_cc += cost * cost, sum_vv += ratio * ratio,
+          sum_cv += cost * ratio, ++count;
     }
     const double correlation =
         (count * sum_cv - sum_c * sum_v) /
@@ -124,9 +124,9 @@ TEST_F(MotionPlanning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_e
     std::printf(
         "person at (%.1f, %.1f): speed %.2f to %.2f of the limits, correlation with the cost "
         "%.3f\n",
-        place.x(), place.y(), least, most, correlation);
+        place.x(), place.y(), min_ratio, max_ratio, correlation);
     EXPECT_LT(correlation, -0.9);
-    EXPECT_GT(most, least + 0.05);
+    EXPECT_GT(max_ratio, min_ratio + 0.05);
   }
   EXPECT_NEAR(slowest[0], 0.1, 0.35);
   EXPECT_GT(slowest[1], 0.5);
@@ -144,12 +144,12 @@ TEST_F(MotionPlanning, velocity_acceleration_and_jerk_fall_with_the_cost_to_peop
     const Result result = run(sweep);
     ASSERT_TRUE(result.reply.solved) << result.reply.reason;
     const AxisTrajectory& axis = result.reply.trajectory.axes[0];
-    const AxisExtremes most = extremes(axis);
-    measured.push_back({result.cost, most.velocity, most.acceleration, most.jerk,
+    const AxisExtremes max_ratio = extremes(axis);
+    measured.push_back({result.cost, max_ratio.velocity, max_ratio.acceleration, max_ratio.jerk,
                         result.reply.trajectory.duration()});
     std::printf(
         "person at %.1f m: cost %.2f, at most %.3f rad/s, %.3f rad/s2, %.3f rad/s3; %.2f s\n", away,
-        result.cost, most.velocity, most.acceleration, most.jerk,
+        result.cost, max_ratio.velocity, max_ratio.acceleration, max_ratio.jerk,
         result.reply.trajectory.duration());
   }
   for (std::size_t k = 1; k < measured.size(); ++k) {
@@ -181,8 +181,9 @@ TEST_F(MotionPlanning, who_comes_nearer_or_does_not_look_makes_it_slower) {
   for (BodyJoint& joint : anna.joints) joint.velocity = Vector3(0.8, 0, 0);
   EXPECT_DOUBLE_EQ(factor().first, watching);
   for (BodyJoint& joint : anna.joints) joint.velocity.setZero();
-  cost_ = HumanCost(robot_, {1.0, 3.0, 1.0, 0.0,
-                             0.0});  // no cost of visibility, so that only what she does differs
+  cost_ = HumanCost(
+      robot_,
+      {1.0, 3.0, 1.0, 0.0, 0.0});  // no cost of visibility: only the activity of the person differs
   const double seen = factor().first;
   anna.gaze_direction = Vector3::UnitX();
   EXPECT_LT(factor().first, seen - 0.05);
@@ -246,7 +247,7 @@ TEST(TrajectoryPlannerNode, answers_once_planned_requests_again_and_waits_for_a_
   EXPECT_EQ(replies[2].trajectory.duration(), replies[1].trajectory.duration());
 }
 
-/// Jido's trajectory planner, and what it answers to motions of the tool.
+/// Jido's trajectory planner and its answers to tool motions.
 class ToolMotions : public ::testing::Test {
  protected:
   explicit ToolMotions(const std::filesystem::path& settings = HANDSEL_SOURCE_DIR
@@ -354,10 +355,10 @@ TEST_F(ToolMotions, move_the_platform_as_three_more_axes) {
     for (std::size_t k = 0; k < reply_.axes.size(); ++k)
       q[reply_.axes[k]] = at[static_cast<Eigen::Index>(k)];
     const Vector3 tool = whole->link_pose(q, whole->require_group("arm").tip).translation();
-    // On the straight way while the platform drives beneath.
-    const Vector3 way = request_.poses[0].T_world_tip.translation() - home_.translation();
+    // On the straight path while the platform moves.
+    const Vector3 to_goal = request_.poses[0].T_world_tip.translation() - home_.translation();
     const Vector3 off = (tool - home_.translation()) -
-                        way * (tool - home_.translation()).dot(way) / way.squaredNorm();
+                        to_goal * (tool - home_.translation()).dot(to_goal) / to_goal.squaredNorm();
     EXPECT_LT(off.norm(), 1e-3);
     if (i < 20) continue;
     EXPECT_LT((tool - request_.poses[0].T_world_tip.translation()).norm(), 1e-5);
@@ -396,7 +397,7 @@ TEST_F(ToolMotions, that_cannot_be_say_why_and_go_as_far_as_they_can) {
      Eigen::Quaterniond(Eigen::AngleAxisd(0.5, request_.upright_axis.unitOrthogonal())));
   expect(1, "leans over");
   request_.upright = false;
-  // Equal nodes, and one where it is, are no motion.
+  // Equal waypoints, and a waypoint at the present pose, give no motion.
   to({0, 0.1, 0});
   to({0, 0.1, 0});
   ask();

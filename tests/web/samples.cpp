@@ -1,5 +1,5 @@
-// samples DOMAIN SEED: publishes one random valid sample of every message type over DDS, again and
-// again, until its input ends. Prints one line of JSON a type before: {"topic", "type", "leaves":
+// samples DOMAIN SEED: publishes one random valid sample of every message type over DDS repeatedly
+// until its input ends. Prints one line of JSON per type before: {"topic", "type", "leaves":
 // {"path": value}}, integers of 64 bits as text.
 #include <poll.h>
 #include <unistd.h>
@@ -79,7 +79,7 @@ void rotate(const Leaves& leaves, std::size_t w, Dice& dice) {
     *static_cast<double*>(leaves[w - 3 + i].value) = q[i] / std::sqrt(norm);
 }
 
-/// Every leaf as random as its message allows: what breaks a rule is taken back.
+/// Returns a message with random leaves; values that violate a rule are reverted.
 std::shared_ptr<void> random_message(const MessageType& type, Dice& dice) {
   auto wire = type.new_wire();
   type.fill(wire.get(), false);

@@ -8,7 +8,7 @@
 
 namespace handsel::test {
 
-/// What somebody does with an object.
+/// Activity of a person with an object.
 enum class Act {
   keeps,       ///< holds the object before the body or beside the leg
   brings_out,  ///< moves the object out to offer it
@@ -23,16 +23,16 @@ enum class Act {
   puts_down,   ///< places the object on the counter, or picks it up there
   passes,      ///< holds the object out for another person
   points,      ///< points aside with the object in the hand
-  receives,    ///< reaches for what another person offers
+  receives,    ///< reaches for an object that another person offers
 };
 const char* name(Act act);  ///< as in the enumeration
 
-/// Where a person looks.
+/// Gaze target of a person.
 enum class Gaze { ahead, object, robot, aside };
 
 /// One piece of a script: all parts move with a minimum-jerk profile to where they end.
 struct Piece {
-  Act act{};                      ///< what the person does meanwhile
+  Act act{};                      ///< activity during the piece
   double duration{};              ///< > 0 [s]
   Vector3 hand{Vector3::Zero()};  ///< end of the hand, in the frame of the feet [m]
   Vector3 step{Vector3::Zero()};  ///< of the feet, world [m]
@@ -75,7 +75,7 @@ class ActedPerson {
   bool is_over(double t) const { return t >= piece_.duration; }
   /// Returns the act of the present piece.
   Act act() const { return piece_.act; }
-  /// Returns where the person looks.
+  /// Returns the gaze target.
   Gaze gaze() const { return piece_.gaze; }
 
   const Person& body() const { return body_; }  ///< ground truth, without velocities

@@ -1,4 +1,4 @@
-// Labelled sequences of what people do with an object before a robot: the simulator's own giver, a
+// Labelled sequences of people with an object in front of a robot: the simulator's giver, a
 // scripted person, and a recorded handover. Pure, seeded.
 #pragma once
 
@@ -17,10 +17,10 @@ struct RecordedHandover;
 
 /// Distance of the middle of a held object in front of the hand, as in the simulator [m].
 constexpr double kHeldInFront = 0.08;
-/// How much farther outward an offer is than where the object was kept, at least [m].
+/// Min outward distance of an offer from the place where the object was kept [m].
 constexpr double kMinOutward = 0.07;
 
-/// What is before the people. World frame.
+/// The robot in front of the people, world frame.
 struct ActStage {
   Vector3 p_robot{Vector3::Zero()};    ///< base of the robot [m]
   Vector3 p_hand{Vector3::Zero()};     ///< hand of the robot [m]
@@ -33,7 +33,7 @@ struct Counter {
   Vector3 size{Vector3::Zero()};    ///< full extents [m]
 };
 
-/// What counts as an offer in a sequence.
+/// Definition of an offer in a sequence.
 struct OfferLabel {
   double max_speed{0.02};    ///< of the object at the begin of an offer [m/s]
   double min_duration{0.5};  ///< [s]
@@ -51,14 +51,14 @@ class ActedSequence {
   virtual std::vector<const Person*> people() const = 0;
   /// Returns the pose of the object, world.
   virtual Pose T_world_object() const = 0;
-  /// Returns what the holder does.
+  /// Returns the holder's activity.
   virtual Act act() const = 0;
   /// Returns whether the object is offered to the robot, relative to the body of its holder.
   bool is_offer() const { return act() == Act::offers; }
-  /// Returns whether nobody could tell an offer from keeping the object: it is offered hardly
-  /// farther than it was kept, because the robot's hand is so near.
+  /// Returns whether an offer is indistinguishable from keeping the object, because the robot's
+  /// hand is so near.
   virtual bool is_unclear() const { return false; }
-  /// Returns what counts as an offer here.
+  /// Returns the definition of an offer in this sequence.
   virtual OfferLabel label() const { return {}; }
   /// Returns the forces at the sensors of the object; empty: it has none.
   virtual std::vector<ObservedGrip> grips() const { return {}; }
@@ -66,13 +66,13 @@ class ActedSequence {
 
 /// Where the robot is in the recorded handover.
 enum class RecordedView {
-  giver,        ///< in the place of the taker, who is left out, before the giver
+  giver,        ///< in place of the omitted taker, facing the giver
   giver_waits,  ///< the same; the giver stops where the offer begins
-  taker,  ///< in the place of the giver, before the taker, who has the object and lays it down
-  aside,  ///< beside both people
+  taker,        ///< in place of the giver, facing the taker, who puts the object down
+  aside,        ///< beside both people
 };
 
-/// Returns where the counter of a scripted sequence stands, as of `seed`.
+/// Returns the counter of the scripted sequence with this `seed`.
 Counter counter_of(std::uint64_t seed);
 /// Returns a person that acts by a random script: offers among everything else.
 std::unique_ptr<ActedSequence> scripted_sequence(const ActStage& stage, std::uint64_t seed);
@@ -81,7 +81,7 @@ std::unique_ptr<ActedSequence> scripted_sequence(const ActStage& stage, std::uin
 /// and ends as the giver releases the object.
 std::unique_ptr<ActedSequence> recorded_sequence(const RecordedHandover& recording,
                                                  RecordedView view);
-/// Returns the simulator's giver, who varies as in the scenario trial_receive.
+/// Returns the simulator's giver, varied as in the scenario trial_receive.
 std::unique_ptr<ActedSequence> simulated_sequence(const ActStage& stage, std::uint64_t seed);
 
 }  // namespace handsel::test

@@ -1,4 +1,4 @@
-// The recorded handover of the reference data, beside a robot in the place of one of its people.
+// The recorded handover of the reference data, with a robot that replaces one of the two people.
 #include <algorithm>
 #include <array>
 
@@ -9,15 +9,15 @@
 namespace handsel::test {
 namespace {
 
-constexpr double kRate = 120;        // of the recording [Hz]
-constexpr double kTaken = 3.28;      // the taker holds the baton, as published [s]
-constexpr double kReleased = 3.51;   // the giver has released the baton, as published [s]
-constexpr double kApart = 1.55;      // from the robot to the person, so that its hand has space [m]
-constexpr double kAside = 1.2;       // from the robot to a handover that it only observes [m]
-constexpr double kSlow = 1.0 / 3;    // of the max speed of the reach: offered, as people do
-constexpr double kHeld = 1.5;        // duration for which the giver is made to wait [s]
-constexpr double kWristPart = 0.75;  // from elbow to hand
-constexpr double kSpeedOver = 0.05;  // the speed of the baton is measured over this time [s]
+constexpr double kRate = 120;        // frame rate of the recording [Hz]
+constexpr double kTaken = 3.28;      // time at which the taker holds the baton, as published [s]
+constexpr double kReleased = 3.51;   // time at which the giver has released it, as published [s]
+constexpr double kApart = 1.55;      // distance of robot and person, with space for its hand [m]
+constexpr double kAside = 1.2;       // distance of the robot from an observed handover [m]
+constexpr double kSlow = 1.0 / 3;    // max speed of an offer, divided by the max speed of the reach
+constexpr double kHeld = 1.5;        // time at rest added to the giver's offer [s]
+constexpr double kWristPart = 0.75;  // position of the wrist from elbow (0) to hand (1)
+constexpr double kSpeedOver = 0.05;  // interval of the baton's speed measurement [s]
 
 class Recorded final : public ActedSequence {
  public:
@@ -27,7 +27,7 @@ class Recorded final : public ActedSequence {
     const Vector3 across = (giver - taker).cwiseProduct(Vector3(1, 1, 0)).normalized();
     const bool is_taker = view == RecordedView::taker;
     const bool is_aside = view == RecordedView::aside;
-    // Robot at the origin, facing +x, which leads to the person.
+    // Robot at the origin, +x toward the person.
     const Vector3 ahead = is_aside   ? Vector3(-across.y(), across.x(), 0)
                           : is_taker ? Vector3(-across)
                                      : across;

@@ -1,4 +1,4 @@
-// A random script of what a person does with an object, and of the person beside.
+// A random script of a person with an object, and of a second person beside.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -11,10 +11,10 @@ namespace handsel::test {
 namespace {
 
 constexpr double kUsual =
-    0.13;  // level distance of a kept object from the shoulder, over the stature
-constexpr double kSpace = 0.55;        // before the robot's hand, where people may hesitate [m]
-constexpr double kCounterTop = 0.95;   // height [m]
-constexpr double kCounterAway = 0.46;  // of its middle [m]
+    0.13;  // horizontal distance of a kept object from the shoulder, divided by the stature
+constexpr double kSpace = 0.55;        // distance of hesitating people from the robot's hand [m]
+constexpr double kCounterTop = 0.95;   // height of the counter [m]
+constexpr double kCounterAway = 0.46;  // distance of the counter's middle from the person [m]
 
 class Draw {
  public:
@@ -34,7 +34,7 @@ Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 /// Place of anna, drawn before all else, since the counter is beside her.
 struct Place {
   Vector3 feet{Vector3::Zero()};
-  double yaw{}, beside{};  // of the counter from her facing [rad]
+  double yaw{}, beside{};  // direction of the counter from the person's facing [rad]
   bool left_handed{};
 };
 
@@ -274,7 +274,7 @@ class Scripted final : public ActedSequence {
     rest(Act::points, draw_.within(0.6, 1.5), Gaze::aside);
     add(Act::points, kept_);
   }
-  /// Holds the object out for ben, who takes it in two of three cases.
+  /// Offers the object to ben, who takes it in two of three cases.
   void pass() {
     const double direction = direction_to(level(ben_->body().joints[0].position));
     const double turn = direction - std::clamp(direction, -0.5, 0.5);
@@ -316,7 +316,7 @@ class Scripted final : public ActedSequence {
     ben_->begin(piece);
     ben_begun_ = clock_;
   }
-  /// Ben is at the side, within reach of what anna offers to him.
+  /// Returns ben, who is beside anna, within reach of her offer.
   ActedPerson::Settings ben() {
     ActedPerson::Settings settings;
     settings.id = "ben";
@@ -338,7 +338,7 @@ class Scripted final : public ActedSequence {
     return Eigen::AngleAxisd(-yaw_, Vector3::UnitZ()) * (p_world - feet());
   }
 
-  /// Two or three acts; the last may leave the object with somebody else.
+  /// Writes two or three acts; the last may leave the object with another person.
   void write() {
     rest(Act::keeps, draw_.within(1.0, 1.8), Gaze::robot);
     const int acts = draw_.chance(0.5) ? 2 : 3;

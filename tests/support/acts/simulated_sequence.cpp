@@ -1,4 +1,4 @@
-// The simulator's giver and partner, without physics: the object moves with the wanted hand.
+// The simulator's giver and partner, without physics: the object moves with the commanded hand.
 #include <cmath>
 #include <optional>
 

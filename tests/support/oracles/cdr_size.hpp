@@ -1,4 +1,4 @@
-// How large a message is on the wire.
+// Size of a message on the wire.
 #pragma once
 
 #include <cstddef>

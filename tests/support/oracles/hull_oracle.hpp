@@ -1,4 +1,4 @@
-// The hull of a set of wrenches by Qhull: an oracle for epsilon and the peer of its benchmark.
+// Convex hull of a set of wrenches by Qhull: an oracle for epsilon and the peer of its benchmark.
 #pragma once
 
 #include <algorithm>

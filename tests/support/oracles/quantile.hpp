@@ -7,7 +7,7 @@
 
 namespace handsel::test {
 
-/// Of times in seconds the one that a share of them stays below [ms]; 0 of none.
+/// Returns the quantile `share` of times in seconds, in [ms]; 0 without times.
 inline double quantile_ms(std::vector<double> times, double share) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());

@@ -1,5 +1,5 @@
-// Ruckig on the same problems, for comparison; only where it is built (HANDSEL_RUCKIG). Free of
-// Eigen: the unit behind it is compiled for this very processor.
+// Ruckig on the same problems, for comparison; only if built (HANDSEL_RUCKIG). Without Eigen: the
+// source file is compiled for the processor of this machine.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // An independent, slow minimum-time solver for one axis: scans every family of bang-bang profiles
-// for every root, assumes nothing about monotony or the sign of the motion. For tests only.
+// for all roots, without assumptions on monotonicity or the sign of the motion. For tests only.
 #pragma once
 
 #include <algorithm>
@@ -42,9 +42,9 @@ inline bool rising(double v, double a, double peak, double A, double J, std::vec
   return true;
 }
 
-/// Durations at which the displacement wanted is the largest or the least possible, ascending: the
-/// least duration first, then the ends of what is blocked. Those that a coarse grid steps over in
-/// pairs are missing.
+/// Returns the durations at which the wanted displacement is the max or min possible, ascending:
+/// the min duration first, then the bounds of the blocked intervals. Pairs between two points of
+/// the coarse grid are missing.
 inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& to,
                                        const AxisLimits& l, int grid = 600) {
   std::vector<double> all;
@@ -63,7 +63,7 @@ inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& t
       out.segments.insert(out.segments.end(), down.begin(), down.end());
       return run({0, v0, a0}, out.segments).position - D;
     };
-    // Without one: valley or peak at `b` between; `early` picks which of the two is the parameter.
+    // Without a zero crossing: valley or peak at `b`; `early` selects which is the parameter.
     const auto flat_profile = [&](double b, bool early, SlowProfile& out) {
       std::vector<Segment> g;
       out.valid = false;
@@ -140,12 +140,11 @@ inline double slow_min_time(const AxisState& from, const AxisState& to, const Ax
   return bounds.empty() ? std::numeric_limits<double>::infinity() : bounds[0];
 }
 
-/// From outside the limits to their border: what is beyond the acceleration limit comes back at
-/// full jerk; what is beyond the velocity limit, or cannot help getting there, decelerates to a
-/// depth, holds it and comes up so far that it does not head beyond the other limit when it is
-/// back. The deepest depth that leaves time to hold is searched by halving. Returns the time taken;
-/// negative where the state is beyond one limit and heads beyond the other, which this does not
-/// know.
+/// Moves the state from outside the limits to their border: an excess acceleration returns at full
+/// jerk; an excess or unavoidable excess of velocity decelerates to a depth, holds it and reduces
+/// it so that the return does not exceed the other limit. The max depth with time to hold is found
+/// by bisection. Returns the duration [s]; negative: unknown, for a state beyond one limit that
+/// heads beyond the other.
 inline double slow_way_inside(AxisState& s, const AxisLimits& l) {
   const double V = l.velocity, A = l.acceleration, J = l.jerk;
   double time = 0;

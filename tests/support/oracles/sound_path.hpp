@@ -1,4 +1,4 @@
-// A path that answers its problem.
+// Checks whether a path solves its problem.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A command that runs while a test does something else; ended with SIGINT, as Ctrl-C would.
+// A command that runs in the background of a test; ended with SIGINT, like Ctrl-C.
 #pragma once
 
 #include <poll.h>
@@ -33,7 +33,7 @@ class Background {
     if (pid_ == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       const sched_param ordinary{};
-      sched_setscheduler(0, SCHED_OTHER, &ordinary);  // whatever the test itself runs under
+      sched_setscheduler(0, SCHED_OTHER, &ordinary);  // independent of the scheduling of the test
       if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen(out_.c_str(), "w", stdout))
         _exit(127);
       execv(argv[0], argv.data());
@@ -67,13 +67,13 @@ class Background {
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
-  /// What it has said on stderr so far.
+  /// Returns its output on stderr so far.
   std::string said() const { return text_of(log_); }
   /// And on stdout; also after its end.
   std::string printed() const { return text_of(out_); }
-  /// Waits until it has said `text`; false after 20 s or when it ended without.
+  /// Waits until its output contains `text`; false after 20 s or at its end.
   bool wait_for(const std::string& text) const {
-    constexpr int kAtMost = 20000;  // [ms]
+    constexpr int kAtMost = 20000;  // max time of waiting [ms]
     pollfd awaited[] = {{inotify_init1(IN_NONBLOCK | IN_CLOEXEC), POLLIN, 0},
                         {static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0}};
     inotify_add_watch(awaited[0].fd, log_.c_str(), IN_MODIFY);

@@ -1,5 +1,5 @@
-// A running system, real processes over DDS, with something to do at all times: a mug is picked up
-// and put down again.
+// A running system, real processes over DDS, that is always busy: it picks up a mug and puts the
+// mug down again.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +48,8 @@ class BusySystem {
     bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { watch(state); });
   }
 
-  /// Nobody takes the mug from the hand of an arm that stands for long: that would move the arm.
+  /// Waits until the system is ready; false: timeout. Anna then refuses the mug, because taking it
+  /// from an arm at rest would move the arm.
   bool ready() {
     if (!system_.wait_ready(kReadyTimeout)) return false;
     disturb(SimAction::person_refuse, 0.0, "anna");
@@ -64,8 +65,8 @@ class BusySystem {
     const auto found = now().health.find(process);
     return found != now().health.end() && found->second.sample.state == HealthState::ok;
   }
-  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too,
-  /// and what they press on moves the arm for as long as they do.
+  /// Returns whether the arm is on a long path in free space: closing fingers also count as motion,
+  /// and their contact moves the arm.
   bool travels() {
     const ActionPhase phase = now().action.sample.phase;
     const bool approaches = phase == ActionPhase::approach;
@@ -117,7 +118,7 @@ class BusySystem {
     fastest_ = 0.0;
   }
   double deviation() const { return deviation_; }
-  /// What has happened since mark().
+  /// Returns the events since mark().
   std::string timeline() {
     std::string out;
     const GroundTruth& ground_truth = now().ground_truth.sample;

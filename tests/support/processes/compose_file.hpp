@@ -1,5 +1,5 @@
-// Reads deploy/docker-compose.yml, which is written in one style: services are indented by two,
-// what they have by four.
+// Reads deploy/docker-compose.yml in its fixed style: services are indented by two, their entries
+// by four.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A copy of the settings of the project in which single values differ.
+// A copy of the project's settings with single values changed.
 #pragma once
 
 #include <filesystem>

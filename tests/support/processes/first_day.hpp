@@ -1,6 +1,6 @@
-// A real robot's first day: a driver process before a scripted fake of its maker's controller, the
-// controller process, and everybody else who speaks to them, over DDS. Nothing waits for time:
-// every step waits for what must be seen.
+// Commissioning of a real robot: a driver process with a scripted emulation of the maker's
+// controller, the controller process and all other senders, over DDS. No step waits for a time:
+// every step waits for the expected observation.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct FirstDayPlan {
 
 class FirstDay {
  public:
-  static constexpr double kFar = 0.6;  ///< the wall stands on the way to this [rad]
+  static constexpr double kFar = 0.6;  ///< goal beyond the wall [rad]
 
   explicit FirstDay(const FirstDayPlan& plan)
       : plan_(plan),
@@ -75,7 +75,7 @@ class FirstDay {
     controller_ = start("handsel_trajectory_controller");
   }
 
-  /// The maker's controller, with what is to happen to it.
+  /// Starts the emulated controller of the maker with a script of events.
   void play(const std::string& script) {
     fake_.reset();
     go_.override_factor = 1.0;
@@ -88,7 +88,7 @@ class FirstDay {
                                  plan_.robot, "--port", std::to_string(port_), "--realtime",
                                  "--script", folder_.write("script.txt", script).string()});
   }
-  /// Ends it; what it says of what it was told.
+  /// Ends the emulated controller; returns its report of the received commands.
   std::string account() {
     fake_->interrupt();
     return fake_->printed();
@@ -97,8 +97,8 @@ class FirstDay {
     return fake_->printed().find(event) != std::string::npos;
   }
 
-  /// Waits until `done`; ends early, without success, once the processes hold because the machine
-  /// was away: what the story waits for cannot come then.
+  /// Waits until `done`; ends early, without success, once the processes hold after a stall of the
+  /// machine, because the awaited event then cannot occur.
   template <class Done>
   bool wait(const Done& done, double seconds = 10.0) {
     bool success = false;
@@ -134,7 +134,7 @@ class FirstDay {
         20.0);
   }
   void give_go(bool acknowledge) {
-    go_.state_revision = ++go_.epoch;  // each is a person's
+    go_.state_revision = ++go_.epoch;  // each follows an act of a person
     go_.acknowledge = acknowledge;
     go_out_->publish(go_);
   }
@@ -142,7 +142,7 @@ class FirstDay {
     go_.override_factor = factor;
     go_out_->publish(go_);
   }
-  /// The plan of a motion to so far from the rest posture, on the way of every story; sent.
+  /// Plans and sends a motion to this angle from the rest configuration [rad].
   Trajectory move_to(double angle) {
     Vector goal = gathered(robot_.rest_configuration());
     goal[plan_.axis] += angle;
@@ -188,7 +188,9 @@ class FirstDay {
   bool has(Cause cause) const {
     return (status_.causes & (1U << static_cast<unsigned>(cause))) != 0;
   }
-  double angle() const { return angle_of(robot_state_); }  ///< measured, from the rest posture
+  double angle() const {
+    return angle_of(robot_state_);
+  }  ///< measured, from the rest configuration [rad]
   double speed() const { return gathered(robot_state_.velocity).cwiseAbs().maxCoeff(); }
   double wall_room() const { return wall_ - reach(robot_state_.position); }
   double fastest{};   ///< of any arm axis as measured, since it was last set to 0 [rad/s]
@@ -222,7 +224,7 @@ class FirstDay {
         plan_.binaries + "/" + process, "--robot", plan_.robot, "--config", folder_.path().string(),
         "--domain", std::to_string(plan_.domain), "--realtime"});
   }
-  /// How far the links that the axis moves reach toward the wall.
+  /// Returns how far the links moved by the axis extend toward the wall [m].
   double reach(const Vector& position) const {
     std::vector<Pose> links;
     robot_.forward(position, links);

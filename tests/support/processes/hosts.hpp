@@ -1,5 +1,5 @@
-// Hosts of one network on this machine: network namespaces, each with an address of its own, joined
-// by a switch. Only root can make them; they touch nothing of the machine's own network.
+// Hosts of one network on this machine: network namespaces with own addresses, joined by a switch.
+// Creating them requires root; the machine's own network is unaffected.
 #pragma once
 
 #include <fcntl.h>

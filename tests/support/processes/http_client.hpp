@@ -1,5 +1,5 @@
-// A plain HTTP client on a socket, for tests: sends bytes as given, reads until the other side is
-// done or a text has come.
+// A plain HTTP client on a socket, for tests: sends bytes as given, reads until the connection ends
+// or a text has arrived.
 #pragma once
 
 #include <arpa/inet.h>
@@ -37,7 +37,7 @@ class HttpClient {
   void request(const std::string& method, const std::string& target, const std::string& host) {
     send(method + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n");
   }
-  /// Everything until the other side closes, `until` has come or 5 s have passed.
+  /// Reads until the connection closes, `until` arrives or 5 s have passed.
   std::string read(const std::string& until = {}) {
     while (until.empty() || text_.find(until) == std::string::npos) {
       pollfd fd{fd_, POLLIN, 0};

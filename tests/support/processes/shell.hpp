@@ -1,4 +1,4 @@
-// Runs a command line as a person would, and says what came out.
+// Runs a command line in a shell and returns its output.
 #pragma once
 
 #include <sys/wait.h>

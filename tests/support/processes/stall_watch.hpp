@@ -1,6 +1,6 @@
-// Real-time stories on a machine that is not ours alone: a hypervisor may take all its processors
-// away for tens of milliseconds, which no priority helps against. A story that fails while that
-// happened says nothing of the product and is told again.
+// Real-time scenarios on a shared machine: a hypervisor may withhold all processors for tens of
+// milliseconds, regardless of priorities. A scenario that fails during such a stall is invalid and
+// runs again.
 #pragma once
 
 #include <gtest/gtest-spi.h>
@@ -45,14 +45,14 @@ class StallWatch {
     return watch != nullptr && watch->worst() > kTolerated;
   }
 
-  /// Waits for the next stall, at most so long; returns whether one came.
+  /// Waits for the next stall, at most `time`; returns whether one occurred.
   bool stalls_within(Duration time) const {
     std::unique_lock lock(mutex_);
     const std::size_t before = stalls_.size();
     return stalled_.wait_for(lock, time, [&] { return stalls_.size() > before; });
   }
 
-  /// The most that one processor lost within 20 ms so far [s].
+  /// Returns the max time that one processor lost within 20 ms so far [s].
   double worst() const {
     const std::lock_guard lock(mutex_);
     double worst = 0.0;
@@ -99,7 +99,7 @@ class StallWatch {
     }
   }
 
-  static inline const StallWatch* running_ = nullptr;  // read by the thread of the story only
+  static inline const StallWatch* running_ = nullptr;  // read only by the thread of the scenario
   mutable std::mutex mutex_;
   mutable std::condition_variable stalled_;
   std::vector<Stall> stalls_;
@@ -107,7 +107,7 @@ class StallWatch {
   std::vector<std::thread> threads_;
 };
 
-/// Waits until the machine is not away for a second, for at most 20 s: stalls come in bursts.
+/// Waits for a second without a stall, at most 20 s: stalls come in bursts.
 inline void await_quiet_machine() {
   const StallWatch watch;
   const TimePoint deadline = monotonic_now() + std::chrono::seconds(20);
@@ -115,9 +115,8 @@ inline void await_quiet_machine() {
   }
 }
 
-/// Tells `story`, whose failures count if the machine was there throughout, and those of the last
-/// of so many tellings in any case; `afresh` comes before each but the first, once the machine is
-/// quiet.
+/// Runs `story` repeatedly. Failures count if no stall occurred, and in the last attempt always;
+/// `afresh` runs before each attempt but the first, once the machine is quiet.
 template <class Story, class Afresh>
 void in_real_time(const Story& story, const Afresh& afresh) {
   constexpr int kTellings = 12;

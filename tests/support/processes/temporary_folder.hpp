@@ -1,4 +1,4 @@
-// A folder of files for one test, removed at its end.
+// A temporary folder for one test, removed at its end.
 #pragma once
 
 #include <unistd.h>
@@ -29,7 +29,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// What an E says, or "no error".
+/// Returns the text of a thrown E, or "no error".
 template <class E, class F>
 std::string message_of(F f) {
   try {

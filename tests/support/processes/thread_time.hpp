@@ -1,4 +1,4 @@
-// How long this thread has been computing: what other processes do does not count.
+// Processor time of this thread, independent of other processes.
 #pragma once
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// How long work took the thread that did it: others on the machine do not count.
+// Processor time of work in its thread, independent of other processes.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ inline double seconds(const std::function<void()>& work) {
 class Times {
  public:
   void add(double seconds) { all_.push_back(seconds); }
-  /// What that share of them is at most [ms]; 0 without any.
+  /// Returns the quantile `share` of the times [ms]; 0 without times.
   double at(double share) {
     std::sort(all_.begin(), all_.end());
     return all_.empty()

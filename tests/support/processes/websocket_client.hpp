@@ -1,5 +1,5 @@
 // A plain WebSocket client on the HTTP client's socket, for tests: handshake, masked frames as
-// given, whatever the server sends as bytes.
+// given, the server's output as bytes.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class WebSocketClient : public HttpClient {
   }
 
   enum : std::uint8_t { kText = 1, kBinary = 2 };
-  /// `announced` is the length the frame claims; by default what it has. The mask is zero.
+  /// Sends a frame. `announced`: length in the header, by default the actual one. The mask is zero.
   void frame(std::uint8_t opcode, const std::string& payload,
              std::uint64_t announced = UINT64_MAX) {
     const std::uint64_t size = announced == UINT64_MAX ? payload.size() : announced;

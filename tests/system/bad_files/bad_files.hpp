@@ -1,5 +1,5 @@
-// A table of bad files: what is in each, the command that reads the file, and how the command must
-// refuse it.
+// A table of bad files: the content of each, the command that reads the file, and the required
+// refusal.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Bad scenarios and stories: nothing of the system may start.
+// Bad scenarios and stories: no process of the system may start.
 #include "tests/system/bad_files/bad_files.hpp"
 
 namespace handsel::test {

@@ -1,4 +1,4 @@
-// Bad settings of each component, and what lies beside them: task domain, calibration, profiles of
+// Bad settings of each component and the files beside them: task domain, calibration, profiles of
 // people, the transport's own XML.
 #include "tests/system/bad_files/bad_files.hpp"
 
@@ -24,7 +24,7 @@ class Settings {
   Settings(BadFiles& table, std::string component, std::string file)
       : table_(table), component_(std::move(component)), file_(std::move(file)) {}
 
-  /// One key with a value that is refused, and what is said; "is ..." stands for "<key>: is ...".
+  /// Adds a key with a refused value and the error text; "is ..." abbreviates "<key>: is ...".
   Settings& key(const std::string& name, const std::string& value, const std::string& says) {
     const std::string sentence = says.rfind("is ", 0) == 0 ? name + ": " + says : says;
     return add(name + "_" + std::to_string(++rows_),

@@ -1,6 +1,6 @@
-// Every file a user can name is read with checks: no bad one crashes a command, hangs it or is half
-// taken. Each row runs the command as shipped. HANDSEL_BIN names another folder of binaries, e.g.
-// build/asan/bin; HANDSEL_BAD_FILES a part of the names of the rows to run.
+// Every file that a user can name is checked: no bad file crashes or hangs a command or is read
+// only in part. Each row runs the command as shipped. HANDSEL_BIN selects another folder of
+// binaries, such as build/asan/bin; HANDSEL_BAD_FILES selects rows by a part of their names.
 #include "tests/system/bad_files/bad_files.hpp"
 
 #include <fcntl.h>
@@ -60,9 +60,9 @@ std::string source_file(const std::string& path) {
 
 namespace {
 
-constexpr double kMaxTime = 2.0;  // [s] of processor, so that a busy machine does not count
-constexpr std::chrono::seconds kPatience{40};  // until a command that waits for something is killed
-constexpr int kAtOnce = 4;  // most commands wait for the transport, not for a core
+constexpr double kMaxTime = 2.0;                // max processor time of a command [s]
+constexpr std::chrono::seconds kKillAfter{40};  // after which a waiting command is killed
+constexpr int kAtOnce = 4;  // parallel commands; most of them wait for the transport
 constexpr const char* kDomain = "227";
 
 struct Ended {
@@ -84,7 +84,7 @@ Ended wait_for(pid_t child) {
   const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
   EXPECT_GE(handle, 0) << std::strerror(errno);
   pollfd end{handle, POLLIN, 0};
-  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
+  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kKillAfter);
   ended.killed = poll(&end, 1, static_cast<int>(patience.count())) != 1;
   if (ended.killed) kill(-child, SIGKILL);
   close(handle);
@@ -140,7 +140,7 @@ Ended run(const BadFile& row, const fs::path& folder) {
   return ended;
 }
 
-/// What is wrong with how the command ended; empty: nothing.
+/// Returns the fault in the end of a command; empty: none.
 std::string complaint(const BadFile& row, const Ended& ended) {
   std::ostringstream what;
   const std::string& said = row.input.empty() ? ended.err : ended.out + ended.err;
@@ -173,7 +173,7 @@ BadFiles table() {
   if (geteuid() == 0)
     std::erase_if(all, [](const BadFile& row) {
       return row.kind == BadFile::Kind::unreadable;
-    });  // root reads it
+    });  // root can read the file
   return all;
 }
 

@@ -1,5 +1,5 @@
-// A robot that drives passes a person in a corridor and behind a doorway: farther from the person
-// than on the shortest path. In lock-step.
+// A mobile robot passes a person in a corridor and behind a doorway at a larger distance than on
+// the shortest path. In lock-step.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -24,7 +24,7 @@ nlohmann::json pass(std::uint64_t seed, const std::filesystem::path& settings) {
 }
 
 TEST(Passing, people_cost_and_are_passed_farther_off_than_on_the_shortest_path) {
-  constexpr double kFarther = 0.15;  // [m]
+  constexpr double kFarther = 0.15;  // min increase of the distance [m]
   test::EditedSettings no_costs;
   no_costs.set("cost.txtpb", "w_safety", "0");
   no_costs.set("cost.txtpb", "w_visibility", "0");

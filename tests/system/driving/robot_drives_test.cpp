@@ -1,5 +1,5 @@
-// A robot that drives, in lock-step: past a person, to a sideboard and on to a person, and when its
-// wheels slip or its place in the world is lost.
+// A mobile robot in lock-step: past a person, to a sideboard and then to a person, also with
+// slipping wheels or a lost localisation.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

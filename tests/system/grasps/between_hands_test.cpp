@@ -1,5 +1,5 @@
-// A robot with two arms brings objects where one arm alone cannot: in lock-step, with the goals
-// that are shipped as scenarios.
+// A robot with two arms brings objects to places out of reach of one arm: in lock-step, with the
+// goals of the shipped scenarios.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// A mug that is full is carried upright, from the table into the hand of a person: in lock-step.
+// A full mug is carried upright from the table into the hand of a person: in lock-step.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMaxTilt = 0.35;  // deploy/objects/full_mug [rad]
+constexpr double kMaxTilt = 0.35;  // max tilt, of deploy/objects/full_mug [rad]
 constexpr int kTrials = 3;
 
 TEST(CarriedUpright, a_full_mug_leans_over_no_farther_than_its_description_allows) {

@@ -1,4 +1,4 @@
-// One planned grasp carried out in the emulated world: straight approach, the controller's hand
+// Executes one planned grasp in the emulated world: straight approach, the controller's hand
 // closing, lift, tilt, shake.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace handsel::test {
 
 inline const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 inline constexpr double kDt = 0.001;
-inline constexpr double kShake = 0.02;  // to either side [m]
+inline constexpr double kShake = 0.02;  // amplitude of the shake to either side [m]
 inline const Vector3 kTable(0.85, -0.62, 0.36), kTableSize(0.7, 0.7, 0.72);
 
 /// Models read so far; one that is not among the project's own is put in by its name.
@@ -38,16 +38,15 @@ inline const ObjectModel* library(const std::string& name) {
 }
 
 struct HoldOutcome {
-  double knocked{};     ///< way of the object while the opened hand came [m]
+  double knocked{};     ///< motion of the object during the approach [m]
   double lifted{};      ///< [m]
-  std::string lost;     ///< during what; empty: held to the end
-  double slip{};        ///< farthest of the object in the hand since the lift began [m]
-  double turn{};        ///< likewise [rad]
+  std::string lost;     ///< stage of the loss; empty: held to the end
+  double slip{};        ///< max motion of the object in the hand since the lift [m]
+  double turn{};        ///< max rotation of the object in the hand since the lift [rad]
   double pressure{};    ///< normal force of the hand after closing [N]
-  double constraint{};  ///< share of the time in which the constraint held
-  std::string
-      hold;  ///< what held it after the lift, as the ground truth says: "contact" or "constraint"
-  double real_time{};  ///< simulated seconds per second of the processor, object in hand
+  double constraint{};  ///< fraction of the time with the grasp constraint
+  std::string hold;     ///< ground truth of the hold after the lift: "contact" or "constraint"
+  double real_time{};   ///< simulated seconds per second of the processor, object in hand
   bool held() const { return lost.empty(); }
 };
 
@@ -117,8 +116,8 @@ class Execution {
     v->set_z(to.z());
   }
 
-  /// Returns the settings with a robot side that follows whatever it is sent: the paths here are
-  /// interpolated, without accelerations.
+  /// Returns the settings with a robot side that follows any set-point: the paths here are
+  /// interpolated without accelerations.
   static sim::SimSettings unchecked(sim::SimSettings settings) {
     settings.robot_side.period = 0.0;
     return settings;
@@ -190,8 +189,8 @@ class Execution {
     return q.has_value();
   }
 
-  /// By 90 degrees about a horizontal axis through the object, clear of the table; of the ways
-  /// there the shortest for the arm.
+  /// Tilts by 90 degrees about a horizontal axis through the object, clear of the table, on the
+  /// shortest motion of the arm.
   bool tilt(const Pose& T_world_tool) {
     std::optional<Vector> best;
     double least = 2.5;
@@ -299,7 +298,7 @@ class Execution {
   std::unique_ptr<trajectory_controller::HandExecutor> fingers_;
   MotionState3 fingers_out_;
   HoldOutcome out_;
-  std::string stage_;  // empty: not yet lifting
+  std::string stage_;  // empty: before the lift
   Pose T_tool_object_{Pose::Identity()};
 };
 

@@ -1,5 +1,5 @@
-// Grasps the planner chooses hold by contact and friction alone: lifted, tilted by 90 degrees,
-// shaken at 2 Hz. What falls is printed.
+// Grasps of the planner hold by contact and friction alone: lifted, tilted by 90 degrees, shaken at
+// 2 Hz. Prints the failures.
 #include <cstdlib>
 #include <set>
 #include <sstream>
@@ -18,7 +18,7 @@ using namespace test;
 /// The planner's ranked grasps of an object on the table, as many yaws as it takes.
 class Grasping : public testing::Test {
  protected:
-  /// Calls `each` with up to `count` grasps and where the object stands.
+  /// Calls `each` with up to `count` grasps and the object's pose.
   template <class Each>
   void grasps(const std::string& model, int count, Each&& each) {
     const auto page = book_.page(*library(model));
@@ -80,7 +80,7 @@ class Grasping : public testing::Test {
 
 struct Case {
   const char* object;
-  int least;  // of the ten grasps that must hold
+  int min_held;  // min number of the ten grasps that hold
 };
 
 class GraspHolds : public Grasping, public testing::WithParamInterface<Case> {};
@@ -88,7 +88,7 @@ class GraspHolds : public Grasping, public testing::WithParamInterface<Case> {};
 TEST_P(GraspHolds, ten_grasps_by_contact_alone_through_lift_tilt_and_shake) {
   const auto [tried, held] = handle(GetParam().object, 10);
   EXPECT_EQ(tried, 10);
-  EXPECT_GE(held, GetParam().least);
+  EXPECT_GE(held, GetParam().min_held);
 }
 
 INSTANTIATE_TEST_SUITE_P(Objects, GraspHolds,
@@ -97,12 +97,11 @@ INSTANTIATE_TEST_SUITE_P(Objects, GraspHolds,
 
 struct Foreign {
   const char* name;
-  double mass;  // [kg], as its makers weighed it
-  int least;    // of the five grasps that must hold
+  double mass;   // measured mass [kg]
+  int min_held;  // min number of the five grasps that hold
 };
 
-/// Objects made by others, described as somebody would who has a mesh, its hull and a pair of
-/// scales.
+/// Third-party objects, described by mesh, convex hull and measured mass alone.
 class ForeignHolds : public Grasping, public testing::WithParamInterface<Foreign> {};
 
 TEST_P(ForeignHolds, five_grasps_by_contact_alone_through_lift_tilt_and_shake) {
@@ -117,11 +116,11 @@ TEST_P(ForeignHolds, five_grasps_by_contact_alone_through_lift_tilt_and_shake) {
   ObjectModel model = ObjectModel::load(own.write("it.txtpb", text.str()));
   Eigen::AlignedBox3d box;
   for (const Vector3& v : model.mesh.vertices) box.extend(v);
-  model.com = box.center();  // their meshes are not about it
+  model.com = box.center();  // the origin of these meshes is not the mass centre
   models()[foreign.name] = std::move(model);
   const auto [tried, held] = handle(foreign.name, 5);
   EXPECT_EQ(tried, 5);
-  EXPECT_GE(held, foreign.least);
+  EXPECT_GE(held, foreign.min_held);
 }
 
 INSTANTIATE_TEST_SUITE_P(Objects, ForeignHolds,

@@ -1,11 +1,11 @@
-// Does the quality of a listed grasp say whether it holds? The Schunk hand alone, in the emulated
-// world's physics, by contact only: grasps of every decile of quality are closed on the object,
-// lifted, tilted and shaken.
+// Correlation of the quality of a listed grasp with holding. The Schunk hand alone, in the emulated
+// physics, by contact only: grasps of every decile of quality are closed on the object, lifted,
+// tilted and shaken.
 //
-// The hand stands still but for a lift of 12 cm; what the world does to the object is told in the
-// hand's frame: no weight while it closes (nothing supports the object, it only resists being
-// pushed about, as on a table), then its weight downward, then tilted by 90 degrees to each side,
-// then shaken by 3.2 m/s^2 along each axis. HANDSEL_RUNS: grasps of each decile.
+// The hand is fixed except for a lift of 12 cm; the load of the object is applied in the hand's
+// frame: no weight while the hand closes (the object only resists motion, as on a table), then the
+// weight downward, then tilted by 90 degrees to each side, then 3.2 m/s^2 along each axis.
+// HANDSEL_RUNS: number of grasps of each decile.
 #include <gtest/gtest.h>
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -35,7 +35,7 @@ using namespace grasp_planner;
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 constexpr double kDt = 0.001, kG = 9.81;
-constexpr double kFallen = 0.04;  // [m] in the hand since the lift began
+constexpr double kFallen = 0.04;  // max motion in the hand since the lift [m]
 
 /// The hand on a vertical slide.
 RobotModel hand_on_a_slide(const std::vector<Axis>& hand_axes) {
@@ -158,7 +158,7 @@ class Rig {
     return contact_->pressure(touches_, 0) > 0.5;
   }
 
-  /// `weight`: what the object feels per kg, world axes.
+  /// Steps the physics. `weight`: force on the object per kg, world axes [N/kg].
   void tick(const Vector3& weight) {
     trajectory_controller::HandInputs in;
     in.robot = &state_;

@@ -1,4 +1,4 @@
-// Objects made by others against the Schunk, Allegro and Barrett hands: no list is empty.
+// Third-party objects with the Schunk, Allegro and Barrett hands: no list is empty.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ TEST(GraspTable, every_object_made_by_others_has_grasps_by_every_hand) {
   std::vector<std::string> meshes;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(*folder)) {
     const std::string name = entry.path().stem().string();
-    // Convex parts and a mesh for collision are forms of objects that are there themselves.
+    // Skips convex parts and collision meshes: their objects are in the folder as well.
     if (entry.path().extension() == ".obj" && name.find("_vhacd") == std::string::npos &&
         name != "mug_col")
       meshes.push_back(entry.path().string());

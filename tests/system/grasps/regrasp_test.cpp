@@ -1,6 +1,5 @@
-// Double grasps and regrasp sequences of the robot with two arms on three objects: what each step
-// says is checked by forward kinematics and FCL, and that nothing shorter would do by trying every
-// grasp.
+// Double grasps and regrasp sequences of the robot with two arms on three objects: every step is
+// checked by forward kinematics and FCL, and minimality by an exhaustive search of grasps.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -36,7 +35,7 @@ void expect_hand_on(int arm, std::size_t grasp, const std::string& object, const
   EXPECT_LT((RobotModel::part(q, *side.arm.fingers) - g.hand_joints).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// Least distance of the object's surface to the links that `judged` names, by FCL.
+/// Returns the min distance of the object's surface to the links that `judged` selects, by FCL.
 double object_distance(const std::string& object, const Vector& q, const Pose& T_world_object,
                        const std::function<bool(const std::string&)>& judged) {
   const Shape mesh = std::make_shared<TriangleMesh>(hand(0, object).object->mesh());
@@ -58,7 +57,7 @@ bool is_finger_or_palm(const std::string& link) {
   return false;
 }
 
-/// Walks through the steps: who holds the object when, and whether the robot can be so.
+/// Checks the steps in order: the holder of the object and the feasibility of the configurations.
 void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectState state) {
   const RobotModel& robot = duo().robot;
   CollisionWorld world(robot, [](const std::string& name) { return object_model(name); });
@@ -88,7 +87,7 @@ void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectS
       continue;
     }
     expect_hand_on(s.to, s.grasp_to, object, s.q, s.T_world_object);
-    // The hand that comes is opened, clear of the object, and gets there without touching anything.
+    // The taking hand is opened, clear of the object, and its approach is free of collision.
     EXPECT_GT(object_distance(object, s.before, s.T_world_object,
                               [&](const std::string& link) {
                                 return is_finger_or_palm(link) &&
@@ -144,7 +143,7 @@ TEST(Duo, its_description_lacks_nothing_and_it_is_its_own_mirror_image) {
   const Eigen::Matrix3d mirror = Vector3(1, -1, 1).asDiagonal();
   EXPECT_LT((mirror * right.translation() - left.translation()).norm(), 1e-6);
   EXPECT_LT((mirror * right.linear() * mirror - left.linear()).cwiseAbs().maxCoeff(), 1e-6);
-  // The chest stays upright however the torso leans.
+  // The chest stays upright for every lean of the torso.
   q[robot.require_group("torso").axes[1]] = 0.7;
   EXPECT_GT(robot.link_pose(q, robot.link_index("chest")).linear()(2, 2), 1 - 1e-9);
 }
@@ -164,7 +163,7 @@ TEST(Regrasp, from_one_side_of_the_table_to_the_other_the_object_changes_hands_o
           one_hand_reaches_both(arm, object, task.start.T_world_object, task.goal.T_world_object));
     ASSERT_GE(plan.steps.size(), 3U);
     EXPECT_LE(plan.steps.size(),
-              object == "can" ? 5U : 3U);  // on the can there is room for few pairs
+              object == "can" ? 5U : 3U);  // the can has room for few pairs
     for (std::size_t n = 1; n + 1 < plan.steps.size(); ++n)
       EXPECT_EQ(plan.steps[n].kind, RegraspStepKind::pass);
     expect_sequence(plan, object, task.start);
@@ -174,7 +173,7 @@ TEST(Regrasp, from_one_side_of_the_table_to_the_other_the_object_changes_hands_o
 TEST(Regrasp, a_hand_changes_its_own_grasp_through_the_other_hand) {
   for (const std::string& object : objects()) {
     RegraspPlanner planner = duo().planner(object);
-    // Two grasps that can be passed on, by a first search each; the second far from the first.
+    // Two grasps with a valid pass, one search each; the second far from the first.
     RegraspTask first;
     first.start.T_world_object = DuoStage::standing(object, 0.5, -0.35);
     first.goal.arm = 1;
@@ -267,7 +266,7 @@ TEST(Regrasp, with_one_arm_it_puts_down_and_takes_up_again) {
     if (i == *task.start.grasp) continue;
     task.goal = {0, i, Pose::Identity()};
     plan = planner.plan(task);
-    // Whatever it takes: put down and taken up in turn.
+    // For any number of steps: places and picks alternate.
     for (std::size_t n = 0; n < plan.steps.size(); ++n)
       EXPECT_EQ(plan.steps[n].kind, n % 2 == 0 ? RegraspStepKind::place : RegraspStepKind::pick);
     expect_sequence(plan, object, task.start);
@@ -311,7 +310,7 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
     EXPECT_GT(plan.load_shares[a].margin, 0);
     EXPECT_EQ(plan.load_shares[a].effort.size(),
               arms[a].list->grasps[plan.steps[a].grasp_to].grasp.hand_joints.size());
-    // The same hand alone, the load as it hangs at its side.
+    // The same hand alone, with the load hanging at its side.
     const BearingHand alone{arms[a].hand_geometry,
                             &arms[a].list->grasps[plan.steps[a].grasp_to].grasp};
     const GripLoad load = carried_load(right.object->mass(), T_start.linear(), {});

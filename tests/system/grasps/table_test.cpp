@@ -1,5 +1,5 @@
-// The table of topics against the nodes themselves, all in one process and virtual time: who really
-// reads and writes what, and that nothing anybody sends is malformed.
+// The table of topics against the nodes, all in one process and virtual time: the actual readers
+// and writers of each topic, and no malformed message.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -55,7 +55,7 @@ std::set<std::string> words(const char* list) {
   std::set<std::string> out;
   for (std::string word; in >> word;)
     if (word != "handsel" && word != "bridge" && word != "driver" && word != "ros2_lane")
-      out.insert(word);  // not here: the command, the page, a real robot, the way to ROS 2
+      out.insert(word);  // not in this process: command, page, real robot, ROS 2 bridge
   return out;
 }
 
@@ -64,15 +64,15 @@ TEST_F(Table, names_the_writers_and_readers_there_are) {
   for (const auto& endpoint : network.endpoints())
     (endpoint.writes ? writers : readers)[endpoint.type].insert(endpoint.component);
   for (const TopicRow& row : topics()) {
-    // Between processes only (tests/system/busy_machine_test.cpp): in lock-step everybody has one
-    // time.
+    // Used between processes only (tests/system/busy_machine_test.cpp): lock-step has a single
+    // clock.
     if (row.type == std::string("SimClock") || row.type == std::string("ClockReached")) continue;
     std::set<std::string> expected_writers = words(row.writers);
     expected_writers.erase("bridge");
     EXPECT_EQ(writers[row.type], expected_writers) << "writers of " << row.type;
     std::set<std::string> expected_readers = words(row.readers);
     if (row.type == std::string("HumanObservation"))
-      expected_readers.erase("sim");  // only where a scenario has a person moved from outside
+      expected_readers.erase("sim");  // reads only in a scenario with an external person
     EXPECT_EQ(readers[row.type], expected_readers) << "readers of " << row.type;
   }
 }

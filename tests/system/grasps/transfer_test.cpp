@@ -1,5 +1,5 @@
 // Twenty transfers of the project's robot and objects to a person in four places, each checked by
-// the models' own kinematics, FCL and the joints of a person's arm put together again.
+// the models' kinematics, FCL and a reconstruction of the person's arm from its joints.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -84,13 +84,13 @@ double angle_between(const Vector3& a, const Vector3& b) {
   return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0));
 }
 
-// The ball has no up; two hands on the mug leave little choice.
+// The ball has no upright direction; two hands on the mug leave few poses.
 double max_tilt(const std::string& object) {
   return (object == "ball" ? 90 : object == "mug" ? 30 : 0) * kDegree;
 }
 
-// The hand's orientation put together from the joints of the arm, each turned by what is said of
-// it; and each within comfort.
+// Checks the hand's orientation against the reported angles of the arm's joints, and each angle
+// against the comfort limits.
 void expect_comfort(const Person& person, const TransferPose& t, const Pose& T_world_wrist) {
   const auto joint = [&](const char* name) {
     return person.joints[static_cast<std::size_t>(body_joint_index(name))].position;
@@ -165,7 +165,7 @@ void expect_transfer(const std::string& object, int place) {
             120 * kDegree);
 
   const RobotModel& human = human_hand.hand_geometry->hand.model();
-  std::vector<bool> carried(robot.links().size(), false);  // palm and all beyond it
+  std::vector<bool> carried(robot.links().size(), false);  // the palm and all links beyond it
   for (std::size_t l = 0; l < robot.links().size(); ++l) {
     const int j = robot.links()[l].parent_joint;
     carried[l] =

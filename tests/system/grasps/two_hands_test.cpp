@@ -1,6 +1,6 @@
 // Two hands on the running system, all components in lock-step with the simulator: pick-and-place
-// goals that no grasp of one hand serves, and a tray too heavy for one hand. HANDSEL_GOALS: which
-// of the five goals, e.g. "3 4"; HANDSEL_SEEDS: of the tray, e.g. "1 2".
+// goals without a feasible grasp of one hand, and a tray too heavy for one hand. HANDSEL_GOALS:
+// some of the five goals, e.g. "3 4"; HANDSEL_SEEDS: of the tray, e.g. "1 2".
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ struct Trip {
   Pose T_start{Pose::Identity()};
   double max_tilt{};  ///< of the object's z axis from up, ever [rad]
   double seconds{};
-  std::uint64_t truths{};  ///< told
+  std::uint64_t truths{};  ///< number of reports of ground truth
 };
 
 double tilt(const Pose& T) { return std::acos(std::clamp(T.linear()(2, 2), -1.0, 1.0)); }
@@ -39,7 +39,7 @@ config::Scenario scenario_text(const std::string& scenario) {
   return text;
 }
 
-/// The settings, but the simulator tells its truth after every step.
+/// Writes settings in which the simulator publishes ground truth after every step.
 void settings_of_every_step(const std::filesystem::path& folder) {
   const std::filesystem::path from = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
   std::filesystem::copy(
@@ -128,7 +128,7 @@ TEST(TwoHands, pick_and_place_that_one_hand_cannot_do_goes_from_hand_to_hand) {
     expect_put(run, scenario);
     EXPECT_NE(std::find(run.phases.begin(), run.phases.end(), "carry to the other hand"),
               run.phases.end());
-    // Neither hand alone: no grasp of its list serves where it stood and where it stands now.
+    // Neither hand alone: no grasp of its list is feasible at both start and goal.
     const config::Scenario text = scenario_text(scenario);
     Scene scene = stage.scene();
     scene.boxes.clear();

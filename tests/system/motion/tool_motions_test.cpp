@@ -1,5 +1,5 @@
-// Straight motions of the tool while the system works: to a grasp with the fingers closing on the
-// way, up, down and off the object (chapter section 4.6). In lock-step.
+// Straight motions of the tool in the running system: to a grasp with the fingers closing during
+// the motion, up, down and away from the object (chapter section 4.6). In lock-step.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -35,7 +35,7 @@ object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0 }
 )";
 }
 
-/// Largest deviations of the set-points from what was planned.
+/// Max deviations of the set-points from the plan.
 struct Deviation {
   double position{};  ///< of the tool from the planned trajectory [m]
   double angle{};     ///< of the tool [rad]
@@ -94,7 +94,7 @@ class WholeRobot {
     return reply_.solved;
   }
 
-  /// Executes what was planned and compares each set-point with the plan.
+  /// Executes the plan and compares each set-point with the plan.
   Deviation execute() {
     TrajectoryCommand command;
     command.id = 1000 + number_;
@@ -129,7 +129,7 @@ class WholeRobot {
                                         static_cast<int>(axis)) != head->axes.end();
   }
   void on_set_point(const JointCommand& m) {
-    constexpr int kEvery = 7;  // a comparison costs more than a cycle
+    constexpr int kEvery = 7;  // cycles per comparison, which takes longer than a cycle
     set_point_ = m.position;
     if (!watches_ || status_.trajectory != 1000 + number_ || ++seen_ % kEvery != 0) return;
     compare(m);
@@ -184,7 +184,7 @@ class WholeRobot {
   Go go_;
   Vector set_point_;
   Deviation deviation_;
-  double time_{};  // on the plan, of the last set-point compared [s]
+  double time_{};  // of the last compared set-point on the plan [s]
   std::uint64_t number_{};
   long seen_{};
   bool watches_{};

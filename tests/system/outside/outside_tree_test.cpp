@@ -1,5 +1,5 @@
-// What a user has outside the tree: settings over the shipped ones, a search path, and what the
-// processes are started with.
+// Files of a user outside the tree: settings over the shipped ones, a search path, and the
+// arguments of the processes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// An object of a user's own, outside the tree, from a mesh in millimetres that this test makes: it
-// is described, grasped and given.
+// A user's object outside the tree, from a mesh in millimetres written by this test: described,
+// grasped and given.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ std::string prism(int sides, double radius, double height, bool open = false) {
   return stl.text();
 }
 
-/// Give a thing of model `model` from the table to the person, as give_mug.
+/// Returns a scenario like give_mug with an object of model `model`.
 std::string scenario_of(const std::string& model) {
   return "name: \"mine\"\nrobot: \"jido\"\n"
          "boxes { id: \"table\" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } }\n"

@@ -1,6 +1,6 @@
-// The gain that attention puts on the human-aware costs reaches the planners: near a person the
-// same motion becomes gentler and paths keep farther off. The whole system in lock-step, twice with
-// the same person, once with the gain 1.
+// The attentional gain of the human-aware costs reaches the planners: near a person the same motion
+// becomes slower and paths keep a larger clearance. The whole system in lock-step, twice with the
+// same person, once with the gain 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ human_sensors { source: "kinect" rate: 30 latency: 0.04 noise: 0 }
 object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0 }
 )";
 
-/// The system beside a person who stands near, with one gain.
+/// The system beside a near person at rest, with one gain.
 class Beside {
  public:
   explicit Beside(const std::string& gain)
@@ -66,8 +66,8 @@ class Beside {
                                         robot().comfort_limits().velocity[trajectory_.axes[i]]);
     return velocity;
   }
-  /// Returns the integral of what people cost along a path, without the gain, above the cost of the
-  /// cheaper end, which no path can avoid; nullopt: the goal is not possible.
+  /// Returns the integral of the human-aware cost along a path, without the gain, above the
+  /// unavoidable cost of the cheaper end; nullopt: the goal is infeasible.
   std::optional<double> cost_of_path_forward(std::uint64_t seed) {
     PathRequest request;
     request.id = {78, seed};

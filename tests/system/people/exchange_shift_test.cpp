@@ -1,6 +1,6 @@
-// A receiver holds a hand out beside where the object was to be offered: the exchange point follows
-// the hand as attention asks for, on the way and while the robot waits. The whole system in
-// lock-step, once more with the manipulation planner that reads no shift.
+// A receiver holds a hand beside the planned offer: the exchange point follows the hand by the
+// attentional shift, during the motion and while the robot waits. The whole system in lock-step,
+// and again with a manipulation planner that ignores the shift.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ people { id: "anna" x: 1.4 y: -0.05 yaw: 3.1416 stature: 1.72 behaviour: EXTERNA
 object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0.001 }
 timeout: 90
 )";
-constexpr double kMaxShift = 0.15;  // as shipped [m]
+constexpr double kMaxShift = 0.15;  // max shift, as shipped [m]
 
 /// A person whose right wrist is held anywhere.
 std::vector<BodyJoint> holding_out(const Vector3& p_wrist) {
@@ -64,10 +64,9 @@ struct Handover {
   std::string ended;                   ///< how and why, if the object was not offered
 };
 
-/// Gives the mug to a person who holds a hand out: from the beginning, or beside where the robot
-/// waits.
+/// Gives the mug to a person who extends a hand from the beginning, or beside the waiting robot.
 Handover give(HeldOut when, const std::filesystem::path& settings) {
-  // A source that repeats itself counts as blind.
+  // Noise: a source that repeats a sample counts as blind.
   path_planner::Random random(7);
   const auto noise = [&random] {
     return Vector3(0.002 * Vector3(random.normal(), random.normal(), random.normal()));
@@ -96,7 +95,7 @@ Handover give(HeldOut when, const std::filesystem::path& settings) {
     p_held_out = s.T_world_partner_wrist.translation() + Vector3(0.1, 0.22, 0.0);
   });
   seat.every(from_seconds(1.0 / 30), [&](TimePoint) {
-    constexpr double kStep = 0.8 / 30;  // of the wrist [m]
+    constexpr double kStep = 0.8 / 30;  // motion of the wrist per sample [m]
     const Vector3 left = p_held_out - p_wrist;
     if (left.norm() > 1e-6) p_wrist += std::min(1.0, kStep / left.norm()) * left;
     if (action.phase == ActionPhase::offer) offered_for += 1.0 / 30;
@@ -116,7 +115,7 @@ Handover give(HeldOut when, const std::filesystem::path& settings) {
   seat.after(from_seconds(3.0), [&](TimePoint) {
     goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug"});
   });
-  constexpr double kWaits = 6.0;  // of offering [s]
+  constexpr double kWaits = 6.0;  // duration of the offer [s]
   system.network().run_until([&] { return offered_for > kWaits; }, TimePoint(from_seconds(60)));
   out.offered = action.phase == ActionPhase::offer;
   out.from_wrist = (action.exchange_point - p_held_out).norm();

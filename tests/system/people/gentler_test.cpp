@@ -1,6 +1,5 @@
-// The same motion near people: velocity, acceleration and jerk all fall, the nearer a person stands
-// to the motion (chapter section 2.1). The whole system in lock-step; the path is asked for
-// directly.
+// The same motion near people: velocity, acceleration and jerk fall with the distance of a person
+// (chapter section 2.1). The whole system in lock-step; the path is requested directly.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// The clock law margin in the running system: AVOID looks at people who pass as often as the law
-// says, and no one is nearer than the margin permits while a longer period runs. The whole system
-// in lock-step; distances as the simulator measures them.
+// The adaptive clock by margin in the running system: AVOID samples passing people at the period of
+// the margin, and during a longer period nobody is nearer than the margin permits. The whole system
+// in lock-step; distances of the simulator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 constexpr double kPMin = 0.04, kPMax = 0.8, kUse = 0.8, kDistance = 0.6, kPerson = 1.6,
                  kRobot = 0.4, kAge = 0.1, kHalfTick = 0.005;
 
-/// Gives AVOID the law margin.
+/// Sets the clock of AVOID to MARGIN.
 void set_margin(const std::filesystem::path& folder) {
   std::stringstream text;
   text << std::ifstream(folder / "attention.txtpb").rdbuf();
@@ -47,7 +47,7 @@ TEST(MarginLaw, is_what_the_running_system_looks_by) {
     nearest = std::min(nearest, separation);
   });
   system.bus().subscribe<AttentionState>([&](const AttentionState& state, const Receipt&) {
-    constexpr double kBetweenSamples = 0.02;  // of the simulator's distance [s]
+    constexpr double kBetweenSamples = 0.02;  // period of the simulator's distance [s]
     for (const BehaviourState& avoid : state.behaviours) {
       if (avoid.name != "avoid" || avoid.activations == 0) continue;
       const double wanted =

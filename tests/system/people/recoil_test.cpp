@@ -1,5 +1,5 @@
-// The arm recoils from a person who steps in at 1.6 m/s: more distance than without, in lock-step
-// (HANDSEL_RUNS: trials of each).
+// The arm recoils from a person who steps in at 1.6 m/s: a larger distance than without recoil, in
+// lock-step (HANDSEL_RUNS: trials of each).
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Several robots: in lock-step past a robot that reaches in between object and person, and two
-// systems with names in one DDS domain, each of which sees the robot of the other.
+// named systems in one DDS domain, each of which observes the robot of the other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ base { xyz { x: 1.9 y: -0.9 } rpy { z: 3.1416 } }
 human_sensors { source: "kinect" rate: 30 latency: 0.04 noise: 0.004 }
 )";
 
-/// What came of give_beside_robot.
+/// Result of give_beside_robot.
 struct Given {
   bool succeeded{};
   GroundTruth end;

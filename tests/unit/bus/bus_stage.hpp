@@ -1,4 +1,4 @@
-// A stage on which the same bus story plays over DDS and in virtual time.
+// A fixture that runs the same bus test over DDS and in virtual time.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// The rules every bus keeps, played on both.
+// The rules of every bus, tested on both implementations.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// Datagrams that are no RTPS, or nearly are, at the ports of running participants: they go on, and
-// memory is flat.
+// Malformed RTPS datagrams at the ports of running participants: they continue with constant
+// memory.
 #include <gtest/gtest.h>
 
 #include <arpa/inet.h>
@@ -69,7 +69,7 @@ std::vector<unsigned char> datagram(std::mt19937_64& random) {
 }
 
 TEST(Garbage, ten_thousand_datagrams_do_not_stop_a_bus_or_grow_it) {
-  // As shipped, but for the line that the transport writes about each datagram.
+  // As shipped, without the log line of the transport about each datagram.
   setenv("CYCLONEDDS_URI",
          "file://" HANDSEL_SOURCE_DIR
          "/deploy/dds/loopback.xml,<CycloneDDS><Domain><Tracing><Verbosity>severe</Verbosity></"
@@ -96,8 +96,8 @@ TEST(Garbage, ten_thousand_datagrams_do_not_stop_a_bus_or_grow_it) {
   std::mt19937_64 random(11);
   const auto flood = [&](int n) {
     for (int i = 0; i < n; ++i) {
-      // Of each of the first participants the ports of discovery and of data: 7400 + 250 d + 10 + 2
-      // p, + 11 + 2 p.
+      // Ports of discovery and data of the first participants: 7400 + 250 d + 10 + 2 p and
+      // 7400 + 250 d + 11 + 2 p.
       sender.send(datagram(random), 7400 + 250 * domain + 10 + i % 4);
       if (i % 100 == 99) stage.pass(0.002);
     }

@@ -1,5 +1,5 @@
-// Long lists and malformed elements of observations: what is received is shortened and counted,
-// never dropped whole; commands are.
+// Long lists and malformed elements: an observation is shortened and counted, not dropped; a
+// command is dropped.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -75,7 +75,7 @@ TEST(PacedClock, a_process_that_was_stopped_first_hears_whether_it_was_waited_fo
   clock.grant(until(10.02), at(10));
   clock.at(at(10.005));
   EXPECT_EQ(clock.at(at(11)), at(10.005)) << "what was granted a second ago is old";
-  clock.grant(until(10.03), at(11.001));  // read late, also old
+  clock.grant(until(10.03), at(11.001));  // read late, therefore old
   EXPECT_EQ(clock.at(at(11.001)), at(10.005));
   clock.grant(until(11.02), at(11.002));
   EXPECT_EQ(clock.at(at(11.002)), at(11.002)) << "the simulator has gone on";
@@ -129,7 +129,7 @@ TEST(Executor, makes_up_for_every_tick_of_granted_time_at_the_instant_it_was_due
     before = now;
   });
   timespec nap{0, 15'000'000};
-  nanosleep(&nap, nullptr);  // the process gets no processor
+  nanosleep(&nap, nullptr);  // emulates a process without a processor
   executor.run_until([] { return false; }, from_seconds(0.1));
   EXPECT_GE(ticks.size(), 18u);
   EXPECT_LE(ticks.size(), 20u) << "time has passed what was granted";
@@ -146,7 +146,7 @@ TEST(Executor, of_the_ticks_before_a_jump_of_time_only_the_newest_is_served) {
   const TimerStatus& status =
       executor.every(from_seconds(0.001), [&](TimePoint now) { ticks.push_back(now); });
   timespec nap{0, 150'000'000};
-  nanosleep(&nap, nullptr);  // the process is stopped, the simulator does not wait
+  nanosleep(&nap, nullptr);  // emulates a stopped process for which the simulator does not wait
   executor.run_until([] { return false; }, from_seconds(0.005));
   EXPECT_TRUE(ticks.empty()) << "a tick of what was granted long ago";
   const TimePoint now = monotonic_now();

@@ -1,5 +1,5 @@
-// Queues of requests and goals: asking twice is harmless, newer replaces older where that is
-// wanted, and all of them are bounded.
+// Queues of requests and goals: duplicates are harmless, newer replaces older where configured, and
+// every queue is bounded.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -1,5 +1,5 @@
-// Recordings: what is written is read, whatever happens to the file; what is replayed is what came
-// in, as if it came now.
+// Recordings: written samples are read, also from damaged files; a replay gives the recorded
+// samples with present time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

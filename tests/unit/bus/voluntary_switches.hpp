@@ -1,4 +1,4 @@
-// How often the calling thread went to sleep.
+// Number of voluntary context switches of the calling thread.
 #pragma once
 
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
-// The customs office: every message there and back, every field damaged, every IDL field
-// documented.
+// The message validation layer: every message converted in both directions, every field damaged,
+// every IDL field documented.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -61,7 +61,7 @@ TEST_P(EveryMessage, goes_there_and_back_without_loss) {
     auto message = type.new_message();
     std::string why;
     if (full && std::string(type.row().type) == "Costmap")
-      continue;  // full lists do not fit its three counts
+      continue;  // its three counts cannot represent full lists
     ASSERT_TRUE(type.from_wire(first.get(), message.get(), why)) << why;
     auto second = type.new_wire();
     ASSERT_TRUE(type.to_wire(message.get(), 5, second.get(), why)) << why;
@@ -102,7 +102,7 @@ TEST_P(EveryMessage, rejects_every_number_that_is_none) {
       value = bad;
       expect_rejected(wire.get(), leaf, std::to_string(bad));
     }
-    // Denormals and negative zero are numbers; where zero is in range so are they.
+    // Denormals and negative zero are valid where zero is in range.
     value = 0.0;
     std::string why;
     const bool zero = accepts(wire.get(), why);

@@ -1,4 +1,4 @@
-// The rule that says which writer of a topic with one writer is accepted.
+// The rule that selects the pinned writer of a topic.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -145,8 +145,8 @@ TEST(WriterPin, thousands_of_writers_take_no_more_room_and_do_not_displace_the_p
   EXPECT_FALSE(pin.accepts(4999, at(2)));
 }
 
-/// Whatever happens, at every moment samples of at most one writer are accepted, that writer is
-/// eligible, and it changes only when the one before has left or its process has ended.
+/// For any history, samples of at most one writer are accepted at a time; that writer is eligible
+/// and changes only after its predecessor has left or the process has ended.
 TEST(WriterPin, at_most_one_living_writer_is_accepted_in_random_histories) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));

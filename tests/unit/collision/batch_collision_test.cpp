@@ -22,7 +22,7 @@ using test::person_at;
 
 constexpr unsigned kSeed = 75001;
 
-/// States judged by both checks; HANDSEL_WIDE_STATES=1000000 for the long run.
+/// Returns the number of states for both checks; HANDSEL_WIDE_STATES=1000000 for the long run.
 int states_wanted() {
   const char* text = std::getenv("HANDSEL_WIDE_STATES");
   return text == nullptr ? 9000 : std::atoi(text);
@@ -43,7 +43,7 @@ std::vector<const detail::SimdKernels*> kernels() {
   return out;
 }
 
-/// Whether some way from the root to a leaf has the point inside every sphere.
+/// Returns whether the point is inside every sphere of a branch from the root to a leaf.
 bool held(const SphereCover& cover, const Vector3& p, std::size_t index = 0) {
   const CoverNode& node = cover.nodes[index];
   if ((p - node.center).norm() > node.radius) return false;

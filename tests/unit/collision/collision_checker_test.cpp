@@ -204,7 +204,7 @@ TEST_F(Forecast, another_robot_counts_where_it_is_when_the_arm_gets_there) {
 }
 
 TEST_F(Forecast, an_arm_that_is_too_near_to_another_robot_may_move_away) {
-  const ActiveTrajectory active = sweep(1.0, 1.0);  // turns away from what lies on the right
+  const ActiveTrajectory active = sweep(1.0, 1.0);  // turns away from the object on the right
   HumanState around;
   const double angle = -0.5 - 0.06;
   const Vector3 beside(std::cos(angle), std::sin(angle), 0);

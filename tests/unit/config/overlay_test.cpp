@@ -1,5 +1,4 @@
-// Settings of a user over the shipped ones: files, values of a command line, files on the search
-// path.
+// User settings over the shipped ones: files, values of the command line, files on the search path.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

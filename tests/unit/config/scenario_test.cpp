@@ -1,5 +1,5 @@
-// What varies in a scenario is drawn by the seed, equally in every process; what is wrong in any
-// variant is refused with its line.
+// Variants of a scenario are drawn by the seed, equally in every process; an error in any variant
+// is refused with its line.
 #include "common/config/scenario.hpp"
 
 #include <gmock/gmock.h>

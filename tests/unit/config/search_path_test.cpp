@@ -1,4 +1,4 @@
-// Names are searched in the folders of the user before those of the project.
+// Searches names in the folders of the user before those of the project.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
-// The shipped settings files carry meaning and unit of each key as a comment, and a document has
-// the table of each file. Both are made from the schema: HANDSEL_WRITE_SETTINGS=1 writes them.
+// The shipped settings files contain meaning and unit of each key as a comment, and a document
+// contains the table of each file. Both follow from the schema: HANDSEL_WRITE_SETTINGS=1 writes
+// them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Compares a file with what it should be, or writes it.
+/// Compares a file with its required content, or writes it.
 void expect_content(const std::filesystem::path& file, const std::string& content) {
   if (std::getenv("HANDSEL_WRITE_SETTINGS")) std::ofstream(file, std::ios::binary) << content;
   EXPECT_EQ(content_of(file), content)

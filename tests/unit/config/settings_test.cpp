@@ -1,4 +1,4 @@
-// Each settings file: what its schema states about each field, and what the reader refuses.
+// Each settings file: the schema of each field, and the refusals of the reader.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// deploy/docker-compose.yml and deploy/Dockerfile against the one list of processes, the table of
+// deploy/docker-compose.yml and deploy/Dockerfile against the list of processes, the table of
 // topics and the files they name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 const fs::path kRoot = HANDSEL_SOURCE_DIR;
 
-/// Every sentence of what is wrong with a compose file; empty: nothing.
+/// Returns a sentence for each fault of a compose file; empty: none.
 std::vector<std::string> faults(const std::string& compose) {
   std::vector<std::string> out;
   const auto require = [&](bool holds, const std::string& otherwise) {
@@ -46,8 +46,8 @@ std::vector<std::string> faults(const std::string& compose) {
     for (const char* own : {"HANDSEL_DOMAIN", "HANDSEL_PEERS", "CYCLONEDDS_URI", "--domain"})
       require(text.find(own) == std::string::npos, name + " says " + own + " for itself alone");
   }
-  // A topic joins services: each end that is not a person's command, a real robot or an outside
-  // lane must be one.
+  // A topic connects services: each end except a person's command, a real robot or an external
+  // bridge is a service.
   const std::set<std::string> elsewhere{"handsel", "driver", "ros2_lane"};
   for (const TopicRow& row : topics())
     for (const char* list : {row.writers, row.readers}) {
@@ -104,8 +104,7 @@ TEST(ComposeFile, on_several_hosts_every_service_is_there_too) {
   for (const std::string process : kProcesses) EXPECT_TRUE(services.contains(process)) << process;
 }
 
-// podman-compose of Debian 12 knows ${NAME:-default} with a default that is not empty, and no other
-// form.
+// podman-compose of Debian 12 supports only ${NAME:-default} with a non-empty default.
 TEST(ComposeFile, every_variable_has_a_default_and_is_explained) {
   const std::string docs = text_of(kRoot / "docs/deploy.md");
   const auto variables = found(kCompose, R"(\$\{(\w+):-[^}]+\})");

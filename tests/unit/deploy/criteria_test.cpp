@@ -9,7 +9,7 @@
 namespace handsel::criteria_test {
 namespace {
 
-/// A trial told by hand: the truth every 20 ms.
+/// A hand-written trial with ground truth every 20 ms.
 class CriteriaTest : public testing::Test {
  protected:
   CriteriaTest()
@@ -38,8 +38,8 @@ class CriteriaTest : public testing::Test {
     }
   }
 
-  /// Somebody comes on at 1 m/s, nearer than 0.40 m after `first_near` steps; the arm moves from
-  /// `start` on, slower from `slower` on.
+  /// A person approaches at 1 m/s, nearer than 0.40 m after `first_near` steps; the arm moves from
+  /// step `start`, slower from step `slower`.
   std::vector<double> reactions(int first_near, int start, int slower, double before, double after,
                                 std::uint32_t causes) {
     ground_truth_.person = standing_body(Vector3(4, 0, 0), M_PI, 1.75);

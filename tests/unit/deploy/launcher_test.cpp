@@ -23,7 +23,7 @@ constexpr Duration kPatience = std::chrono::seconds(5);
 struct LauncherTest : testing::Test {
   fs::path folder = fs::temp_directory_path() / ("handsel-launcher-" + std::to_string(getpid()));
   fs::path fifo = folder / "fifo";
-  int reports = -1;  // where scripts write their process number once they run
+  int reports = -1;  // pipe for the process numbers of started scripts
 
   LauncherTest() {
     fs::create_directories(folder);
@@ -115,7 +115,7 @@ TEST_F(LauncherTest, a_process_that_keeps_dying_is_started_again_for_ever_after_
   LauncherOptions options = shell({reporting("echo 'out of luck' >&2; exit 1")});
   options.backoff = {
       .first = from_seconds(0.02), .max_wait = from_seconds(0.3), .stable_after = from_seconds(30)};
-  std::vector<std::string> events;  // read only after the launcher has ended
+  std::vector<std::string> events;  // read only after the end of the launcher
   options.on_event = [&](const std::string& sentence) { events.push_back(sentence); };
   std::vector<double> waits;
   {

@@ -1,5 +1,4 @@
-// Alive, starved or hung: what the launcher concludes from heartbeats and from what the kernel
-// says.
+// Alive, starved or hung: the launcher's conclusion from heartbeats and kernel data.
 #include "deploy/handsel/system/liveness.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +12,8 @@ struct Process {
   Liveness liveness{LivenessSettings{}, signs};
   bool beats{true}, job_silent{};
 
-  /// So many seconds, judged ten times a second; of each second the process waits `waiting` and the
-  /// listener `deaf` for a processor.
+  /// Runs for `seconds` with ten checks per second; in each second the process waits `waiting` and
+  /// the listener `deaf` for a processor [s].
   Life live(double seconds, double waiting = 0.0, double deaf = 0.0) {
     Life life{};
     for (int k = 0; k < static_cast<int>(10 * seconds + 0.5); ++k) {

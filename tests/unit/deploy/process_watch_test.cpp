@@ -1,5 +1,5 @@
-// A launcher's ear: processes whose heartbeats fail are replaced, and while one does not run
-// somebody says so in its name.
+// The process watch of the launcher: processes without heartbeats are replaced, and their health is
+// reported on their behalf while they do not run.
 #include "deploy/handsel/system/process_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ struct Watched : testing::Test {
   std::set<std::string> silent_ones;
   bool job_silent{};                    // in the heartbeats
   std::string reason;                   // in the heartbeats
-  std::optional<ComponentHealth> said;  // in the name of the process
+  std::optional<ComponentHealth> said;  // reported on behalf of the process
 
   void start(const std::string& script, BackoffSettings backoff = {},
              const std::vector<std::string>& names = {"box"}) {

@@ -1,4 +1,4 @@
-// Conditions with the same seeds are compared fairly, and told apart only where they differ.
+// Conditions with the same seeds are paired, and distinguished only if they differ.
 #include "deploy/handsel/eval/study.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The table of `handsel eval`: each trial is counted once in every group it belongs to.
+// The table of `handsel eval`: each trial counts once in each of its groups.
 #include "deploy/handsel/eval/tally.hpp"
 
 #include <gmock/gmock.h>

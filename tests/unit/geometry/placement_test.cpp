@@ -67,7 +67,7 @@ TEST(Placements, a_box_stands_on_six_faces_the_flattest_first) {
 }
 
 TEST(Placements, what_leans_too_far_over_is_left_out) {
-  // The mass centre near one end: on the small far end, and on nothing that it is not above.
+  // Mass centre near one end: the object rests only on faces below the mass centre.
   const std::vector<Placement> found = stable_placements(box({0.1, 0.1, 0.4}), {0.049, 0, 0});
   for (const Placement& p : found) {
     EXPECT_GE(p.tipping, 0.1);

@@ -1,5 +1,5 @@
-// Two arms joined by what they hold: along random motions of the first the second keeps its tip
-// where it is joined, by forward kinematics.
+// Two arms joined by a held object: along random motions of the first arm, the tip of the second
+// keeps its grasp, by forward kinematics.
 #include "components/trajectory_planner/closed_chain.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Pairs of grasps, checked on the hands' link shapes by their own kinematics and FCL: nothing of
-// the pairs' own tests is used.
+// Pairs of grasps, checked on the hands' link shapes by forward kinematics and FCL, independent of
+// the tests of the pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ TEST(LeftHand, the_left_hand_is_the_mirror_image_of_the_right) {
       }
     }
   }
-  // Wrist crease to the tip of the middle finger of a grown person: 0.17 to 0.21 m.
+  // Wrist crease to the tip of the middle finger of an adult: 0.17 to 0.21 m.
   const HandModel& human = hand_kit("human_right")->hand;
   const int tip = human.model().link_index("middle_tip");
   const double length =
@@ -94,8 +94,8 @@ TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
                              *left.hand_geometry, b.T_object_hand, b.hand_joints),
               0.0039);
   }
-  // What is not listed does collide.
-  int judged = 0;
+  // Pairs that are not listed collide.
+  int tested = 0;
   for (std::size_t i = 0; i < 60; i += 7) {
     for (std::size_t k = 0; k < 60; k += 5) {
       if (listed.contains({i, k})) continue;
@@ -103,10 +103,10 @@ TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
       EXPECT_LT(hands_distance(*right.hand_geometry, a.T_object_hand, a.hand_joints,
                                *left.hand_geometry, b.T_object_hand, b.hand_joints),
                 0.0041);
-      ++judged;
+      ++tested;
     }
   }
-  EXPECT_GT(judged, 30);
+  EXPECT_GT(tested, 30);
 }
 
 TEST(DoubleGrasps, of_passing_either_hand_gets_out_past_object_and_other_hand) {
@@ -198,7 +198,7 @@ TEST(DoubleGrasps, a_reply_pairs_either_hand_of_the_person_each_touching_the_obj
       EXPECT_GT(hands_distance(*robot.hand_geometry, ours.T_object_hand, ours.hand_joints,
                                *hand.hand_geometry, partner.T_object_wrist, q),
                 0.0039);
-      // The fingers of a hand of the other side would not get to their contacts.
+      // The fingers of a hand of the other side would not reach their contacts.
       for (const Contact& contact : theirs->grasp.contacts)
         EXPECT_LT(std::abs(tip_distance(*hand.hand_geometry, contact.finger, partner.T_object_wrist,
                                         q, *robot.object)),

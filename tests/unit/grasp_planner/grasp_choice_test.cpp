@@ -161,8 +161,8 @@ TEST_F(GraspChoice, an_object_out_of_reach_gives_a_reason) {
 
 TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
   settings::GraspPlannerSettings s;
-  s.rank_room = 10;       // so that what else counts for a person
-  s.rank_handover = 0.0;  // does not decide
+  s.rank_room = 10;       // other criteria of a person
+  s.rank_handover = 0.0;  // have little effect
   const GraspChooser chooser(robot, hand_geometry, library, s);
   const Scene scene = scene_with_mug(0.68, -0.42);
   HumanState people;

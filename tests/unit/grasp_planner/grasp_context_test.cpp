@@ -1,5 +1,5 @@
-// Grasps chosen for what comes after: where the object is put, who is to see it, where the robot
-// may drive. Checked on the whole robot's links with FCL by postures found here.
+// Grasps chosen for the next step: goal of the object, visibility for a person, places of the
+// platform. Checked on the whole robot's links with FCL at configurations found here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,11 +49,11 @@ Scene table_with_mug(double x = 0.68, double y = -0.42) {
   return s;
 }
 
-GraspRequest request(std::uint32_t most = 10) {
+GraspRequest request(std::uint32_t max_grasps = 10) {
   GraspRequest r;
   r.object = "cup";
   r.start = robot().model->rest_configuration();
-  r.max_grasps = most;
+  r.max_grasps = max_grasps;
   return r;
 }
 
@@ -92,8 +92,8 @@ void expect_hand_at(const Vector& arm_q, const Vector& hand_q, const Pose& T_wor
       1e-3);
 }
 
-// The object is put down: carried down from above, let go, the hand off it; nothing touches but the
-// hand the object and the object its support.
+// Checks a place: motion down, release, retreat of the hand; the only contacts are hand with object
+// and object with support.
 void expect_put_down(const Choice& c, std::size_t i, const Scene& scene, const Pose& T_world_goal) {
   const Grasp& g = c.grasps[i];
   const PuttingDown& down = c.goals[i];
@@ -129,7 +129,7 @@ TEST(Goal, every_grasp_is_free_at_both_ends) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> unit(-1, 1);
     Scene scene = table_with_mug();
-    // Something low and something high stand about.
+    // A low and a high obstacle.
     scene.boxes.push_back(
         {"book",
          make_pose({0.8 + 0.2 * unit(random), -0.7 + 0.1 * unit(random), kTop + 0.03}),
@@ -175,7 +175,7 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
   EXPECT_GT(count(c, ChoiceReason::goal_out_of_reach), 0U);
   EXPECT_NE(c.why_none(mug().list).find("to be put"), std::string::npos) << c.why_none(mug().list);
 
-  // On its side every hand that comes from below would be in the table.
+  // With the object on its side, every hand from below would be in the table.
   r.T_world_goal = standing(0.72, -0.55);
   r.T_world_goal.linear() = Eigen::AngleAxisd(0.5 * M_PI, Vector3::UnitX()).toRotationMatrix();
   r.T_world_goal.translation().z() = kTop + 0.05;
@@ -191,7 +191,7 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
   EXPECT_TRUE(c.grasps.empty());
   EXPECT_GT(count(c, ChoiceReason::goal_taken), 0U);
 
-  // A shelf above leaves no way down from above.
+  // A shelf above blocks the motion down.
   Scene low = scene;
   low.boxes.push_back({"shelf", make_pose({0.9, -0.73, kTop + 0.16}), {0.3, 0.3, 0.02}, false});
   r.T_world_goal = standing(0.82, -0.65);
@@ -201,7 +201,8 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
   EXPECT_GT(count(c, ChoiceReason::goal_collision) + count(c, ChoiceReason::goal_lowering), 0U);
 }
 
-// Lines of sight looked along in small steps, with the links' own shapes.
+// Returns the visible fraction, from lines of sight sampled in small steps against the links'
+// shapes.
 double seen_by_steps(const Grasp& g, const Vector3& eye) {
   const HandGeometry& hand_geometry = *mug().hand_geometry;
   std::vector<Pose> T;
@@ -209,8 +210,8 @@ double seen_by_steps(const Grasp& g, const Vector3& eye) {
   std::size_t facing = 0, seen = 0;
   const auto& points = mug().object->points();
   for (std::size_t i = 0; i < points.size(); i += points.size() / 150 + 1) {
-    const Vector3 way = eye - points[i].position, along = way.normalized();
-    if (way.dot(points[i].normal) <= 0) continue;
+    const Vector3 to_eye = eye - points[i].position, along = to_eye.normalized();
+    if (to_eye.dot(points[i].normal) <= 0) continue;
     const Vector3 from = points[i].position + 0.001 * points[i].normal;
     std::vector<SurfaceHit> hits;
     mug().object->triangles().hits(from, along, 0.5, hits);
@@ -235,27 +236,28 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   std::vector<std::vector<Pose>> T_step;
-  double difference = 0, least = 1, most = 0;
+  double difference = 0, lowest = 1, highest = 0;
   int grasps = 0;
   for (std::size_t i = 0; i < mug().list.grasps.size(); i += mug().list.grasps.size() / 8 + 1) {
     const Grasp& g = mug().list.grasps[i].grasp;
     const Vector3 eye = mug().object->box().center() +
                         0.9 * Vector3(normal(random), normal(random), normal(random)).normalized();
     mug().hand_geometry->forward(g.hand_joints, T_step);
-    const double share = visible_fraction(
+    const double seen_fraction = visible_fraction(
         *mug().object, mug().hand_geometry->shape.placed(T_step, g.T_object_hand), eye);
     const double expected = seen_by_steps(g, eye);
-    EXPECT_NEAR(share, expected, 0.18) << "grasp " << g.id;  // of some sixty points, other ones
-    difference += std::abs(share - expected);
+    // The sets of points differ.
+    EXPECT_NEAR(seen_fraction, expected, 0.18) << "grasp " << g.id;
+    difference += std::abs(seen_fraction - expected);
     ++grasps;
-    least = std::min(least, share);
-    most = std::max(most, share);
+    lowest = std::min(lowest, seen_fraction);
+    highest = std::max(highest, seen_fraction);
   }
-  std::printf("shares %.2f to %.2f, on average %.3f beside those by steps\n", least, most,
+  std::printf("shares %.2f to %.2f, on average %.3f beside those by steps\n", lowest, highest,
               difference / grasps);
   EXPECT_LT(difference / grasps, 0.07);
-  EXPECT_LT(least, most - 0.2);
-  // A hand that is far away hides nothing.
+  EXPECT_LT(lowest, highest - 0.2);
+  // A distant hand hides nothing.
   mug().hand_geometry->forward(mug().list.grasps[0].grasp.hand_joints, T_step);
   EXPECT_EQ(
       visible_fraction(*mug().object,
@@ -266,10 +268,10 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
 TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
   const Scene scene = table_with_mug();
   GraspRequest r = request(30);
-  const auto least = [](const Choice& c) {
-    double share = 1;
-    for (const Grasp& g : c.grasps) share = std::min(share, g.visible);
-    return share;
+  const auto lowest = [](const Choice& c) {
+    double seen_fraction = 1;
+    for (const Grasp& g : c.grasps) seen_fraction = std::min(seen_fraction, g.visible);
+    return seen_fraction;
   };
   const auto mean = [](const Choice& c) {
     double sum = 0;
@@ -282,11 +284,11 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
     r.min_visible = 0;
     const Choice any = choose(r, scene, anna(1.35, 0.3));
     ASSERT_GE(any.grasps.size(), 10U);
-    r.min_visible = 0.5 * (least(any) + mean(any));
-    EXPECT_LT(least(any), r.min_visible);
+    r.min_visible = 0.5 * (lowest(any) + mean(any));
+    EXPECT_LT(lowest(any), r.min_visible);
     const Choice some = choose(r, scene, anna(1.35, 0.3));
     ASSERT_FALSE(some.grasps.empty());
-    EXPECT_GE(least(some), r.min_visible);
+    EXPECT_GE(lowest(some), r.min_visible);
     EXPECT_GT(count(some, ChoiceReason::hidden), 0U);
     r.min_visible = 1;
     const Choice none = choose(r, scene, anna(1.35, 0.3));
@@ -351,7 +353,7 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
 TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
   HumanState people;
   Scene scene = held_out(people);
-  // The palm is beside the lower half of the mug, the fingers lie along its far side.
+  // The palm is beside the lower half of the mug, the fingers are along its far side.
   Person& who = people.people.front();
   const Pose& T_world_object = scene.objects[0].T_world_object;
   const auto at = [&](const char* joint) -> Vector3& {
@@ -363,7 +365,7 @@ TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
   ASSERT_EQ(digits.size(), static_cast<std::size_t>(kDigits * kDigitSegments));
   const Choice c = choose(request(), scene, people);
   ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
-  // An independent check: balls along the digits are objects of the scene.
+  // Independent check: spheres along the digits as objects of the scene.
   Scene with_digits = scene;
   for (const HandPart& part : digits) {
     for (const Vector3& p : {part.a, part.b}) {
@@ -407,7 +409,7 @@ TEST(HeldOut, a_hand_that_touches_only_while_it_closes_is_seen_to_touch) {
     };
     const std::vector<std::vector<Pose>> half = at(0.5);
     for (const std::vector<Pose>& finger : half) {
-      // A small ball where the last joint of the finger is half-way.
+      // A small sphere at the last finger joint, half-way in its motion.
       const Vector3 p = g.T_object_hand * finger.back().translation();
       const HandShape::PlacedHand ball = body_at_object(far, Pose::Identity(), {{p, p, 0.001}});
       const auto touches = [&](double closure) {
@@ -427,7 +429,7 @@ TEST(HeldOut, weaker_grasps_serve_from_a_hand_only_and_where_few_others_do) {
   HumanState people;
   const Scene held = held_out(people), standing_mug = table_with_mug();
   GraspList list = mug().list;
-  list.min_margin = 1000;  // no grasp holds firmly
+  list.min_margin = 1000;  // no grasp reaches the min margin
   const auto serving = [&](const Scene& scene, double min_margin, std::size_t min_grasps) {
     settings::GraspPlannerSettings settings;
     settings.min_margin_held = min_margin;
@@ -458,7 +460,7 @@ TEST(HeldOut, grasps_that_touch_who_holds_it_cost_no_inverse_kinematics) {
   HumanState people;
   const Scene scene = held_out(people);
   settings::GraspPlannerSettings settings;
-  settings.rank_away = -1;  // what is on the side of who holds it comes first
+  settings.rank_away = -1;  // grasps on the giver's side come first
   settings.rank_stands = 0;
   settings.reach_budget = 60;
   const Choice c = choose(request(), scene, people, settings);
@@ -512,7 +514,7 @@ TEST(Platform, drives_to_what_is_out_of_reach_and_stays_clear) {
 TEST(Platform, says_why_it_does_not_drive) {
   GraspRequest r = request(5);
   r.move_platform = true;
-  // From where it stands grasps serve: it stays.
+  // Grasps are feasible from the present place: the platform stays.
   for (const Grasp& g : choose(r, table_with_mug()).grasps) EXPECT_FALSE(g.has_platform);
   // Walls all around the table.
   Scene walled = table_with_mug(2.4, 0.3);

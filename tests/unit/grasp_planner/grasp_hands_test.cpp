@@ -1,5 +1,5 @@
-// Hands that are descriptions only, and meshes as they come: what a listed grasp promises holds for
-// fingers of any number of axes.
+// Hands known by description alone, and imperfect meshes: the properties of a listed grasp hold for
+// fingers with any number of axes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST_P(Hands, every_contact_is_touched_nothing_is_pierced_and_the_opened_hand_is
   GraspListSettings settings;
   settings.positions = 16;
   settings.orientations = 36;
-  // A person's hand and a Schunk hand are of other sizes: the can is small enough for all.
+  // A person's hand and a Schunk hand differ in size: the can is small enough for both.
   const auto can = std::make_shared<const Graspable>(object("can"), hand_geometry->tip_radius(),
                                                      settings.step_fraction, 1);
   const GraspList list = list_grasps(hand_geometry, workspaces, can, settings);

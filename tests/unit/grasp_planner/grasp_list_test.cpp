@@ -1,5 +1,5 @@
-// Lists of grasps of the Schunk hand on the project's own objects: every promise of a listed grasp,
-// checked from the outside.
+// Grasp lists of the Schunk hand on the project's objects: every property of a listed grasp,
+// checked independently.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ GraspList list_of(const std::string& name, std::uint32_t positions = 24,
                      settings);
 }
 
-// How deep a point is inside a shape [m], negative outside.
+// Returns the depth of a point inside a shape [m], negative outside.
 double depth(const Shape& shape, const Vector3& p) {
   if (const auto* s = std::get_if<Sphere>(&shape)) return s->radius - p.norm();
   if (const auto* b = std::get_if<Box>(&shape)) return (0.5 * b->size - p.cwiseAbs()).minCoeff();
@@ -49,8 +49,8 @@ double depth(const Shape& shape, const Vector3& p) {
   return 0;
 }
 
-// Virtual work by the hand's kinematics: what the axes do when they move a little is what the
-// forces do at the fingers' contact points.
+// Checks virtual work by the hand's kinematics: for a small motion the work of the axes equals the
+// work of the forces at the contact points.
 void expect_efforts_do_the_work_of_the_squeeze(const ObjectModel& o,
                                                const std::vector<PointContact>& contacts,
                                                const Grasp& g) {

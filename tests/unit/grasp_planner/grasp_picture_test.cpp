@@ -1,5 +1,5 @@
-// Pictures of grasps: what is nearer hides what is behind, light parts let it through, and a figure
-// shows what it is about.
+// Pictures of grasps: near parts hide far ones, transparent parts do not, and a figure shows its
+// subject.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -58,7 +58,7 @@ class Figures : public testing::Test {
       for (int x = 0; x < p.width(); ++x) out.insert(p.at(x, y));
     return out;
   }
-  /// Points of the picture that are of the hue of a finger, whatever the light.
+  /// Returns the number of pixels in the hue of a finger, independent of brightness.
   static int of_finger(const Picture& p, std::size_t finger) {
     const Colour c = finger_colour(finger);
     int count = 0;

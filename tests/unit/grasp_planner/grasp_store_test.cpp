@@ -1,5 +1,5 @@
-// Grasp lists on disk under two writers that are killed without warning, and lists that are gone on
-// with.
+// Grasp lists on disk under two writers that are killed at random times, and lists that are
+// continued.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -21,7 +21,7 @@ using test::TemporaryFolder;
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
-/// A list whose every number says who wrote it.
+/// Returns a list in which every number identifies its writer.
 GraspList list_of(std::uint64_t writer) {
   GraspList list;
   list.hand = "hand";

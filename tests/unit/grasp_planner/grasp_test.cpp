@@ -1,4 +1,4 @@
-// Pieces of the grasp planner: orientations, surface points, trees, curvature.
+// Parts of the grasp planner: orientations, surface points, trees, curvature.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -18,8 +18,8 @@ double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return 2 * std::acos(std::min(1.0, std::abs(a.dot(b))));
 }
 
-// Largest rotation angle [deg] from any of 2000 random orientations to the nearest of the set, then
-// (climb) from each of the first 150 uphill to a local maximum: the least upper bound.
+// Returns the max rotation angle [deg] from 2000 random orientations to the nearest of the set;
+// with `climb` also from local maxima that start at the first 150.
 double dispersion(const std::vector<Eigen::Quaterniond>& set, std::uint64_t seed, bool climb) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -141,7 +141,7 @@ TEST(Surface, mean_curvature_of_a_cylinder_is_half_its_inverse_radius) {
 }
 
 TEST(Surface, the_other_side_of_a_thin_wall_does_not_hide_an_edge) {
-  // A cup with a wall of 3 mm: at the outer bottom edge the corner inside bends the other way.
+  // A cup with a wall of 3 mm: the inner edge at the bottom bends opposite to the outer one.
   TriangleMesh outer = cylinder(0.05, 0.1, 100, 20), inner = cylinder(0.047, 0.097, 100, 20);
   orient(outer);
   orient(inner);
@@ -169,9 +169,9 @@ TEST(Surface, what_is_wrong_with_a_mesh_is_mended_and_said) {
   TriangleMesh m = cylinder(0.04, 0.1, 24, 4);
   const std::size_t triangles = m.triangles.size(), vertices = m.vertices.size();
   m.vertices.push_back(m.vertices[5]);    // twice
-  m.vertices.emplace_back(9, 9, 9);       // nobody's
+  m.vertices.emplace_back(9, 9, 9);       // unused
   m.triangles.push_back(m.triangles[7]);  // twice
-  m.triangles.push_back({3, 3, 8});       // no area
+  m.triangles.push_back({3, 3, 8});       // without area
   const auto copy = static_cast<int>(vertices);
   for (auto& t : m.triangles) {
     for (int& v : t) {

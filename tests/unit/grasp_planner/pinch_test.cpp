@@ -1,5 +1,5 @@
-// Lists of grasps of the parallel gripper on the project's own objects: every promise of a listed
-// grasp, checked from the outside.
+// Grasp lists of the parallel gripper on the project's objects: every property of a listed grasp,
+// checked independently.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ TEST_P(PinchedObjects, are_held_by_areas_that_close_force) {
     EXPECT_TRUE(force_closure(contact_wrenches(contacts, 8, o.com, 10)));
     EXPECT_GT(g.epsilon, 0);
     EXPECT_GT(g.margin, 0);
-    // Both fingers push the axis closed, each with no more than it may.
+    // Both fingers push the axis closed, each within its limit.
     EXPECT_LE(g.hand_effort[0], 0);
     EXPECT_GE(g.hand_effort[0], -2.05 * hand.grip_force());
   }
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Objects, PinchedObjects, testing::Values("box", "can", 
 /// Distance of a contact from the vertical axis of the object [m].
 double off_axis(const Contact& c) { return c.position.head<2>().norm(); }
 
-constexpr double kInsideMug = 0.0362;  // [m] from the axis, the inner wall
+constexpr double kInsideMug = 0.0362;  // radius of the inner wall [m]
 
 TEST(Pinch, holds_an_empty_mug_by_its_rim_with_one_pad_inside) {
   const ObjectModel o = object("mug");

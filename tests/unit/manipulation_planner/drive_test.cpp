@@ -81,7 +81,7 @@ TEST_F(Drive, goes_nearer_when_no_grasp_serves_from_where_the_platform_stopped) 
   grasp.has_platform = true;
   grasp.platform = {0.4, -1.5, 1.2};
   rig_.grasps = {grasp};
-  rig_.after_grasp_reply = [&] {  // from the place that it stopped at, only the next one serves
+  rig_.after_grasp_reply = [&] {  // only the next grasp is feasible from the place of the stop
     rig_.grasps[0].has_platform = rig_.grasps[0].platform.x() < 0.45;
     rig_.grasps[0].platform.x() += 0.05;
   };

@@ -1,4 +1,4 @@
-// What the hand holds, on the real robot and mug.
+// The object in the hand, with the real robot and mug.
 #include <cstdlib>
 #include <filesystem>
 

@@ -51,7 +51,7 @@ TEST(ManipulationPlanner, a_motion_that_is_held_back_again_and_again_is_planned_
   const double along = rig.along;
   for (int i = 0; i < 200 && !blocked(); ++i) {
     rig.execution.causes = i % 20 < 4 ? 1U << static_cast<unsigned>(Cause::forecast_collision) : 0U;
-    rig.along = along;  // it starts and is held back, for ever
+    rig.along = along;  // the motion starts and never ends
     rig.cycle();
   }
   EXPECT_TRUE(blocked());
@@ -107,7 +107,7 @@ TEST(ManipulationPlanner, what_a_person_has_drawn_out_of_the_closed_hand_is_give
   Rig rig;
   rig.start(ActionKind::pick);
   rig.run(30);
-  rig.person_takes = false;  // no pull is felt, as by a hand that may not move
+  rig.person_takes = false;  // no pull is measured
   rig.start(ActionKind::give);
   rig.run_until("offer");
   SceneObject& mug = rig.scene.objects[0];
@@ -155,7 +155,7 @@ TEST(ManipulationPlanner, an_opening_that_a_stop_interrupts_depends_on_whose_han
       rig.scene.objects[0].holder = Holder::human;
       rig.scene.objects[0].holder_id = "anna";
     }
-    rig.grasp_holds = who == Has::robot;  // else the hand closes on nothing
+    rig.grasp_holds = who == Has::robot;  // else the hand closes without contact
     rig.execution.hand = HandState::refused;
     for (int i = 0; i < 50; ++i) rig.cycle();
     if (who == Has::robot) {
@@ -223,13 +223,13 @@ TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_wh
   EXPECT_GT(rig.planner.replan_counts().unchanged, 1u);
   EXPECT_EQ(rig.planner.replan_counts().retimed, 0u);
   const double before = left();
-  rig.speed_scale = 0.5;  // somebody has come near
+  rig.speed_scale = 0.5;  // a person is near
   runs(0.6);
   const auto& counts = rig.planner.replan_counts();
   ASSERT_EQ(rig.commands.size(), 2u)
       << counts.checks << " checks, " << counts.refused << " refused";
   EXPECT_GT(left() + 0.6, before + 0.15);
-  rig.speed_scale = 0.97;  // and has gone
+  rig.speed_scale = 0.97;  // and has left
   const double slow = left();
   EXPECT_GT(slow, 1.5) << "the test needs a longer way";
   runs(0.6);
@@ -255,7 +255,7 @@ TEST(ManipulationPlanner,
   rig.start(ActionKind::go_to);
   while (rig.commands.empty()) rig.cycle();
   for (int k = 0; k < 20; ++k) rig.cycle();
-  rig.execution.trajectory = 999;  // and the arm moves on
+  rig.execution.trajectory = 999;  // and the arm continues
   rig.execution.motion = MotionState::refused;
   const std::size_t before = rig.commands.size();
   rig.run(30);
@@ -359,7 +359,7 @@ TEST(ManipulationPlanner, with_the_action_goes_what_it_has_asked_the_path_planne
     const RequestId asked = rig.last_path.id;
     ASSERT_FALSE(rig.last_path.cancel);
     if (replaced) {
-      rig.execution.mode = Mode::hold;  // so that the next one asks for nothing yet
+      rig.execution.mode = Mode::hold;  // so that the next action sends no request yet
       rig.start(ActionKind::go_to);
     } else {
       ActionGoal cancel;
@@ -440,7 +440,7 @@ TEST(ManipulationPlanner, what_the_holding_arm_cannot_put_down_goes_to_the_other
   Rig rig("duo");
   rig.scene.objects[0].holder = Holder::robot;
   rig.T_tool_mug = make_pose({0.08, 0.02, 0.12});
-  // At the left, beyond the right arm.
+  // On the left, out of reach of the right arm.
   rig.scene.boxes[0] = {"table", make_pose({0.5, 0.9, 0.5}), {0.5, 0.5, 1.0}, true};
   rig.start(ActionKind::place);
   rig.run(30);

@@ -1,4 +1,4 @@
-// The manipulation planner among emulated planners and an emulated controller.
+// The manipulation planner with emulated planners and an emulated controller.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ inline settings::ManipulationPlannerSettings settings() {
       resource("config/manipulation_planner.txtpb"));
 }
 
-// Plays the planners and the controller: every request is answered at once unless the test says
-// otherwise, every trajectory reaches its end.
+// Emulates planners and controller: by default every request is answered at once and every
+// trajectory reaches its end.
 class Rig {
  public:
   explicit Rig(const std::string& description = "jido",
@@ -270,32 +270,32 @@ class Rig {
   Facts facts;
   ExecutionStatus execution;
   Vector q, target;
-  std::string touched;  // by the robot as long as it is in touching_posture
+  std::string touched;  // object that the robot touches in touching_posture
   Vector touching_posture;
   Pose T_tool_mug{Pose::Identity()};
   bool grasped_as_it_stands{false};
-  bool unsure{false};  // the hand reports that it closed on nothing, also where the object comes
+  bool unsure{false};  // the hand reports no contact even if the object is held
   TimePoint now{};
   std::uint64_t actions{0};
   std::function<void()> after_grasp_reply;
   int path_requests{0}, failing_paths{0}, failing_drives{0}, stops{0}, led_over{0};
   PathRequest last_path;
-  std::vector<RegraspRequest> regrasps;  // all, each answered with no sequence
-  std::vector<std::string> path_groups;  // of all paths asked for
-  std::vector<Grasp> grasps;  // of the planner's answers; empty: one that is near the arm
+  std::vector<RegraspRequest> regrasps;  // all requests, each answered without a sequence
+  std::vector<std::string> path_groups;  // of all path requests
+  std::vector<Grasp> grasps;             // the planner's answer; empty: one grasp near the arm
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true},
       object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
   std::vector<HandAction> hand_actions;  // of all hand commands
-  int opens_for{}, opening{};  // the hand, told to move: cycles that it takes, and that are left
-  double opens_by{};           // the first axis of the hand before a grasp [rad]
-  bool moves{};                // trajectories take their time, paths are kept
-  double speed_scale{1};       // of the velocity limits, because of people
-  Trajectory way;              // that runs
+  int opens_for{}, opening{};            // cycles of a commanded hand motion, total and remaining
+  double opens_by{};                     // opening of the first hand axis before a grasp [rad]
+  bool moves{};                          // trajectories take time, paths stay unchanged
+  double speed_scale{1};                 // scale of the velocity limits due to people
+  Trajectory way;                        // the running trajectory
   double along{}, latest{};
   std::vector<TrajectoryCommand> commands;
-  std::vector<double> jumps;  // where one command took over from another
+  std::vector<double> jumps;  // at the switch between two commands
 };
 
 }  // namespace handsel::manipulation_planner::rig

@@ -35,7 +35,7 @@ class OfferAreaTest : public testing::Test {
 };
 
 TEST_F(OfferAreaTest, a_person_near_the_hand_at_rest_gets_more_space_for_an_offer) {
-  constexpr double kMinGain = 0.1;  // [m]
+  constexpr double kMinGain = 0.1;  // min increase of the free space [m]
   const double x_hand = arm_.T_world_tool().translation().x();
   int occupied = 0;
   for (const double before : {0.6, 0.7, 0.8, 0.9}) {

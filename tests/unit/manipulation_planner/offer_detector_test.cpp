@@ -74,8 +74,8 @@ class OfferDetectorTest : public testing::Test {
   OfferDetector detector_{now_, settings_};
   Vector3 p_hand_{0.35, 0, 1.1};
   double clock_{1.0};
-  double duration_{0.9};  // of a motion [s]
-  double height_{-0.15};  // of the mug above the shoulder in a motion, over the stature
+  double duration_{0.9};  // duration of a motion [s]
+  double height_{-0.15};  // height of the moving mug above the shoulder, divided by the stature
 };
 
 TEST_F(OfferDetectorTest, finds_who_offers_what_and_only_that) {

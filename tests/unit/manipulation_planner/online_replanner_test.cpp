@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t kCommand = 7;
 
-/// A motion of one axis by one radian, under way, with emulated planners.
+/// A running motion of one axis by one radian, with emulated planners.
 class OnlineReplannerTest : public testing::Test {
  protected:
   OnlineReplannerTest()
@@ -47,7 +47,7 @@ class OnlineReplannerTest : public testing::Test {
     execution_.motion = state;
     parts_.now.on(execution_);
   }
-  /// The controller has come so far along the motion [s], at this part of its speed.
+  /// Sets the progress of the controller along the motion [s] and its time scaling.
   void run_at(double time, double speed_factor = 1) {
     ActiveTrajectory active;
     active.trajectory = kCommand;

@@ -1,4 +1,4 @@
-// Object transfer points: where and how an object is handed over.
+// Search of object transfer points: place and pose of a handover.
 #include "components/manipulation_planner/handover/otp_search.hpp"
 
 #include <limits>
@@ -86,7 +86,7 @@ TEST_F(OtpSearchTest, turns_the_object_so_that_the_wrist_of_the_person_is_comfor
     const OtpSearch with = find({}, {}, {partner});
     ASSERT_FALSE(with.poses.empty()) << with.reason;
     const OtpPose& pose = with.poses.front();
-    if (!pose.partner) continue;  // the side of the robot's hand: the person gets there in no pose
+    if (!pose.partner) continue;  // beside the robot's hand: out of the person's reach
     ++fitting;
     EXPECT_EQ(pose.partner->id, 7U);
     EXPECT_TRUE(pose.partner->T_world_wrist.isApprox(pose.T_world_object * partner.T_object_wrist));
@@ -119,7 +119,7 @@ TEST_F(OtpSearchTest, takes_the_grasp_of_the_person_that_strains_the_wrist_least
 }
 
 TEST_F(OtpSearchTest, a_left_hand_strains_as_its_mirror_image_does) {
-  // Anna is symmetrical to the x-z plane of the world.
+  // Anna is symmetric about the x-z plane of the world.
   const std::vector<TakingArm> arms = taking_arms(anna_, {}, rig::settings());
   ASSERT_EQ(arms.size(), 2U);
   EXPECT_EQ(arms[0].hand_cost, 0);
@@ -146,7 +146,7 @@ TEST_F(OtpSearchTest, an_arm_across_the_body_strains_more_than_one_before_its_sh
   ASSERT_TRUE(arm);
   const auto posture_at = [&](double aside) {
     Pose T_world_wrist = make_pose(arm->shoulder + Vector3(-0.35, aside, -0.3));
-    // The fingers away from the shoulder, the thumb up.
+    // Fingers away from the shoulder, thumb up.
     const Vector3 fingers = Vector3(-0.35, aside, 0).normalized();
     T_world_wrist.linear() << fingers.cross(-Vector3::UnitZ()), Vector3::UnitZ(), fingers;
     return wrist_posture(*arm, T_world_wrist);
@@ -177,7 +177,7 @@ TEST_F(OtpSearchTest, the_hand_that_is_ready_changes_the_exchange_point_and_the_
   EXPECT_GT((left.partner->T_world_wrist.translation() - right.partner->T_world_wrist.translation())
                 .norm(),
             0.05);
-  // What is planned for one hand is worse for the other.
+  // A pose planned for one hand has more strain for the other.
   const auto strain = [&](Side ready, const OtpPose& pose) {
     ReceiverHands hands;
     hands.ready = ready;

@@ -159,7 +159,7 @@ TEST_F(Placing, with_a_margin_the_hand_may_be_lower_than_planned) {
   CollisionWorld world = world_now();
   Attachment held{"mug"};
   const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
-  // The palm is beside the mug, ever lower, until the hand reaches the table.
+  // The palm is beside the mug, lower in every step until the hand reaches the table.
   double lowest = 1, lowest_with_margin = 1;
   constexpr double kMargin = 0.02;
   for (double up = 0; up < 0.12; up += 0.01) {

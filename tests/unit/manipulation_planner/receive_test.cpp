@@ -1,4 +1,4 @@
-// Receiving: what is held out is taken, what is drawn back is not gone after.
+// Receiving: an offered object is taken, a withdrawn object is not pursued.
 #include <algorithm>
 #include <memory>
 #include <numbers>
@@ -65,7 +65,7 @@ struct TwoGrasps {
   settings::ManipulationPlannerSettings settings{rig::settings()};
 };
 
-/// Returns a rig that begins to receive what is offered in this way.
+/// Returns a rig that begins to receive an object offered with these grasps.
 std::unique_ptr<Rig> receiving(const TwoGrasps& two) {
   auto made = std::make_unique<Rig>("jido", two.settings);
   Rig& rig = *made;
@@ -150,7 +150,7 @@ TEST(ManipulationPlanner, an_offer_whose_measure_trembles_does_not_end) {
   rig.speed_scale = 0.15;
   rig.hold_out();
   rig.facts.facts.clear();
-  Vector3 p_mug{0.995, 0.1, 1.1};  // 3 cm beyond the least extension
+  Vector3 p_mug{0.995, 0.1, 1.1};  // 3 cm beyond the min extension
   rig.scene.objects[0].T_world_object.translation() = p_mug;
   rig.start(ActionKind::receive);
   rig.run_until("approach");

@@ -1,4 +1,4 @@
-// Which hand of the receiver the planner plans for, from the choice of the grasp to the offer.
+// The planner's choice of the receiver's hand, from the choice of the grasp to the offer.
 #include <numbers>
 
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
@@ -37,7 +37,7 @@ Grasp grasp_near_arm(const Rig& rig, std::uint64_t id, double first_axis) {
 /// Picks the mug up and carries it to the receiver, whose right hand is raised.
 void carry_to_receiver(Rig& rig) {
   rig.grasps = {grasp_near_arm(rig, 1, 0.2)};
-  // The object stays in the hand as the hand is: level grasps of the person are turned into it.
+  // The object keeps its pose in the hand: horizontal grasps of the person are rotated accordingly.
   const Vector q =
       RobotModel::with(rig.q, rig.robot->require_group("arm"), rig.grasps[0].arm_joints);
   const Eigen::Matrix3d R_tool_world =
@@ -57,7 +57,7 @@ void carry_to_receiver(Rig& rig) {
   EXPECT_EQ(rig.planner.status().partner_side, Side::right);
 }
 
-/// Returns how far the planned wrist of the receiver moves while the object is carried on [m].
+/// Returns the motion of the receiver's planned wrist while the object is carried [m].
 double wrist_shift(Rig& rig) {
   const Vector3 before = rig.planner.status().T_world_partner_wrist.translation();
   for (int i = 0; i < 30 && phase_text(rig.planner.status()) == "carry"; ++i) rig.cycle();

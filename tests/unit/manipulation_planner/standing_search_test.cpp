@@ -1,4 +1,4 @@
-// Where the platform stands to serve people and surfaces.
+// Search of platform places with people and surfaces in reach.
 #include <gtest/gtest.h>
 
 #include "common/cost/person_frame.hpp"

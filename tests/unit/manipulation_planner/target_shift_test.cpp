@@ -1,4 +1,4 @@
-// The shift of the exchange point that attention asks for.
+// The attentional shift of the exchange point.
 #include "components/manipulation_planner/handover/target_shift.hpp"
 
 #include <gtest/gtest.h>

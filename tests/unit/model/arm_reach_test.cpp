@@ -1,4 +1,4 @@
-// The reach of an arm against the distances that its configurations really have.
+// The computed reach of an arm against distances of sampled configurations.
 #include "common/model/arm_reach.hpp"
 
 #include <gtest/gtest.h>
@@ -13,10 +13,10 @@ namespace {
 
 constexpr unsigned kSeed = 20;
 constexpr int kConfigurations = 4000;
-// An elbow that lies beside the line from shoulder to wrist shortens the stretched arm.
+// Min ratio of sampled and computed reach: an elbow offset shortens the stretched arm.
 constexpr double kMinReached = 0.85;
 
-/// Returns the longest distance from shoulder to palm among random configurations [m].
+/// Returns the max distance from shoulder to palm among random configurations [m].
 double longest(const RobotModel& robot, const Manipulator& arm, int shoulder) {
   std::mt19937 random(kSeed);
   Vector q = robot.rest_configuration();

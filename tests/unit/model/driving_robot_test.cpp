@@ -1,5 +1,5 @@
-// A robot whose platform drives: its description extends another one, and place and heading of the
-// platform are its last axes.
+// A mobile robot: its description extends another one, and place and heading of the platform are
+// its last axes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

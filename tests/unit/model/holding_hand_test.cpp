@@ -1,4 +1,4 @@
-// The hand of a person on an object: averaged over noisy samples.
+// The hand of a person on an object, averaged over noisy samples.
 #include "common/model/human/holding_hand.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace handsel::holding_hand_test {
 namespace {
 
-constexpr double kNoise = 0.01;  // of each coordinate [m]
+constexpr double kNoise = 0.01;  // noise of each coordinate [m]
 
 Vector3& at(Person& person, const char* joint) {
   return person.joints.at(static_cast<std::size_t>(body_joint_index(joint))).position;

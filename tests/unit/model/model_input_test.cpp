@@ -1,4 +1,4 @@
-// What is refused, and how it is said: file, line, what was wrong.
+// Refused descriptions, with file, line and reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -183,7 +183,7 @@ TEST(BadSrdf, groups_that_contain_themselves_are_refused) {
   EXPECT_THAT(refusal("<group name=\"a\"><group name=\"b\"/></group>\n<group name=\"b\"><group "
                       "name=\"a\"/></group>\n"),
               HasSubstr("r.srdf:3: group \"a\" contains itself"));
-  // Each group names the next one many times: 20^20 visits unless each is visited once.
+  // Each group names the next one many times: 20^20 visits unless each group is visited once.
   std::string ladder;
   for (int i = 0; i < 20; ++i) {
     ladder += "<group name=\"g" + std::to_string(i) + "\">";
@@ -456,7 +456,7 @@ TEST(ObjectDescription, hollow_parts_are_their_walls) {
     const auto* box = std::get_if<Box>(&wall.shape);
     if (box == nullptr) continue;  // the bottom
     ++upright;
-    // Every corner is in the wall of the mug: between the inner and the outer radius.
+    // Every corner is in the wall of the mug, between inner and outer radius.
     for (const double x : {-0.5, 0.5}) {
       for (const double y : {-0.5, 0.5}) {
         const Vector3 corner =

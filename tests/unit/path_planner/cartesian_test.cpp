@@ -1,6 +1,6 @@
-// Cartesian planning for Jido beside its table with the elbow angle active: random postures to tool
-// poses that the arm can reach. What comes back is judged by forward kinematics and an exact
-// collision check of its own. HANDSEL_QUERIES: how many; the label full plans 100.
+// Cartesian planning for Jido beside its table with the elbow angle active: random configurations
+// to reachable tool poses. Results are checked by forward kinematics and an independent exact
+// collision check. HANDSEL_QUERIES: number of queries; the label full plans 100.
 #include "components/path_planner/cartesian.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ class Cartesian : public ::testing::Test {
     } while (!world_.check(q).free);
     return q;
   }
-  /// With shoulder, elbow and wrist bent the same way: the branch of the inverse kinematics.
+  /// Returns a configuration on the branch of `start`: shoulder, elbow and wrist bend alike.
   Vector random_posture_like(const Vector& start) {
     while (true) {
       const Vector q = random_posture();
@@ -51,7 +51,7 @@ class Cartesian : public ::testing::Test {
   }
   Pose tool(const Vector& q) const { return robot_.link_pose(q, robot_.tool_link()); }
 
-  /// Joints go on without jumps, inside their limits, free, from the start to the goal.
+  /// Expects continuous, free joint motion inside the limits from the start to the goal.
   void expect_sound(const CartesianProblem& problem, const CartesianResult& result) {
     ASSERT_GE(result.samples.size(), 2u);
     EXPECT_EQ(result.samples.front(), problem.start);

@@ -1,5 +1,5 @@
-// A platform that drives, alone and with its arm: the model, what people think of it, paths, and
-// requests on LocalBus.
+// A mobile platform, alone and with its arm: the model, human-aware costs, paths, and requests on
+// LocalBus.
 #include <cstdlib>
 #include <random>
 
@@ -139,7 +139,7 @@ TEST_F(DrivingJido, people_mind_what_comes_near_comes_from_behind_and_stands_in_
   EXPECT_EQ(platform_safety_cost(1.3, 1.3), 0.0);
   for (double d = 0.01; d < 1.3; d += 0.01)
     EXPECT_LT(platform_safety_cost(d, 1.3), platform_safety_cost(d - 0.01, 1.3));
-  people_ = test::person_at({0, 0, 0});  // looks along -x
+  people_ = test::person_at({0, 0, 0});  // the gaze is along -x
   navigation_.set_people(people_);
   EXPECT_EQ(navigation_(-3, 0, 0), 0.0);
   const double before = navigation_(-1.3, 0, M_PI), behind = navigation_(1.3, 0, 0);
@@ -195,7 +195,7 @@ TEST_F(DrivingJido, furniture_is_kept_clear_of_as_far_as_start_and_goal_allow) {
     exact_.set_scene(scene);
     return exact_.distance_to_scene(q, 10.0);
   };
-  const auto place_at = [&](double clearance) {  // from which the robot faces the sideboard
+  const auto place_at = [&](double clearance) {  // place at which the robot faces the sideboard
     double x = 0;
     while (distance(at(x, 0, 0)) > clearance) x += 0.001;
     return at(x, 0, 0);

@@ -76,7 +76,7 @@ TEST_F(Planning, every_planner_finds_a_way) {
        {PlannerKind::rrt, PlannerKind::rrt_connect, PlannerKind::trrt, PlannerKind::bitrrt})
     for (const bool stock : {false, true}) {
       if (stock && kind == PlannerKind::trrt)
-        continue;  // OMPL's cools so fast that it often finds nothing
+        continue;  // OMPL's temperature falls so fast that the planner often fails
       problem_.planner = kind;
       problem_.stock = stock;
       problem_.budget = 600000;

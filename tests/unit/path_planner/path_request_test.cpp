@@ -1,5 +1,5 @@
-// Requests of every kind at the path planner on LocalBus: postures, poses, regions, kept upright,
-// Cartesian, beside a head; and what makes no sense.
+// Requests of every kind at the path planner on LocalBus: configurations, poses, regions, upright,
+// Cartesian, beside a head; and invalid ones.
 #include <cstdlib>
 #include <filesystem>
 
@@ -121,7 +121,7 @@ TEST_F(PathRequests, a_pose_a_set_of_them_and_a_region_are_reached) {
 }
 
 TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
-  // The arm sweeps from one side to the other; a head is before the middle of the way.
+  // The arm sweeps from one side to the other; a head is in front of the middle of the path.
   Vector start = jido().rest_configuration(), goal = start, middle = start;
   start[arm_.axes[0]] -= 0.7;
   goal[arm_.axes[0]] += 0.7;
@@ -165,7 +165,7 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
   ASSERT_TRUE(around.solved) << around.reason;
   EXPECT_GE(least(around), 0.3 - 1e-9);
 
-  // What is nearer is reached all the same, and left.
+  // Nearer goals and starts stay feasible.
   r = request();
   r.start = start;
   r.goals = {RobotModel::part(middle, arm_)};
@@ -178,7 +178,7 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
 }
 
 TEST_F(PathRequests, what_is_held_stays_upright_in_the_world) {
-  // On a base that leans, up is not the z axis of the robot.
+  // On a tilted base, up is not the z axis of the robot.
   scene_.T_world_base =
       make_pose({0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3::UnitX())));
   network_.run_for(std::chrono::milliseconds(200));

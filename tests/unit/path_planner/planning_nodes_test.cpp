@@ -162,7 +162,7 @@ TEST_F(PathNode, what_is_cancelled_is_answered_at_once_and_planned_no_more) {
   EXPECT_EQ(heard_.messages[1].id, (RequestId{9, 3}));
   EXPECT_FALSE(heard_.messages[1].solved);
   EXPECT_THAT(heard_.messages[1].reason, HasSubstr("cancelled"));
-  request_out_->publish(request(2));  // came late
+  request_out_->publish(request(2));  // a late request
   ASSERT_TRUE(wait(3));
   EXPECT_THAT(heard_.messages[2].reason, HasSubstr("cancelled"));
   request_out_->publish(request(4));
@@ -172,8 +172,8 @@ TEST_F(PathNode, what_is_cancelled_is_answered_at_once_and_planned_no_more) {
   EXPECT_EQ(heard_.messages.size(), 4u);
 }
 
-/// The way of the arm's end from one side to the other, and somebody outside who would rather it
-/// did not go straight.
+/// A path of the arm's tip from one side to the other, and an external cost layer on the straight
+/// line.
 class PathNodeAndOutsider : public PathNode {
  protected:
   PathNodeAndOutsider() {

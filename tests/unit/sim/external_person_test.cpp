@@ -1,5 +1,5 @@
-// A person moved from outside: follows what it is told, takes what is offered near its hand, pulls
-// with limited force, keeps it.
+// An external person: follows the observations, takes an object offered near the hand, pulls with
+// limited force, keeps the object.
 #include <gtest/gtest.h>
 
 #include "common/base/errors.hpp"
@@ -22,7 +22,7 @@ config::Scenario with_visitor() {
   return scenario;
 }
 
-/// Somebody who stands where add_person puts them, with the right hand at `hand`.
+/// Returns a person at the place of add_person, with the right hand at `hand`.
 HumanObservation seen(const Vector3& hand) {
   HumanObservation out;
   out.source = "tracker";
@@ -76,13 +76,13 @@ TEST(ExternalPerson, comes_from_one_moment_to_the_next_without_a_push) {
   driver.hold(0.3);
   HumanObservation far = seen(in_hand() + Vector3(0.45, 0, 0));
   for (ObservedJoint& joint : far.people[0].joints)
-    joint.position += Vector3(-3.0, 0.1, 0);  // beyond the robot
+    joint.position += Vector3(-3.0, 0.1, 0);  // behind the robot
   double fastest = 0;
   RobotState state;
   const auto watch = [&] {
     if (world.robot_state(state)) fastest = std::max(fastest, state.velocity.cwiseAbs().maxCoeff());
   };
-  for (int times = 0; times < 3; ++times) {  // behind it and back, through it
+  for (int times = 0; times < 3; ++times) {  // behind the robot and back, through it
     world.observe(far);
     driver.move(driver.q(), 0.3, watch);
     EXPECT_LT((hand_of(world) - far.people[0].joints.back().position).norm(), 0.05);
@@ -115,13 +115,13 @@ TEST(ExternalPerson, takes_what_is_offered_and_pulls_until_the_robot_lets_go) {
   ASSERT_EQ(world.person_phase(0), PersonPhase::pulling) << "the hand was led over the last 0.1 m";
   RobotState state;
   double least = 1e9, most = 0;
-  for (int i = 0; i < 30; ++i) {  // it waits: no pull
+  for (int i = 0; i < 30; ++i) {  // the person waits: no pull
     world.observe(seen(near));
     driver.hold(0.033);
   }
   world.robot_state(state);
   const double resting = state.wrist_wrench.force.norm();
-  for (int i = 1; i <= 40; ++i) {  // it goes away by 0.12 m while the robot holds on
+  for (int i = 1; i <= 40; ++i) {  // the hand moves away by 0.12 m while the robot holds the object
     world.observe(seen(near + std::min(1.0, i / 12.0) * Vector3(0.12, 0, 0)));
     driver.hold(0.033);
     world.robot_state(state);

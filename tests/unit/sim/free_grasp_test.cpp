@@ -1,4 +1,4 @@
-// Where a person can hold an object that a robot holds.
+// Places at which a person can hold an object that a robot holds.
 #include <gtest/gtest.h>
 
 #include "common/geometry/segments.hpp"
@@ -72,7 +72,7 @@ TEST_F(FreeGraspTest, the_hand_keeps_off_the_robot) {
   const auto alone = find_free_grasp(query_, shape_);
   ASSERT_TRUE(alone);
   const Vector3 p = query_.T_world_object * alone->T_object_hand.translation();
-  robot_ = {{p, p + Vector3(0, 0, 0.01), 0.02}};  // where the hand would be
+  robot_ = {{p, p + Vector3(0, 0, 0.01), 0.02}};  // at the hand's place
   const auto beside = find_free_grasp(query_, shape_);
   ASSERT_TRUE(beside);
   for (const HandPart& part : hand(*beside)) EXPECT_GE(distance(part, robot_[0]), 0.0029);
@@ -102,7 +102,7 @@ TEST_F(FreeGraspTest, a_hand_that_gives_leaves_the_upper_end_free) {
   }
 }
 
-/// What a planner assumes of the digits of a giver, of whom it sees wrist and hand only.
+/// A planner's assumption of a giver's digits, of whom only wrist and hand are observed.
 TEST_F(FreeGraspTest, assumed_digits_are_near_those_of_a_hand_that_gives) {
   query_.preferred = Vector3(-0.6, -0.8, 0);
   for (const char* name : {"mug", "bottle", "can", "box", "torch", "tube"}) {
@@ -120,7 +120,7 @@ TEST_F(FreeGraspTest, assumed_digits_are_near_those_of_a_hand_that_gives) {
     at("r_wrist") = T * Vector3(0, 0, -query_.wrist);
     const std::vector<HandPart> digits = assumed_digits(seen, object_, query_.T_world_object);
     ASSERT_EQ(digits.size(), static_cast<std::size_t>(kDigits * kDigitSegments)) << name;
-    // The palm's tilt is not observed: a digit is up to 5 cm from where it is assumed.
+    // The palm's tilt is not observed: a digit is up to 5 cm from its assumed place.
     double max_distance = 0;
     for (int d = 0; d < kDigits; ++d) {
       for (const HandPart& part : shape_.digit(d, grasp->closures[d])) {

@@ -7,7 +7,7 @@
 namespace handsel::sim::moving_offer_test {
 namespace {
 
-constexpr double kStep = 0.001;  // [s]
+constexpr double kStep = 0.001;  // period [s]
 
 MovingOfferSettings settings_of(std::uint64_t seed) {
   MovingOfferSettings s;

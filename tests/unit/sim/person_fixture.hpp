@@ -1,4 +1,4 @@
-// People without a world: an object offered to them, time that passes.
+// People without the emulated world: an offered object and the passing of time.
 #pragma once
 
 #include "tests/unit/sim/sim_fixture.hpp"
@@ -22,7 +22,7 @@ inline PersonView offer(const Vector3& where) {
 
 inline int joint(const char* name) { return body_joint_index(name); }
 
-/// Lets a person live until they are in a phase, `max_time` [s] at most.
+/// Steps a person until the phase is reached, at most `max_time` [s].
 inline void step_until(PersonModel& person, const PersonView& view, PersonPhase phase,
                        double max_time) {
   for (int i = 0; i < 1000 * max_time && person.phase() != phase; ++i) person.step(0.001, view);
@@ -33,7 +33,7 @@ inline void step_for(PersonModel& person, const PersonView& view, double time) {
   for (int i = 0; i < 1000 * time; ++i) person.step(0.001, view);
 }
 
-/// A person who stands before what offer() offers.
+/// Returns a person in front of the object of offer().
 inline PersonSettings taker() {
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);

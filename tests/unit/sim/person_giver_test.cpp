@@ -17,7 +17,7 @@ PersonSettings giver() {
   return settings;
 }
 
-/// What a giver sees while the mug moves with the hand.
+/// Returns a giver's view while the mug moves with the hand.
 PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool robot_holds_it) {
   PersonView view = offer(person.hand().T_world_body * Vector3(0.08, 0, 0));
   view.robot_hand = robot_hand;
@@ -78,7 +78,7 @@ TEST(SimPerson, who_gives_holds_with_the_digits_opens_them_and_leaves_behind_the
   const Vector3 wrist = person.body().joints[joint("r_wrist")].position;
   EXPECT_LT(((T_hand.translation() - wrist).normalized() - T_hand.linear().col(2)).norm(), 0.05)
       << "the wrist is where the fingers' direction says";
-  // The robot has the mug, the person lets go and leaves.
+  // The robot holds the mug, the person releases it and leaves.
   const PersonView taken = held(true);
   while (person.phase() == PersonPhase::offering) person.step(0.001, taken);
   ASSERT_EQ(person.phase(), PersonPhase::retracting);
@@ -201,7 +201,7 @@ TEST(SimPerson, partner_takes_and_gives_back_when_asked_again_and_again) {
   }
 }
 
-/// A partner who has taken the mug from the robot, whose hand is far then.
+/// A partner who has taken the mug, with the robot's hand far away.
 class PartnerWithMug {
  public:
   PartnerWithMug() : view_(offer({0.95, 0.05, 1.05})), person_(settings()) {
@@ -211,7 +211,7 @@ class PartnerWithMug {
     view_.robot_hand = {0.3, 0.5, 1.0};
     view_.held_by_robot = view_.held_firmly = false;
   }
-  /// The object follows the hand, and where the person wants it in the hand.
+  /// Steps the person; the object follows the hand and its wanted pose in the hand.
   void live(double duration) {
     for (int i = 0; i < 1000 * duration; ++i) {
       view_.T_world_object = person_.hand().T_world_body * T_hand_object_;
@@ -336,8 +336,8 @@ TEST(SimPerson, who_is_ignored_steps_nearer_only_where_the_robots_hand_leaves_ro
   EXPECT_GT(extension(), before - 0.03) << "the arm was bent for a step";
 }
 
-/// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most
-/// 10 m/s^2 (StopProofSettings::people).
+/// The stop proof assumes that a trunk accelerates by at most 10 m/s^2
+/// (StopProofSettings::people).
 TEST(SimPerson, a_step_nearer_is_no_faster_than_people_step) {
   PersonModel person(giver());
   Vector3 before = Vector3::Zero();

@@ -1,4 +1,4 @@
-// What the wheels of a platform measure, and where its localisation finds it.
+// Wheel odometry of a platform and its localisation.
 #include <gtest/gtest.h>
 
 #include "sim/robot/platform_odometry.hpp"
@@ -23,7 +23,7 @@ class Odometry : public ::testing::Test {
   static void drive(PlatformOdometry& odometry) {
     for (int i = 1; i <= 6000; ++i) odometry.advance(arc(i / 6000.0), i * kStep);
   }
-  /// Where the platform is in the root frame, from what the robot reports.
+  /// Returns the platform's place in the root frame from the robot's reports.
   static Vector3 found(const PlatformOdometry& odometry, const Vector& truth) {
     const Vector measured = odometry.measured_position(truth);
     return (odometry.T_root_odometry() * T_world_platform(robot(), measured, Pose::Identity()))

@@ -1,5 +1,4 @@
-// Recorded people: BVH and CSV files of others and of our own, bodies of other sizes, and files
-// that cannot be read.
+// Recorded people: third-party and own BVH and CSV files, bodies of other sizes, and invalid files.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -137,7 +136,7 @@ TEST(Recordings, uneven_times_are_resampled) {
   EXPECT_EQ(r.frames.size(), 20u);
 }
 
-/// A bent arm at the same share of its reach, the same direction, feet on the floor.
+/// A bent arm keeps its fraction of the reach and its direction, with the feet on the floor.
 TEST(Retarget, keeps_feet_on_the_floor_bones_of_the_new_body_and_the_reach) {
   const auto length = [](const BodyPoints& p, const char* a, const char* b) {
     return (p[joint(a)] - p[joint(b)]).norm();

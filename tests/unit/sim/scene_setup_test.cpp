@@ -1,4 +1,4 @@
-// Where a scenario's objects stand when the seed draws their places, and what holds them.
+// Places and supports of a scenario's objects that are drawn by the seed.
 #include "sim/scene/scene_setup.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What the emulated sensors are said to do, measured on the stream they hand over.
+// Specified errors of the emulated sensors, measured on their stream.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -118,7 +118,7 @@ TEST(Sensors, drop_outs_are_the_share_asked_and_independent) {
   const Stream stream = watch(s, {person_at("anna", 1.4, 0)}, 200);
   EXPECT_NEAR(1 - static_cast<double>(stream.size()) / 20000, 0.2, 0.012)
       << "4 standard deviations";
-  int pairs = 0;  // two lost in a row
+  int pairs = 0;  // pairs of consecutive losses
   for (std::size_t i = 1; i < stream.size(); ++i)
     pairs +=
         std::max(0, static_cast<int>(std::lround((stream[i].seen - stream[i - 1].seen) * 100)) - 2);
@@ -333,7 +333,7 @@ TEST(Sensors, faults_in_time_do_what_they_say) {
     return d.message.people.at(0).joints.at(0).position;
   };
   const auto changes = [&](const Stream& stream) {
-    std::pair<int, int> out{0, 0};  // of content, of the instant shown, during the fault
+    std::pair<int, int> out{0, 0};  // repeats of content and of capture time during the fault
     for (std::size_t i = 1; i < stream.size(); ++i) {
       if (!during(stream[i]) || !during(stream[i - 1])) continue;
       out.first += nose(stream[i]) != nose(stream[i - 1]);

@@ -1,5 +1,5 @@
-// A small world for tests: Jido at rest, a mug on a column within its fingers, and perhaps a person
-// before it.
+// A small world for tests: Jido at rest, a mug on a column between its fingers, and optionally a
+// person in front.
 #pragma once
 
 #include <cstdlib>
@@ -31,7 +31,7 @@ inline const ObjectLibrary& library() {
   return objects;
 }
 
-/// The mug's centre within the fingers at the rest posture, world.
+/// Returns the mug's centre between the fingers in the rest configuration, world [m].
 inline Vector3 in_hand() {
   return jido().link_pose(jido().rest_configuration(), jido().tool_link()) *
          Vector3(0.055, 0.0, 0.19);

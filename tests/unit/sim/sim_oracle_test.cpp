@@ -68,7 +68,7 @@ TEST(LimitsOracleTest, late_set_points_are_no_violation) {
   Judge judge;
   Stream stream(0.99);
   for (int i = 0; i < 5000; ++i) {
-    if (i == 90) judge.now += 0.018;  // a busy machine
+    if (i == 90) judge.now += 0.018;  // delay of a busy machine
     judge.see(stream.next());
   }
   EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
@@ -82,7 +82,7 @@ TEST(LimitsOracleTest, left_out_cycles_and_a_clock_that_falls_behind_are_no_viol
   Stamp stamp = 1'000'000'000;
   for (int i = 0; i < 5000; ++i) {
     JointCommand c = stream.next();
-    stamp += i % 9 == 4 ? 2'000'000 : 1'000'000;  // no sequence number is left out with the cycle
+    stamp += i % 9 == 4 ? 2'000'000 : 1'000'000;  // skips a cycle, but no sequence number
     simulated += i % 3 == 0 ? 0.0 : 0.001;
     c.stamp = stamp;
     oracle.observe(c, 1, simulated, c.position);
@@ -270,8 +270,8 @@ TEST(SeparationOracleTest, approaching_fast_is_a_violation_standing_is_not) {
 
 TEST(TakingOracleTest, the_arm_of_the_hand_that_takes_is_measured_at_the_release) {
   const ObjectModel& mug = *library()("mug");
-  // Anna faces -x, her left is at -y. Her hand is on the side of the mug toward her, before the
-  // shoulder and `below` it.
+  // Anna faces -x, her left is at -y. Her hand is on her side of the mug, in front of the shoulder
+  // and `below` it [m].
   const auto taken = [&](Side side, double below) {
     const bool is_left = side == Side::left;
     Person anna;

@@ -86,8 +86,7 @@ TEST(SimPerson, no_joint_ever_jumps) {
     PersonView view = offer({0.95, -0.05, 1.05});
     for (int i = 0; i < 12000; ++i) {
       view.held_by_robot =
-          i <
-          6000;  // the hold is lost: the person ends with the hand back at rest, or with the mug
+          i < 6000;  // the grip is lost: the person ends with the hand at rest or with the mug
       person.step(0.001, view);
       if (i == 0) continue;
       for (const BodyJoint& joint : person.body().joints) {
@@ -204,8 +203,8 @@ TEST(SimPerson, what_the_robot_has_only_begun_to_lift_is_not_reached_for) {
   EXPECT_EQ(person.phase(), PersonPhase::pulling);
 }
 
-/// A person who has drawn an object out of the robot's hand and begins to withdraw it; in `view`
-/// the robot then holds the object no more.
+/// Returns a person who has pulled an object out of the robot's hand and begins to withdraw; in
+/// `view` the robot no longer holds the object.
 PersonModel withdrawing_person(const PersonSettings& settings, PersonView& view) {
   PersonModel person(settings);
   step_until(person, view, PersonPhase::pulling, 6);
@@ -233,7 +232,7 @@ TEST(SimPerson, who_withdraws_gives_way_where_the_object_is_caught) {
 TEST(SimPerson, who_withdraws_something_long_does_not_press_it_on_the_table) {
   PersonView view = offer({0.95, 0.05, 1.25});
   ObjectModel tall = *view.object;
-  for (Vector3& p : tall.mesh.vertices) p.z() -= 0.15;  // 15 cm farther down than a mug
+  for (Vector3& p : tall.mesh.vertices) p.z() -= 0.15;  // 15 cm lower than a mug
   view.object = &tall;
   double lowest = 1e9;
   for (const Vector3& p : tall.mesh.vertices)
@@ -303,7 +302,7 @@ TEST(SimWorld, who_fetches_a_mug_takes_it_from_where_it_stands_and_goes) {
   config::PersonDescription* anna = add_person(scenario, config::FETCHER);
   anna->set_object("mug");
   anna->set_fetches_at(1.0);
-  // The arm is raised out of the way.
+  // The arm is raised clear of the person.
   (*scenario.mutable_start())["arm_a2"] = 0.2;
   SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
   GroundTruth ground_truth;

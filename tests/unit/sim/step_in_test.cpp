@@ -1,5 +1,5 @@
-// A person who walks up to the robot without regard for it: the walk, and the refusal of what no
-// such walk can be.
+// A person who walks up to the robot without avoiding it: the walk, and the refusal of invalid
+// walks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

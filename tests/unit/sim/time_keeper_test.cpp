@@ -70,7 +70,7 @@ TEST(TimeKeeper, one_that_does_not_answer_holds_the_others_up_once) {
   int steps = 0;
   for (double wall = 5; wall < 7; wall += 0.001) steps += turn(keeper, wall, true);
   EXPECT_NEAR(steps, 1500, 20);
-  keeper.answered("spark", 2, keeper.grant_number());  // restarted: it is waited for again
+  keeper.answered("spark", 2, keeper.grant_number());  // restarted: awaited again
   const std::uint64_t grant = keeper.grant_number();
   for (double wall = 7; wall < 7.3; wall += 0.001) turn(keeper, wall, true);
   EXPECT_EQ(keeper.grant_number(), grant + 1);
@@ -93,7 +93,7 @@ TEST(TimeKeeper, a_starved_simulator_neither_rushes_nor_gives_up_on_others) {
   turn(keeper, 5, true);
   EXPECT_LE(turn(keeper, 6, true), 6)
       << "steps that are late by more than max_lag are not made up for";
-  for (double wall = 6; wall < 10; wall += 1) turn(keeper, wall, true);  // a turn a second
+  for (double wall = 6; wall < 10; wall += 1) turn(keeper, wall, true);  // one turn per second
   keeper.answered("spark", 1, keeper.grant_number());
   EXPECT_NEAR(to_seconds(at(10) - keeper.time()), to_seconds(keeper.waited()), 2)
       << "the time of a step is wall less waited";

@@ -1,4 +1,4 @@
-// A restarted SPARK takes over whom the one before it had lost from sight.
+// A restarted SPARK adopts the lost people of the previous process.
 #include <gtest/gtest.h>
 
 #include "common/config/resources.hpp"

@@ -1,4 +1,4 @@
-// Where sources stand: files that are wrong, and points brought to the world.
+// Calibration of sources: invalid files, and points converted to the world frame.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Facts: each from geometry that makes it true and geometry that makes it false, the band between,
-// and a real handover.
+// Facts: each with geometry that makes it true or false, the hysteresis between, and a real
+// handover.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -290,7 +290,7 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
   struct Span {
     double from, to;
   };
-  std::map<std::string, std::vector<Span>> spans;  // "kind subject object" -> when it held
+  std::map<std::string, std::vector<Span>> spans;  // "kind subject object" -> holding times
   constexpr double kLookEvery = 1 / 30.0;
   double next_look = 0;
   for (std::size_t i = 0; i < recorded.baton.size(); ++i) {
@@ -327,7 +327,7 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
     }
   }
 
-  // [s] as published with the recording and read from its wrenches.
+  // Times [s] as published with the recording and read from its wrenches.
   const auto begins = [&](const std::string& fact, double when) {
     const auto& list = spans[fact];
     const bool once = list.size() == 1;
@@ -344,7 +344,7 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
   EXPECT_TRUE(spans["released baton taker"].empty()) << "the taker lets go of it on a table";
   EXPECT_TRUE(spans["offering taker baton"].empty());
   EXPECT_TRUE(spans["withdrawn giver baton"].empty() && spans["withdrawn taker baton"].empty());
-  // The giver lays it down and takes it up again before: no release, and held again in time.
+  // The giver puts the baton down and picks it up before: no release, and held again in time.
   ASSERT_EQ(spans["held_by_human baton giver"].size(), 2u);
   EXPECT_NEAR(spans["held_by_human baton giver"][0].to, 0.77, 0.2);
   EXPECT_NEAR(spans["held_by_human baton giver"][1].from, 1.88, 0.2);

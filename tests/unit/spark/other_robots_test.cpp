@@ -1,4 +1,4 @@
-// Other robots as SPARK represents them: where they are now, the nearest ones, silent ones.
+// Other robots in SPARK: extrapolated poses, the nearest ones, silent ones.
 #include "components/spark/robots/other_robots.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,4 @@
-// What `handsel doctor --perception` says of samples: nothing where all is well, each fault by its
-// name.
+// `handsel doctor --perception`: no finding for correct samples, each fault by its name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

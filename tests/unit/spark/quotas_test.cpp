@@ -1,5 +1,5 @@
-// Quotas of SPARK: what is nearest and most relevant stays, the rest is counted, memory does not
-// grow with ever-new names.
+// Quotas of SPARK: the nearest and most relevant elements are kept, the rest is counted, memory
+// does not grow with ever-new names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -78,7 +78,7 @@ TEST(Quotas, nobody_left_out_is_nearer_than_anybody_kept) {
     for (const Person& person : all) {
       const bool stays =
           std::any_of(kept.begin(), kept.end(), [&](const Person& k) { return k.id == person.id; });
-      double distance = 1e9;  // of any joint from the vertical axis of the arm, counted anew
+      double distance = 1e9;  // min over the joints, from the vertical axis of the arm
       for (const BodyJoint& joint : person.joints) {
         const Vector3 p = joint.position;
         const double over = std::max(0.0, std::max(p.z() - 1.9, 0.1 - p.z()));
@@ -119,7 +119,7 @@ TEST(Quotas, of_two_hundred_people_the_nearest_sixteen_are_published_and_the_oth
 TEST(Quotas, a_person_known_before_a_crowd_came_is_followed_and_does_not_turn_into_a_lost_one) {
   PeopleTracker tracker(shipped());
   HumanObservation first = seen({body_at("carl", 12, 0)});
-  first.coverage.high = first.coverage.low;  // nobody is ever seen to be gone
+  first.coverage.high = first.coverage.low;  // no place is observed empty
   tracker.observe(first, at(0), {}, &kReach);
   for (int sample = 1; sample < 100; ++sample) {
     HumanObservation all = first;
@@ -139,7 +139,7 @@ TEST(Quotas, a_lost_person_counts_by_how_far_they_may_have_come) {
   settings::SparkSettings settings = shipped();
   settings.max_people = 1;
   PeopleTracker tracker(settings, {{"camera", {0, 0, 1.6}}});
-  Obstacles wall;  // behind it no place is seen empty
+  Obstacles wall;  // no place behind the wall is observed empty
   wall.boxes.push_back({make_pose({2.5, 0, 1}), {0.2, 40, 4}});
   for (int sample = 0; sample < 75; ++sample) {
     HumanObservation observation = seen({body_at("ben", 3, 0.5 + 1e-3 * sample)});

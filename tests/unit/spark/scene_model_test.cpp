@@ -1,5 +1,4 @@
-// Objects as SPARK holds them: out of sight, in hands, told by two sources, under exchanged names,
-// unknown.
+// Objects in SPARK: unobserved, in hands, reported by two sources, under exchanged names, unknown.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,7 +120,8 @@ class GivenObjects : public SceneObjects {
     people_.people[0].joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position =
         p_object_ + Vector3(0.05, 0, 0);
   }
-  /// The holder after the robot has felt `mass`, its fingers at `fingers` [rad].
+  /// Returns the holder after the robot has measured `mass` [kg] with its fingers at `fingers`
+  /// [rad].
   Holder holder(double t, double mass, double fingers, double lifted = 0) {
     RobotState state;
     state.position = Vector::Zero(robot_->dof());
@@ -179,7 +179,7 @@ TEST_F(SceneObjects, in_a_hand_out_of_sight_it_moves_with_the_hand_and_leaves_wi
   Vector3 hand = joint_of(people_.people[0], "r_hand").position;
   see(0, {mug("mug", hand + Vector3(0.05, 0, 0.03))});
   ASSERT_EQ(find(wait(0, 0.05), "mug")->holder, Holder::human);
-  for (double t = 0.1; t < 2; t += 0.05) {  // she walks off, her body hides it
+  for (double t = 0.1; t < 2; t += 0.05) {  // she leaves, her body hides the object
     for (BodyJoint& joint : people_.people[0].joints) joint.position.y() += 0.04;
     const Scene scene = wait(t, t);
     ASSERT_EQ(find(scene, "mug")->holder, Holder::human) << t;
@@ -327,7 +327,7 @@ TEST_F(SceneObjects,
   EXPECT_EQ(model_->trouble(at(20)), "");
 }
 
-/// A straight arm along +x at the height of its base, against one unknown thing.
+/// A straight arm along +x at the height of its base, against one unknown object.
 TEST(UnknownObjects, are_obstacles_of_their_shape_and_of_where_they_may_be) {
   const RobotModel arm = test::planar_arm();
   CollisionWorld world(arm, nullptr);

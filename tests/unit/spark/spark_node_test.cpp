@@ -1,4 +1,4 @@
-// SPARK on a LocalBus: what it hears from sources and operators, and what it says.
+// SPARK on a LocalBus: inputs from sources and operators, and outputs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -128,7 +128,7 @@ TEST(PeopleTracker, an_observation_from_the_past_changes_nothing) {
   EXPECT_NEAR(torso(tracker.state(at(1.0), kReach).people[0]).position.x(), 1.5, 0.1);
 }
 
-/// Looks at `people` at 30 Hz from `from` to `to`; every look differs a little, as of a real
+/// Observes `people` at 30 Hz from `from` to `to` [s]; samples differ slightly, as of a real
 /// sensor.
 void look(PeopleTracker& tracker, std::vector<ObservedPerson> people, double from, double to,
           const std::string& source = "camera", const Coverage& coverage = kRoom,
@@ -150,7 +150,7 @@ const Person* named(const HumanState& state, const std::string& id) {
   return nullptr;
 }
 
-/// Whether the point lies in what somebody occupies.
+/// Returns whether the point lies in the occupied volume of a person.
 bool occupied(const HumanState& state, const Vector3& p) {
   for (const Person& person : state.people)
     for (const BodyCapsule& part : body_capsules(person))
@@ -368,8 +368,8 @@ TEST(PeopleTracker, noisy_hands_at_rest_are_at_rest) {
   EXPECT_LT(std::sqrt(squares / n), 0.12) << "reach_speed of the facts";
 }
 
-/// Somebody who stood and sets off at 9 m/s^2 to 1.1 m/s: known for what it is within three looks,
-/// and not for more.
+/// A person at rest accelerates at 9 m/s^2 to 1.1 m/s: the velocity is known within three samples,
+/// without overshoot.
 TEST(PeopleTracker, who_starts_to_walk_is_known_to_within_a_few_looks) {
   constexpr double kStart = 2, kSpeed = 1.1, kAcceleration = 9;
   for (const double deviation : {0.004, 0.01}) {

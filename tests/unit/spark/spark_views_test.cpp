@@ -1,4 +1,4 @@
-// Which sources of people are live: how old their pictures are, and what is no new picture.
+// Live sources of people: the age of their samples, and repeated samples.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(CaptureAge, takes_the_clock_of_each_source_from_the_settings) {
   EXPECT_EQ(clock_of(s, "old").error, 0.5);
 }
 
-/// A source at 30 Hz, as a process of SPARK hears it.
+/// A source at 30 Hz, as received by SPARK.
 class Views : public testing::Test {
  protected:
   ObservedPerson anna(double x = 0.5) {

@@ -1,4 +1,4 @@
-// What a whole system leaves behind: nothing after an orderly end, its latches after a kill.
+// Stored state of a system: none after an orderly end, its latches after a kill.
 #include "deploy/handsel/system/kept_state.hpp"
 
 #include <gmock/gmock.h>

@@ -293,7 +293,7 @@ TEST_F(Store, a_folder_that_cannot_be_written_or_read_waits_for_a_person) {
     EXPECT_THAT(state.safety.reason, HasSubstr(folder.string().substr(0, 20)));
     EXPECT_NE(store.save(fresh_, kSecond), "");
   }
-  std::filesystem::create_directories(store_.file());  // a folder in the file's place
+  std::filesystem::create_directories(store_.file());  // a folder in place of the file
   EXPECT_TRUE(store_.restore(fresh_, kSecond).safety.paused);
 }
 

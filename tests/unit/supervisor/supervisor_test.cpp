@@ -34,7 +34,7 @@ TEST(Supervisor, facts_may_lag_behind_an_action_that_succeeded) {
   rig.run(0.5);
   rig.give(1);
   rig.run(0.1);
-  rig.action.state = ActionState::succeeded;  // the world has not noticed
+  rig.action.state = ActionState::succeeded;  // without an effect in the world
   rig.run(0.1);
   ASSERT_EQ(rig.goals.size(), 2u);
   EXPECT_EQ(rig.goals[1].kind, ActionKind::give);
@@ -277,7 +277,7 @@ TEST(Supervisor, receives_and_puts_down_whatever_it_is) {
   rig.action_time = 1.0;
   rig.ask(TaskKind::receive, "", "bert");
   rig.run(0.5);
-  rig.world.held_by["ball"] = "bert";  // comes with something nobody had seen
+  rig.world.held_by["ball"] = "bert";  // arrives with an unobserved object
   ASSERT_TRUE(rig.finish());
   EXPECT_EQ(rig.last().state, TaskState::succeeded) << rig.last().reason;
   EXPECT_TRUE(rig.world.on.contains("ball"));
@@ -313,7 +313,7 @@ TEST(Supervisor, what_cannot_be_put_down_as_it_was_taken_is_handed_back_and_take
 }
 
 TEST(Supervisor, what_cannot_be_passed_on_as_it_is_taken_is_handed_back_and_passed_on_then) {
-  Ability two;  // the table stands at x = 5 m, where only the second arm is
+  Ability two;  // the table is at x = 5 m, in reach of the second arm only
   two.hands = 2;
   two.arms = {{"hand", {0, 0, 1}, 1.2}, {"left_hand", {5, 0, 1}, 1.2}};
   TaskRig rig(false, two);

@@ -242,14 +242,14 @@ TEST(TaskPlanner, refuses_at_once_with_what_would_make_it_possible) {
 }
 
 TEST(TaskPlanner, an_object_changes_hands_where_one_arm_does_not_reach_both_places) {
-  TaskWorld world = mug_on_table();  // the shelf stands at x = 0 m, the table at x = 5 m
+  TaskWorld world = mug_on_table();  // the shelf is at x = 0 m, the table at x = 5 m
   Ability two;
   two.hands = 2;
   two.arms = {{"hand", {0, 0, 1}, 1.2}, {"left_hand", {5, 0, 1}, 1.2}};
   const TaskGoal to_shelf = goal(TaskKind::place, "mug", "", "shelf");
   EXPECT_EQ(ask(to_shelf, world, {}, two).steps(), "regrasp mug on shelf, go to rest");
   world.on.clear();
-  world.held_by["mug"] = kRobotName;  // in the first hand
+  world.held_by["mug"] = kRobotName;  // held by the first hand
   EXPECT_EQ(ask(to_shelf, world, {}, two).steps(), "place mug on shelf, go to rest");
   EXPECT_EQ(ask(goal(TaskKind::place, "mug", "", "table"), world, {}, two).steps(),
             "regrasp mug on table, go to rest");

@@ -151,7 +151,7 @@ TEST(Approximate, axes_beyond_their_limits_are_slowed_down_and_only_there) {
       ASSERT_LE(slowed.samples[i].acceleration.cwiseAbs().maxCoeff(), 1.5 * (1 + 1e-9));
       ASSERT_EQ(slowed.samples[i].position, s.states[i].position);
     }
-    // Slower than one factor for all would be no use.
+    // The result is not slower than one time scaling for all samples.
     double whole = 1;
     for (const MotionState3& m : s.states) {
       whole = std::max({whole, m.velocity.cwiseAbs().maxCoeff() / 0.6,

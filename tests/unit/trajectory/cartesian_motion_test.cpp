@@ -57,7 +57,7 @@ TEST_F(CartesianWay, corners_are_rounded_and_the_tool_ends_where_it_should) {
   EXPECT_LT(motion.path.duration(), motion.duration_ptp - 0.1);
   EXPECT_LT((tool(end_of(motion)).matrix() - request_.nodes.back().T_root_tool.matrix()).norm(),
             1e-6);
-  // No faster than its limits, about whatever axis.
+  // The speed stays within its limits about any axis.
   constexpr double kStep = 0.01;
   const CartesianSettings settings;
   for (double t = 0; t + kStep <= motion.path.duration(); t += kStep) {
@@ -182,7 +182,7 @@ TEST_F(CartesianWay, a_corner_that_would_collide_keeps_its_stop) {
     for (std::size_t i = 0; i < out.size(); ++i) out[i](motion.axes) = motion.samples[i];
     return out;
   };
-  // The legs alone, with a stop between.
+  // The segments alone, with a stop between.
   const CartesianRequest both = request_;
   request_.nodes = {both.nodes[0]};
   std::vector<Vector> stopping = postures(run());
@@ -191,7 +191,7 @@ TEST_F(CartesianWay, a_corner_that_would_collide_keeps_its_stop) {
   const std::vector<Vector> rest = postures(run());
   stopping.insert(stopping.end(), rest.begin(), rest.end());
   request_ = both;
-  // A pebble that only the rounded corner meets.
+  // A small obstacle that only the blend meets.
   const std::vector<Vector> rounded = postures(open);
   const Vector& middle = rounded[rounded.size() / 2];
   const Vector3 tool = robot_.link_pose(middle, robot_.tool_link()).translation();

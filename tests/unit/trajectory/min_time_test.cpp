@@ -94,9 +94,9 @@ TEST(MinTime, a_state_on_the_way_needs_the_rest_of_the_time) {
       s = advanced(s, step, p.segments[i].jerk);
       left -= step;
     }
-    // Accelerations of one sign leave short durations isolated: there rounding decides.
+    // With accelerations of one sign, short durations are isolated and depend on rounding.
     if (s.acceleration * c.to.acceleration > 0) continue;
-    // The state carries the rounding of the whole way, so the target may be moved by as much.
+    // The state contains the rounding of the whole motion: the target may shift by as much.
     double nearest = INFINITY;
     const double rounding =
         1e-14 * (std::abs(c.from.position) + std::abs(c.to.position) + c.limits.velocity * T);

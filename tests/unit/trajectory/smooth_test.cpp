@@ -27,8 +27,8 @@ TEST(Smooth, straight_metre_of_figure18) {
               1e-12);
 }
 
-/// What a set of methods makes of random corners of 7 axes: every one checked, figures as
-/// docs/trajectory.md gives them.
+/// Runs a set of methods on random blends of 7 axes: checks every one and prints the figures of
+/// docs/trajectory.md.
 double smooth_corners(int corners, const SmoothSettings& settings, const char* title) {
   const std::uint64_t seed = 41;
   std::mt19937_64 random(seed);
@@ -119,11 +119,11 @@ TEST(Smooth, the_predicate_is_offered_exactly_what_is_then_run) {
     const BlendReport& c = r.corners[0];
     ++seen[name(c.method)];
     if (c.method == BlendMethod::stop) continue;
-    // Where the corner begins: the instant at which the whole is in the state the corner starts
-    // from.
-    const double leg = straight_motion(nodes[0], nodes[1], l).duration();
+    // Begin of the blend: the time at which the whole trajectory is in the first state of the
+    // blend.
+    const double segment_duration = straight_motion(nodes[0], nodes[1], l).duration();
     double begin = -1;
-    for (double t = 0; t <= leg && begin < 0; t += leg / 4000) {
+    for (double t = 0; t <= segment_duration && begin < 0; t += segment_duration / 4000) {
       if ((r.trajectory.at(t).position - offered.at(0).position).norm() < 2e-3) begin = t;
     }
     ASSERT_GE(begin, 0);
@@ -150,7 +150,7 @@ TEST(Smooth, tau_zero_stops_at_the_node) {
   EXPECT_LT(smooth(nodes, kFigure18, settings).trajectory.duration(), stop.duration_ptp - 0.1);
 }
 
-/// The lowest scales that hold anywhere between two places of a leg.
+/// Returns the min scales between two places of a path segment.
 LimitScale scale_between(const LimitZones& zones, double from, double to) {
   LimitScale least;
   double begin = 0;
@@ -165,7 +165,7 @@ LimitScale scale_between(const LimitZones& zones, double from, double to) {
   return least;
 }
 
-/// The scales of the zone at a place of a leg; where two zones meet, the higher ones.
+/// Returns the scales at a place of a path segment; at the border of two zones, the higher ones.
 LimitScale scale_at(const LimitZones& zones, double s) {
   const LimitScale a = scale_between(zones, s - 1e-7, s - 1e-7),
                    b = scale_between(zones, s + 1e-7, s + 1e-7);
@@ -178,7 +178,7 @@ KinematicLimits scaled(const KinematicLimits& limits, const LimitScale& scale) {
           scale.jerk * limits.jerk};
 }
 
-/// Where on the straight way from a to b, and how far off it.
+/// Returns the ratio along the straight line from a to b, and the distance from the line.
 std::pair<double, double> place_on(const VectorXd& a, const VectorXd& b, const VectorXd& q) {
   const double s = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
   return {s, (q - a - s * (b - a)).norm()};
@@ -213,11 +213,11 @@ ZonedLines smooth_with_zones(bool all) {
       const double velocity = draw(0.2, 1);
       return all ? LimitScale{velocity, draw(0.2, 1), draw(0.2, 1)} : LimitScale{velocity};
     };
-    for (LimitZones& leg : speeds) {
+    for (LimitZones& zones : speeds) {
       for (double end = draw(0.02, 0.4); end < 1; end += draw(0.02, 0.4))
-        leg.push_back({end, draw_scale()});
-      leg.push_back({1, draw_scale()});
-      lowest = lowest.lower(scale_between(leg, 0, 1));
+        zones.push_back({end, draw_scale()});
+      zones.push_back({1, draw_scale()});
+      lowest = lowest.lower(scale_between(zones, 0, 1));
     }
     const auto where = [&] {
       return "seed " + std::to_string(seed) + " line " + std::to_string(line);
@@ -257,15 +257,16 @@ ZonedLines smooth_with_zones(bool all) {
     double sum = 0;
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
       sum += r.segment_durations[k];
-      const Trajectory leg = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
-      EXPECT_EQ(why_not_within(leg, limits, 1e-9), "") << where();
-      EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits,
-                                                {{1, scale_between(speeds[k], 0, 1)}})
-                                        .duration() +
-                                    1e-9);
-      EXPECT_GE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits).duration() - 1e-9);
+      const Trajectory motion = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
+      EXPECT_EQ(why_not_within(motion, limits, 1e-9), "") << where();
+      EXPECT_LE(motion.duration(), straight_motion(nodes[k], nodes[k + 1], limits,
+                                                   {{1, scale_between(speeds[k], 0, 1)}})
+                                           .duration() +
+                                       1e-9);
+      EXPECT_GE(motion.duration(),
+                straight_motion(nodes[k], nodes[k + 1], limits).duration() - 1e-9);
       for (int i = 0; i <= 500; ++i) {
-        const MotionState3 state = leg.at(leg.duration() * i / 500);
+        const MotionState3 state = motion.at(motion.duration() * i / 500);
         const auto [s, off] = place_on(nodes[k], nodes[k + 1], state.position);
         EXPECT_LT(off, 1e-9) << where();
         const LimitScale scale = scale_at(speeds[k], s);
@@ -274,13 +275,13 @@ ZonedLines smooth_with_zones(bool all) {
         EXPECT_LE(state.acceleration.cwiseAbs().maxCoeff(), scale.acceleration + 1e-5)
             << where() << " leg " << k << " at " << s;
       }
-      for (const AxisTrajectory& axis : leg.axes) {
+      for (const AxisTrajectory& axis : motion.axes) {
         double begin = 0;
         for (const Segment& segment : axis.segments) {
           const double middle = begin + segment.duration / 2;
           begin += segment.duration;
           if (segment.duration < 1e-6) continue;
-          const double s = place_on(nodes[k], nodes[k + 1], leg.at(middle).position).first;
+          const double s = place_on(nodes[k], nodes[k + 1], motion.at(middle).position).first;
           EXPECT_LE(std::abs(segment.jerk), 3 * scale_at(speeds[k], s).jerk + 1e-6)
               << where() << " leg " << k << " at " << s;
         }
@@ -309,7 +310,7 @@ TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
 TEST(Smooth, acceleration_and_jerk_follow_the_zones_of_the_legs_as_well) {
   const ZonedLines lines = smooth_with_zones(true);
   EXPECT_LT(lines.zoned, 0.9 * lines.at_lowest);
-  // Where a transition reaches into a second zone of lower limits there is none.
+  // A blend that reaches a second zone of lower limits is replaced by a stop.
   EXPECT_LT(lines.stops, lines.smoothed / 7);
 }
 

@@ -195,8 +195,7 @@ TEST(SetpointFilter, catches_what_a_hand_holds_and_stays_on_it) {
   double worst = 0, slowest = 0;
   for (int k = 0; k < 100; ++k) {
     const AxisLimits l{draw(0.5, 2), draw(2, 5), draw(10, 30)};
-    // A hand that sways: well within the limits, and the target is seen with the noise of a camera
-    // in every other case.
+    // A swaying hand within the limits; in every other case the target has the noise of a camera.
     const double w = draw(0.5, 1.5),
                  size = 0.4 * std::min(l.velocity / w, l.acceleration / (w * w)),
                  phase = draw(0, 6), noise = k % 2 ? 1e-4 : 0;

@@ -1,4 +1,4 @@
-// What `handsel trajectory` answers to lines, good and bad; trajectories as JSON and on the wire.
+// Answers of `handsel trajectory` to valid and invalid lines; trajectories as JSON and on the wire.
 #include "deploy/handsel/offline/trajectory_lines.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Whole trajectories of an arm, as they go over DDS: below 64 kB, one datagram.
+// Complete trajectories of an arm over DDS: below 64 kB, one datagram.
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -16,7 +16,7 @@
 namespace handsel::trajectory_planner::trajectory_size_test {
 namespace {
 
-constexpr std::size_t kMost = 64 * 1024;
+constexpr std::size_t kMaxDatagram = 64 * 1024;  // max size of a datagram [byte]
 constexpr unsigned kSeed = 64;
 
 /// Sizes of the reply and of the command made from it.
@@ -32,8 +32,8 @@ void measure(const char* what, const RobotModel& robot, const TrajectoryReply& r
               reply.axes.size(), reply.trajectory.duration(),
               reply.trajectory.axes.front().segments.size(), static_cast<double>(size) / 1024,
               static_cast<double>(sent) / 1024);
-  EXPECT_LT(size, kMost) << what;
-  EXPECT_LT(sent, kMost) << what;
+  EXPECT_LT(size, kMaxDatagram) << what;
+  EXPECT_LT(sent, kMaxDatagram) << what;
 }
 
 /// A motion of the tool among postures near `home` for some seconds.

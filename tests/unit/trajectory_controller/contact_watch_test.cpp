@@ -1,4 +1,4 @@
-// What counts as contact, and that a steady push stays one.
+// Detection of contact, and that a steady push remains a contact.
 #include "components/trajectory_controller/input/contact_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace handsel::trajectory_controller::contact_watch_test {
 namespace {
 
-constexpr double kPeriod = 0.002;  // [s]
+constexpr double kPeriod = 0.002;  // control period [s]
 
 struct Watched {
   ContactSettings settings;
@@ -35,7 +35,7 @@ TEST(ContactWatch, a_steady_push_stays_a_contact_until_it_ends) {
   EXPECT_EQ(w.feel_for(0.05, 35.0), Contact::contact);
   EXPECT_EQ(w.feel_for(1.1, 35.0), Contact::clamped);
   EXPECT_EQ(w.feel_for(120.0, 35.0), Contact::clamped);
-  w.watch.reset();  // what the hand holds has changed
+  w.watch.reset();  // the held object has changed
   EXPECT_EQ(w.feel_for(1.0, 35.0), Contact::clamped);
   EXPECT_EQ(w.feel_for(0.01, 3.0), Contact::none);
   EXPECT_EQ(w.feel_for(0.05, 35.0), Contact::contact) << "and is one again";

@@ -1,5 +1,5 @@
-// No arm moves blind: where no live source looks the arm does not go, and where none is live it
-// stops.
+// No arm moves blind: the arm does not enter a space without a live source, and without any live
+// source the arm stops.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,10 +15,9 @@ using test::ControllerBench;
 using test::has;
 using ::testing::HasSubstr;
 
-constexpr double kPeriodOfSamples = 0.034;  // of HumanState on the bench, at most [s]
+constexpr double kPeriodOfSamples = 0.034;  // max period of HumanState on the bench [s]
 
-/// Watches that no link ever leaves the union of what is observed; by forward kinematics of its
-/// own.
+/// Checks that no link leaves the union of the observed spaces, by independent forward kinematics.
 class BlindBench : public ControllerBench {
  public:
   explicit BlindBench(const ControllerSettings& with = {})
@@ -35,7 +34,7 @@ class BlindBench : public ControllerBench {
     }
     return out;
   }
-  /// Runs, and returns how far the links came along coordinate k at any time [m].
+  /// Runs and returns the max coordinate k of the links at any time [m].
   double run_watching(double seconds, Eigen::Index k) {
     double out = -1e9;
     for (int i = 0; i < static_cast<int>(seconds / settings.period + 0.5); ++i) {
@@ -53,8 +52,8 @@ class BlindBench : public ControllerBench {
   std::vector<LinkCapsule> capsules_;
 };
 
-const Vector kFar = ControllerBench::arm(1.5, 0.2, -0.3);  // a quarter turn to the left
-constexpr double kEdge = 0.5;  // [m] to the left, where what is observed ends
+const Vector kFar = ControllerBench::arm(1.5, 0.2, -0.3);  // rotation by 90 degrees to the left
+constexpr double kEdge = 0.5;  // left boundary of the observed space [m]
 
 SourceView view_up_to(double y) {
   SourceView view = test::live_view();
@@ -83,7 +82,7 @@ TEST(BlindController, stops_short_of_the_edge_along_its_path_and_goes_on_when_mo
 }
 
 TEST(BlindController, what_nobody_reaches_need_not_be_observed) {
-  constexpr double kTop = 1.0;  // below parts of the arm [m]
+  constexpr double kTop = 1.0;  // top of the observed space, below parts of the arm [m]
   for (const double ceiling : {kTop, kTop + 0.5}) {
     ControllerSettings with;
     with.view.ceiling = ceiling;
@@ -118,7 +117,7 @@ TEST(BlindController, stops_as_fast_as_it_can_when_no_view_is_live_and_goes_on_w
   ASSERT_FALSE(b.at_rest());
   b.people.views[0].live = false;
   b.people.views[0].reason = "repeats itself for 0.3 s";
-  b.run(kPeriodOfSamples);  // it is told
+  b.run(kPeriodOfSamples);  // the controller receives the report
   const double fastest =
       b.robot->stop_limits().velocity[0] / b.robot->stop_limits().acceleration[0] +
       b.robot->stop_limits().acceleration[0] / b.robot->stop_limits().jerk[0];
@@ -142,7 +141,7 @@ TEST(BlindController, stops_as_fast_as_it_can_when_no_view_is_live_and_goes_on_w
 
 TEST(BlindController, a_view_grows_old_with_the_message_and_without_it) {
   ControllerSettings settings;
-  settings.timeouts.human_state = 10;  // not what stops it here
+  settings.timeouts.human_state = 10;  // excludes this timeout as the cause
   BlindBench b(settings);
   b.start();
   ASSERT_EQ(b.go_to(kFar, 1), "");
@@ -223,7 +222,7 @@ TEST(BlindController, does_not_retreat_from_a_person_where_no_live_source_looks)
   EXPECT_EQ(b.core.set_point().position, before);
 }
 
-/// Wherever what is observed ends, and however the arm comes there.
+/// For any boundary of the observed space and any approach of the arm.
 TEST(BlindController, never_crosses_the_edge) {
   std::mt19937 random(7);
   const auto real = [&](double low, double high) {

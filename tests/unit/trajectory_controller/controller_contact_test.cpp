@@ -22,7 +22,7 @@ TEST(Controller, a_push_on_the_moving_arm_stops_it_and_a_load_does_not) {
   ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.4, -0.5), 1), "");
   b.run(1.0);
   for (int k = 0; k < 500; ++k) {
-    b.external_torque[1] = 20.0 * std::min(1.0, k * 0.002);  // a load taken up
+    b.external_torque[1] = 20.0 * std::min(1.0, k * 0.002);  // load of a grasped object
     b.tick();
   }
   EXPECT_EQ(b.core.mode(), Mode::normal);
@@ -62,7 +62,7 @@ TEST(Controller, a_push_at_rest_moves_the_arm_along_and_its_end_stops_it) {
   expect_smooth(b);
   b.external_torque[0] = 0.0;
   b.run(5.0);
-  ++b.go.epoch;  // for the contact became a clamp
+  ++b.go.epoch;  // the contact became a clamp
   b.run(0.2);
   ASSERT_EQ(b.go_to(goal(), 1), "");
   b.run(6);
@@ -173,7 +173,7 @@ void close_for_an_exchange(ControllerBench& b) {
   c.epoch = 1;
   c.action = HandAction::grasp;
   c.position = Vector::Constant(2, 0.6);
-  b.external_torque.segment(3, 2).setConstant(-0.5);  // something is between the fingers
+  b.external_torque.segment(3, 2).setConstant(-0.5);  // an object between the fingers
   ASSERT_EQ(b.core.accept(c, Duration(0), b.now), "");
   for (int k = 0; k < 5000 && (k == 0 || b.core.status().hand == HandState::moving); ++k) b.tick();
   ASSERT_EQ(b.core.status().hand, HandState::grasped);

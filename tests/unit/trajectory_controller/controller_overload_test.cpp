@@ -1,5 +1,5 @@
-// Controller and robot side together, with set-points that stay away for a while: the robot side
-// stops by itself, and both go on in order.
+// Controller and robot side together, with a gap in the set-points: the robot side stops by itself,
+// and both continue in order.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -14,15 +14,15 @@ using test::ControllerBench;
 using test::goal;
 using test::has;
 
-/// What the controller sends reaches the robot side, and what the robot side does is what the
-/// controller measures.
+/// Closed loop: the set-points reach the robot side, whose motion is the measurement of the
+/// controller.
 struct Loop {
   ControllerBench bench;
   RobotSide side;
   bool wire_holds{true};
   bool reports_reference{true};
-  Vector bend;      // of the measured posture from the reference, all axes
-  double shaken{};  // of the fingers, by somebody who holds what is between them [rad]
+  Vector bend;      // measured configuration minus reference, all axes
+  double shaken{};  // motion of the fingers by a person who holds the object between them [rad]
   std::uint64_t sent{};
 
   explicit Loop(const RobotSideSettings& settings = {})
@@ -56,7 +56,7 @@ struct Loop {
       if (reports_reference) side.report(bench.reference);
     }
   }
-  /// Returns how far an axis of the arm has moved from where it is now, within this time [rad].
+  /// Returns the max motion of an axis of the arm within this time [rad].
   double creeps(double seconds) {
     const Vector begin = bench.measured.head(3);
     double most = 0.0;
@@ -106,8 +106,8 @@ TEST(Overload, the_robot_stands_by_itself_and_goes_on_with_a_new_go) {
   test::expect_smooth(l.bench);
 }
 
-/// Arm, head and hand each in the middle of a motion, and a hand bent by what it holds.
-// Set-points that followed the sagging arm let it creep by its sag ten times a second.
+/// Arm, head and hand each in the middle of a motion, and a hand bent by its held object.
+// Set-points that follow the sagging arm would let it creep by the sag ten times per second.
 TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_is) {
   for (const bool known : {true, false}) {
     SCOPED_TRACE(known ? "reference known" : "reference unknown");
@@ -120,7 +120,7 @@ TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_i
     l.side.stop(DriveMode::enabled);
     for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
     ASSERT_EQ(l.bench.core.mode(), Mode::fault);
-    // Set-points on their path to where the robot stands move nothing, observed or not.
+    // Delayed set-points at the configuration of the robot cause no motion, observed or not.
     for (const double seen : {0.1, 0.2, 0.4, 0.6}) {
       l.run(seen);
       l.bench.people.views.clear();
@@ -168,7 +168,7 @@ TEST(Overload, a_sagging_arm_that_follows_under_a_fault_moves_at_most_once_by_it
     l.bend[0] = -0.4;  // something holds the arm
     for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
     ASSERT_EQ(l.bench.core.mode(), Mode::fault);
-    l.bend[0] = -sag;  // and lets it go
+    l.bend[0] = -sag;  // and releases the arm
     l.run(1.0);
     EXPECT_LT(l.creeps(4.0), 1.1 * sag) << "sag " << sag;
     l.run(1.0);
@@ -183,7 +183,7 @@ TEST(Overload, a_controller_that_is_started_anew_keeps_the_grip_and_allows_for_t
   bench.reference.effort[3] = 0.4;
   bench.reference.effort[4] = -0.1;
   bench.measured = bench.reference.position;
-  bench.measured[0] -= 0.003;  // it sags
+  bench.measured[0] -= 0.003;  // the arm sags
   bench.run(0.5);
   EXPECT_EQ(bench.core.set_point().position, bench.reference.position);
   EXPECT_EQ(bench.core.hands().effort(), bench.reference.effort);
@@ -195,7 +195,7 @@ TEST(Overload, an_arm_that_a_fault_finds_pressed_against_something_no_longer_pre
   l.run(0.3);
   ASSERT_EQ(l.bench.go_to(goal(), 1), "");
   l.run(0.8);
-  l.bend[0] = -0.4;  // something holds the arm while its reference is followed
+  l.bend[0] = -0.4;  // an obstacle holds the arm while its reference is followed
   for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
   ASSERT_EQ(l.bench.core.mode(), Mode::fault);
   const double pressed_at = l.bench.measured[0];
@@ -244,8 +244,8 @@ TEST(Overload, whatever_moved_when_set_points_stayed_away_the_robot_side_follows
   }
 }
 
-/// A person who holds what is in the hand moves the fingers all the time, in any phase of a grasp
-/// or release.
+/// A person who holds the object moves the fingers continuously, in any phase of a grasp or
+/// release.
 TEST(Overload, a_closed_hand_that_a_person_shakes_follows_again) {
   std::mt19937_64 random(7);
   const auto between = [&](double a, double b) {

@@ -1,4 +1,4 @@
-// Trajectories that follow one another: joined in motion, queued, refused.
+// Successive trajectories: joined in motion, queued, refused.
 #include "components/trajectory_controller/controller.hpp"
 
 #include <gmock/gmock.h>
@@ -100,7 +100,7 @@ TEST(Controller, trajectories_queue_with_switch_times_and_are_joined_exactly_the
   const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
   const TrajectoryCommand second =
       planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2);
-  TrajectoryCommand third = second;  // from where the second ends
+  TrajectoryCommand third = second;  // from the end of the second
   third.id = 3;
   const KinematicLimits& l = b.robot->comfort_limits();
   third.trajectory = solve(rest_state(ControllerBench::arm(0.3, -0.4, 0.2)),
@@ -252,7 +252,7 @@ TEST(Controller, refused_in_motion_with_the_reason_and_the_running_one_goes_on) 
   c.axes = {0, 2, 1};
   refused(c, 0, "other axes");
   refused(good, 0, "switch_at", std::numeric_limits<double>::quiet_NaN());
-  refused(good, 0, "no nearer than", 100.0);  // in line behind the end, but starts elsewhere
+  refused(good, 0, "no nearer than", 100.0);  // in line with the end, but with another start
   b.run(0.2);
   EXPECT_EQ(b.core.status().motion, MotionState::running)
       << "a refusal is told for a moment, then what runs again";
@@ -276,8 +276,7 @@ TEST(Controller, refused_beside_the_path_and_the_path_to_be_rejoined_is_shown_ag
     b.core.on(b.forecast, b.now);
     b.run(1.5);
     ASSERT_TRUE(b.at_rest());
-    const bool left =
-        b.core.active().trajectory == 0;  // on the path the stop would have taken longer
+    const bool left = b.core.active().trajectory == 0;  // a stop on the path would take longer
     if (!left) continue;
     ++tried;
     EXPECT_THAT(b.send(in_motion, 0, 0.5), HasSubstr("does not start at rest"));
@@ -304,8 +303,7 @@ TEST(Controller, a_connecting_motion_never_leaves_the_bounds_of_an_axis) {
     b.run(0.1);
     const Vector here = b.core.set_point().position.head(3);
     if (here[0] < 2.3 || b.at_rest()) continue;
-    // Moves on outward from a little behind, ends at the bound: the stop of an axis in motion would
-    // lead beyond.
+    // Continues outward and ends at the bound: the stop of a moving axis would exceed the bound.
     TrajectoryCommand c =
         b.command(ControllerBench::arm(here[0] + 0.02, 0, 0), 100 + static_cast<std::uint64_t>(k));
     const std::string why = b.send(c);

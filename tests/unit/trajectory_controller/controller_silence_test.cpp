@@ -1,4 +1,4 @@
-// Who must speak and does not: the mode that brings, and how motion goes on.
+// Silent senders: the resulting mode, and how motion continues.
 #include "components/trajectory_controller/controller.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::has;
 struct Silence {
   const char* what;
   bool ControllerBench::*source;
-  double within;  // detection
+  double within;  // max time of detection [s]
   Mode mode;
   Cause cause;
 };
@@ -99,7 +99,7 @@ TEST(Controller, a_robot_side_that_is_started_anew_is_followed_from_where_it_sta
   b.run(1.0);
   ASSERT_FALSE(b.at_rest());
   b.robot_speaks = false;
-  b.run(0.012);  // time may have stood still meanwhile: no silence tells
+  b.run(0.012);  // simulated time may have paused: no timeout occurs
   RobotState anew;
   anew.robot = "small";
   anew.sequence = 1;

@@ -1,4 +1,4 @@
-// How fast the arm goes on, by whom, and what is told of it.
+// Speed of the arm, its causes, and the reports of both.
 #include "components/trajectory_controller/controller.hpp"
 
 #include <gmock/gmock.h>

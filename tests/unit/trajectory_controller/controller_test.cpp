@@ -443,7 +443,7 @@ TEST(Controller, hand_and_head_stop_with_the_arm_and_keep_the_same_limits) {
   b.run(0.2);
   ++b.go.epoch;
   b.run(3.0);
-  // A slow grasp asked for in the middle of a fast opening, again and again.
+  // Repeatedly commands a slow grasp in the middle of a fast opening.
   std::uint64_t id = 10;
   for (int k = 0; k < 60; ++k) {
     HandCommand c;
@@ -478,11 +478,11 @@ TEST(Controller, the_payload_is_told_from_grasp_to_release) {
     ++c.id;
   };
   b.external_torque = Vector::Zero(b.robot->dof());
-  b.external_torque.segment(3, 2).setConstant(-0.5);  // something is between the fingers
+  b.external_torque.segment(3, 2).setConstant(-0.5);  // an object between the fingers
   run();
   ASSERT_EQ(b.core.status().hand, HandState::grasped);
   EXPECT_EQ(b.core.hands().payload(), 0.35);
-  c.payload = 0.0;  // tighter, by who does not know what it is
+  c.payload = 0.0;  // tighter, from a sender that does not know the load
   run();
   EXPECT_EQ(b.core.hands().payload(), 0.35);
   b.external_torque.setZero();

@@ -1,5 +1,5 @@
-// Fingers that move beside a face: no set-point has to be replaced by one of a stop, and the arm's
-// path is not left for it.
+// Fingers that move beside a face: no set-point is replaced by one of a stop, and the arm stays on
+// its path.
 #include "components/trajectory_controller/supervise/finger_limit.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace handsel::trajectory_controller::finger_limit_test {
 namespace {
 
-/// Jido at rest, opposite somebody who stands `distance` from its hand [m].
+/// Jido at rest, opposite a person at `distance` from its hand [m].
 class FingersBesideSomebody {
  public:
   explicit FingersBesideSomebody(double distance)
@@ -34,7 +34,7 @@ class FingersBesideSomebody {
     people_.covered = true;
     people_.views = {test::live_view()};
     people_.people = {person};
-    Go first;  // moves nothing: the controller waits for a newer one
+    Go first;  // permits no motion: the controller requires a newer one
     first.state_revision = 1;
     core_.on(first, now_);
     go_.state_revision = 2;
@@ -152,8 +152,8 @@ TEST(FingerLimit, the_arm_leaves_its_path_for_no_finger) {
   }
 }
 
-// What people allow depends on the arm's acceleration: an arm that gathered speed at once after
-// somebody stopped it would be stopped again.
+// The allowed speed depends on the arm's acceleration: an arm that accelerates at once after a stop
+// by a person would be stopped again.
 TEST(FingerLimit, after_a_person_has_stopped_the_arm_the_path_gathers_speed_slowly) {
   for (const double distance : {0.55, 0.6, 0.65}) {
     FingersBesideSomebody b(distance);

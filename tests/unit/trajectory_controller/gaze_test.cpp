@@ -1,4 +1,4 @@
-// The head: where it looks, and that it keeps off the arm.
+// The head: its gaze target, and its clearance to the arm.
 #include "components/trajectory_controller/controller.hpp"
 
 #include <gtest/gtest.h>
@@ -40,8 +40,8 @@ TEST(Gaze, stays_inside_the_bounds_for_points_out_of_view) {
   EXPECT_GE(q[1], -0.7 - 1e-12);
 }
 
-/// The forearm has just passed in front of the camera: nodding on to who sits there would push the
-/// camera into it.
+/// The forearm has just passed in front of the camera: a further nod to a seated person would push
+/// the camera into the forearm.
 TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
   const RobotModel robot =
       RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");

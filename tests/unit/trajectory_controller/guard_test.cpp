@@ -47,7 +47,7 @@ class GuardTest : public testing::Test {
   static void walk(Person& p, const Vector3& velocity) {
     for (BodyJoint& j : p.joints) j.velocity = velocity;
   }
-  /// The arm stretched to the front-left swings toward +x: closing in on somebody in front.
+  /// Swings the arm, stretched to the front left, toward +x and a person in front.
   void swing(double speed) {
     q_[0] = 1.2;
     dq_[0] = -speed;
@@ -136,8 +136,8 @@ TEST_F(GuardTest, the_allowed_speed_grows_with_distance_and_obeys_the_rule) {
 }
 
 TEST_F(GuardTest, at_the_allowed_speed_the_robot_stops_before_it_meets_the_person) {
-  // Oracle: both walk on for the reaction time, then the axis stops in minimum time while the
-  // person walks on.
+  // Oracle: both continue for the reaction time, then the axis stops in minimum time while the
+  // person continues.
   swing(0.5);
   int limited = 0;
   for (double x = 1.0; x < 2.0; x += 0.05)
@@ -221,10 +221,10 @@ TEST_F(GuardTest, the_time_since_a_person_was_seen_counts_like_a_person_that_muc
   older.age = 0.2;
   const GuardVerdict now = judge(p), then = judge(older);
   EXPECT_LT(then.forward, now.forward);
-  Person nearer = p;  // where they would be by now
+  Person nearer = p;  // extrapolated to the present
   for (BodyJoint& j : nearer.joints) j.position.x() -= 0.8 * older.age;
   EXPECT_LE(then.forward, judge(nearer).forward + 0.02);
-  older.inflation = 0.16;  // the volumes hold it already
+  older.inflation = 0.16;  // the volumes contain the extrapolation
   EXPECT_NEAR(judge(older).forward, then.forward, 0.05) << "once, not twice";
 }
 
@@ -314,12 +314,12 @@ TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) 
 }
 
 TEST_F(GuardTest, a_wall_ahead_slows_until_the_stop_ends_before_it_and_one_behind_does_not) {
-  // Oracle: reaction time at speed, then the minimum-time stop of the axis; the tip must not have
-  // passed the wall.
+  // Oracle: reaction time at speed, then the minimum-time stop of the axis; the tip does not pass
+  // the wall.
   swing(0.5);
   int limited = 0;
   for (double x = 0.35; x < 0.9; x += 0.01) {
-    walls_ = {Wall{-Vector3::UnitX(), -x}};  // everything stays at smaller x
+    walls_ = {Wall{-Vector3::UnitX(), -x}};  // the robot stays at smaller x
     const GuardVerdict v = judge(HumanState{0, {}, true});
     EXPECT_EQ(v.wall, v.forward < 1.0 || v.backward > -1.0);
     EXPECT_FALSE(v.separation);

@@ -12,7 +12,7 @@ namespace handsel::trajectory_controller::hand_executor_test {
 namespace {
 
 constexpr double kDt = 0.001;
-constexpr double kStiffness = 40.0;  // [Nm/rad]
+constexpr double kStiffness = 40.0;  // stiffness of the fingers [Nm/rad]
 
 KinematicLimits limits(int n, double v, double a, double j) {
   return {Eigen::VectorXd::Constant(n, v), Eigen::VectorXd::Constant(n, a),
@@ -99,7 +99,7 @@ class HandTest : public testing::Test {
   MotionState3 out_;
   RobotState robot_;
   std::vector<double> block_;
-  std::array<double, 4> jammed_{1, 1, 1, 1};  // share of the effort that reaches the object
+  std::array<double, 4> jammed_{1, 1, 1, 1};  // fraction of the effort that reaches the object
   Vector3 force_{0, 0, -3.0};
   double firm_{};  // effort of a finger before the person pulled [Nm]
   double person_distance_{0.1};
@@ -340,7 +340,7 @@ TEST_F(HandTest, a_grasp_in_doubt_is_grasped_once_the_person_has_left_the_object
   person_distance_ = 10.0;
   run(0.5);
   EXPECT_EQ(hand_.state(), HandState::grasped);
-  block_ = {10, 10, 10, 10};  // the object is gone
+  block_ = {10, 10, 10, 10};  // the object is removed
   jammed_ = {0, 0, 0, 0};
   command(HandAction::grasp, 0.7);
   run(3.0);
@@ -454,7 +454,7 @@ TEST_F(HandTest, who_still_pulls_when_an_interrupted_hand_grips_again_is_felt) {
   run(2.5);
   ASSERT_EQ(hand_.state(), HandState::grasped);
   for (int offers = 0; offers < 2; ++offers) {
-    command(HandAction::grasp, 0.7);  // as after an offer that was not taken
+    command(HandAction::grasp, 0.7);  // as after a refused offer
     run(0.5);
   }
   command(HandAction::release_on_pull, 0.0);
@@ -540,7 +540,7 @@ TEST_F(HandTest, refuses_what_it_cannot_do) {
   EXPECT_NE(hand_.accept(c), "");
 }
 
-/// How the grip ends when somebody has hold of the load, 3 N, with 4 N from before the watch is
+/// Returns the final grip when a person pulls at the load of 3 N with 4 N from before the watch is
 /// armed until its end.
 Grip pulled_before_the_offer(bool load_felt_before) {
   ReleaseWatch watch{PullSettings{}};

@@ -97,8 +97,8 @@ TEST(ModeMachine, an_acknowledgement_must_be_newer_than_the_fault) {
   EXPECT_EQ(machine.update(in).mode, Mode::normal);
 }
 
-// Whatever happens: no way from Stop or Fault to Normal or Slow but through Hold, from Fault only
-// by a person, and never below what a present cause demands.
+// For any inputs: the only path from Stop or Fault to Normal or Slow is through Hold, from Fault
+// only by a person, and the mode is never less severe than a present cause requires.
 TEST(ModeMachine, a_million_random_inputs_keep_the_rules) {
   const std::uint64_t seed = 99;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));

@@ -1,4 +1,4 @@
-// A path that was left is rejoined near where it was left.
+// An interrupted path is rejoined near the point of interruption.
 #include "components/trajectory_controller/arm/path_runner.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace handsel::trajectory_controller::path_runner_test {
 namespace {
 
-constexpr double kPeriod = 0.001;  // [s]
+constexpr double kPeriod = 0.001;  // control period [s]
 
 MotionState3 rest_at(double a, double b) { return rest_state(Eigen::Vector2d(a, b)); }
 

@@ -1,4 +1,4 @@
-// How fast the speed factor rises after people have slowed the arm.
+// Rise of the speed factor after people have slowed the arm.
 #include "components/trajectory_controller/supervise/speed_rise.hpp"
 
 #include <gtest/gtest.h>
