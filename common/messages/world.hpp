@@ -79,6 +79,12 @@ struct HandPrediction {
   std::vector<HandAhead> ahead;  ///< in order of time
 };
 
+/// How a hand is turned.
+struct PalmDirection {
+  std::string joint;                 ///< REP-155 name of the hand: l_hand or r_hand
+  Vector3 normal{Vector3::UnitX()};  ///< out of the palm, world, unit vector
+};
+
 /// A person, tracked over all sources.
 struct Person {
   std::string id;                 ///< persistent
@@ -89,6 +95,7 @@ struct Person {
   double age{};                                                            ///< since last seen [s]
   double inflation{};                   ///< all body volumes grow by this: v_h * age while lost [m]
   std::vector<HandPrediction> hands{};  ///< the next half second; empty while lost
+  std::vector<PalmDirection> palms{};   ///< of the hands whose knuckles are observed
 };
 
 /// What one source of people observes: what makes "nobody is there" a fact. Axis-aligned box in

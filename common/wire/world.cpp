@@ -44,6 +44,11 @@ void describe(WireIo& io, HandPrediction& m, handsel_HandPrediction& w) {
   io.list("ahead", m.ahead, w.ahead, 16);
 }
 
+void describe(WireIo& io, PalmDirection& m, handsel_PalmDirection& w) {
+  io.text("joint", m.joint, w.joint, Text::name);
+  io.direction("normal", m.normal, w.normal, true);
+}
+
 void describe(WireIo& io, Person& m, handsel_Person& w) {
   io.text("id", m.id, w.id, Text::name);
   io.list("joints", m.joints, w.joints, 64);
@@ -54,6 +59,7 @@ void describe(WireIo& io, Person& m, handsel_Person& w) {
   io.number("age", m.age, w.age, kTime);
   io.number("inflation", m.inflation, w.inflation, {0, 1e4});
   io.list("hands", m.hands, w.hands, 2);
+  io.list("palms", m.palms, w.palms, 2);
 }
 
 void describe(WireIo& io, Fact& m, handsel_Fact& w) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/model/human/human_body.hpp"
+#include "common/model/human/palm.hpp"
 
 namespace handsel::ros2_lane {
 namespace {
@@ -16,7 +17,9 @@ Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 }  // namespace
 
 std::optional<BodyFrame> body_frame(const std::string& frame) {
-  for (const char* joint : kBodyJoints) {
+  std::vector<const char*> names(kBodyJoints.begin(), kBodyJoints.end());
+  for (const Knuckles& hand : kKnuckles) names.insert(names.end(), {hand.index, hand.pinky});
+  for (const char* joint : names) {
     const std::string begin = std::string(joint) + "_";
     if (frame.starts_with(begin) && frame.size() > begin.size())
       return BodyFrame{joint, frame.substr(begin.size())};

@@ -156,6 +156,10 @@ void PersonModel::step(double dt, const PersonView& view) {
   first_ = false;
   body_.gaze_direction = gaze_;
   body_.gaze_origin = points_[kHead] + 0.08 * gaze_;
+  body_.palms.clear();
+  if (hand_configuration_)
+    body_.palms.push_back({kBodyJoints[static_cast<std::size_t>(kHand[hand_index()])],
+                           hand_configuration_->R_world_hand * Vector3::UnitX()});
 }
 
 bool PersonModel::waits_for_robot(const PersonView& view) const {

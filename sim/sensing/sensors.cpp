@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/human/body_index.hpp"
+#include "common/model/human/palm.hpp"
+
 namespace handsel::sim {
 
 namespace {
@@ -148,7 +151,15 @@ template class SampleStream<HumanObservation>;
 template class SampleStream<ObjectObservation>;
 
 HumanSensor::HumanSensor(const SensorSettings& settings, std::uint64_t seed)
-    : settings_(settings), random_(seed), stream_(settings, seed) {}
+    : settings_(settings),
+      random_(seed),
+      knuckle_random_(seed ^ 0x6a09'e667ULL),
+      stream_(settings, seed) {}
+
+bool HumanSensor::is_tracked(const std::string& joint) const {
+  const auto& tracked = settings_.joints;
+  return tracked.empty() || std::find(tracked.begin(), tracked.end(), joint) != tracked.end();
+}
 
 bool HumanSensor::sees(const Sight& sight, std::size_t person, const Vector3& point) const {
   if (settings_.gaze != GazeOutput::only && !in_reach(settings_, point)) return false;
@@ -179,6 +190,28 @@ void HumanSensor::swap_ids(const Sight& sight) {
   shown_[other] = a;
 }
 
+void HumanSensor::add_knuckles(const Sight& sight, std::size_t person, const Vector3& shift,
+                               ObservedPerson& observed) {
+  constexpr double kHalfWidth = 0.03;  // of a hand at its knuckles [m]
+  const Person& truth = *sight.people[person];
+  for (const Side side : {Side::left, Side::right}) {
+    const auto normal = palm_of(truth, side);
+    if (!normal || truth.joints.size() != kBodyJoints.size()) continue;
+    const Knuckles& names = kKnuckles[side == Side::left ? 0 : 1];
+    const Vector3& p_hand = truth.joints[side == Side::left ? body::l_hand : body::r_hand].position;
+    const Vector3& p_wrist =
+        truth.joints[side == Side::left ? body::l_wrist : body::r_wrist].position;
+    const Vector3 across =
+        kHalfWidth * across_palm(side, (p_hand - p_wrist).stableNormalized(), *normal);
+    for (const auto& [name, p] : {std::pair(names.index, Vector3(p_hand + across)),
+                                  std::pair(names.pinky, Vector3(p_hand - across))}) {
+      const Vector3 error = noise(knuckle_random_, knuckle_normal_, settings_.noise);
+      if (is_tracked(name) && sees(sight, person, p))
+        observed.joints.push_back({name, p + shift + error, 0.9});
+    }
+  }
+}
+
 void HumanSensor::observe(double now, const Sight& sight) {
   const bool lost = stream_.lost(now);
   if (stream_.happens(settings_.swap_rate / settings_.rate)) swap_ids(sight);
@@ -201,14 +234,12 @@ void HumanSensor::observe(double now, const Sight& sight) {
     observed.body = shown_id(person.id);
     for (const BodyJoint& joint : person.joints) {
       if (settings_.gaze == GazeOutput::only || !sees(sight, p, joint.position)) continue;
-      const auto& tracked = settings_.joints;
-      if (!tracked.empty() &&
-          std::find(tracked.begin(), tracked.end(), joint.name) == tracked.end())
-        continue;
+      if (!is_tracked(joint.name)) continue;
       if (stream_.happens(settings_.joint_dropout)) continue;
       observed.joints.push_back(
           {joint.name, joint.position + shift + noise(random_, normal_, settings_.noise), 0.9});
     }
+    if (settings_.gaze != GazeOutput::only) add_knuckles(sight, p, shift, observed);
     observed.has_gaze = person.gaze_known && settings_.gaze != GazeOutput::none &&
                         !stream_.happens(settings_.gaze_dropout);
     if (observed.has_gaze && settings_.gaze == GazeOutput::only)

@@ -156,12 +156,15 @@ class HumanSensor {
 
  private:
   bool sees(const Sight&, std::size_t person, const Vector3& point) const;
+  bool is_tracked(const std::string& joint) const;
+  /// Adds the knuckles of the hands whose palm direction is known.
+  void add_knuckles(const Sight&, std::size_t person, const Vector3& shift, ObservedPerson&);
   void swap_ids(const Sight&);
   const std::string& shown_id(const std::string& id);
 
   SensorSettings settings_;
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_{0, 1};
+  std::mt19937_64 random_, knuckle_random_;
+  std::normal_distribution<double> normal_{0, 1}, knuckle_normal_{0, 1};
   SampleStream<HumanObservation> stream_;
   std::map<std::string, std::string> shown_;  // true id -> tracker's id, where these differ
   int renamed_{0};

@@ -132,6 +132,7 @@ TEST(BodyFrame, is_named_as_ros4hri_does) {
   EXPECT_EQ(body_frame("r_wrist_7f")->joint, "r_wrist");
   EXPECT_EQ(body_frame("r_wrist_7f")->body, "7f");
   EXPECT_EQ(body_frame("head_anna_2")->body, "anna_2");
+  EXPECT_EQ(body_frame("l_pinky_7")->joint, "l_pinky");
   for (const char* other : {"r_wrist", "r_y_shoulder_7f", "world", "camera_head", "head_"})
     EXPECT_FALSE(body_frame(other)) << other;
 }

@@ -4,6 +4,7 @@
 
 #include "common/model/human/hand_closure.hpp"
 #include "common/model/human/human_body.hpp"
+#include "common/model/human/palm.hpp"
 #include "common/model/object_surface.hpp"
 
 namespace handsel {
@@ -17,19 +18,25 @@ auto* joint(P& person, const char* name) {
   return it == person.joints.end() ? nullptr : &*it;
 }
 
-/// Returns the frame of a hand, as in HumanHand, with the palm toward the object; nullopt: the
-/// fingers point at the object.
-std::optional<Pose> hand_frame(const Vector3& p_wrist, const Vector3& p_hand,
-                               const ObjectModel& object) {
-  constexpr double kStep = 1e-4;      // of the finite differences [m]
-  constexpr double kMinAcross = 0.3;  // min sine of the angle between fingers and surface normal
-  const Vector3 fingers = (p_hand - p_wrist).stableNormalized();
+/// Returns the direction from a point to the surface of an object, unit vector.
+Vector3 direction_to(const ObjectModel& object, const Vector3& p) {
+  constexpr double kStep = 1e-4;  // of the finite differences [m]
   Vector3 toward;
   for (int i = 0; i < 3; ++i) {
     const Vector3 step = kStep * Vector3::Unit(i);
-    toward[i] = surface_distance(object, p_hand - step) - surface_distance(object, p_hand + step);
+    toward[i] = surface_distance(object, p - step) - surface_distance(object, p + step);
   }
-  toward = toward.stableNormalized();
+  return toward.stableNormalized();
+}
+
+/// Returns the frame of a hand, as in HumanHand, with an unobserved palm toward the object;
+/// nullopt: the fingers point at the object.
+std::optional<Pose> hand_frame(const HoldingHand& holding, const ObjectModel& object) {
+  constexpr double kMinAcross = 0.3;  // min sine of the angle between fingers and palm direction
+  const Vector3& p_hand = holding.p_hand;
+  const Vector3 fingers = (p_hand - holding.p_wrist).stableNormalized();
+  const Vector3 toward =
+      holding.palm ? holding.palm->stableNormalized() : direction_to(object, p_hand);
   const Vector3 palm = toward - toward.dot(fingers) * fingers;
   if (palm.norm() < kMinAcross) return std::nullopt;
   Pose T = Pose::Identity();
@@ -71,8 +78,10 @@ std::optional<HoldingHand> holding_hand(const Person& person, const ObjectModel&
   const bool is_left = surface_distance(object, p_left) < surface_distance(object, p_right);
   const auto* wrist = joint(person, is_left ? "l_wrist" : "r_wrist");
   if (wrist == nullptr) return std::nullopt;
-  return HoldingHand{is_left ? Side::left : Side::right, T_object_world * wrist->position,
-                     is_left ? p_left : p_right};
+  const Side side = is_left ? Side::left : Side::right;
+  HoldingHand holding{side, T_object_world * wrist->position, is_left ? p_left : p_right};
+  if (const auto palm = palm_of(person, side)) holding.palm = T_object_world.linear() * *palm;
+  return holding;
 }
 
 void move_hand(Person& person, const HoldingHand& to, const Pose& T_world_object) {
@@ -81,13 +90,17 @@ void move_hand(Person& person, const HoldingHand& to, const Pose& T_world_object
     wrist->position = T_world_object * to.p_wrist;
   if (BodyJoint* hand = joint(person, is_left ? "l_hand" : "r_hand"))
     hand->position = T_world_object * to.p_hand;
+  if (!to.palm) return;
+  for (PalmDirection& palm : person.palms)
+    if (palm.joint == (is_left ? "l_hand" : "r_hand"))
+      palm.normal = (T_world_object.linear() * *to.palm).stableNormalized();
 }
 
 std::vector<HandPart> assumed_digits(const Person& person, const ObjectModel& object,
                                      const Pose& T_world_object, double turn) {
   const auto holding = holding_hand(person, object, T_world_object);
   if (!holding) return {};
-  auto T_object_hand = hand_frame(holding->p_wrist, holding->p_hand, object);
+  auto T_object_hand = hand_frame(*holding, object);
   if (!T_object_hand) return {};
   T_object_hand->rotate(Eigen::AngleAxisd(turn, Vector3::UnitZ()));
   const HumanHand hand(holding->side, person.stature, (holding->p_hand - holding->p_wrist).norm());

@@ -21,20 +21,22 @@ Person with_fingers_bent(const Person&, const Vector3& p_world_object);
 struct HoldingHand {
   Side side{};                                                ///< of the person
   Vector3 p_wrist{Vector3::Zero()}, p_hand{Vector3::Zero()};  ///< object frame [m]
+  /// Direction in which the palm faces, object frame, not normalised; nullopt: not observed.
+  std::optional<Vector3> palm{};
 };
 
 /// Returns the hand of a person that is nearer to the surface of the object that the person holds;
 /// nullopt: a hand or its wrist is unknown.
 std::optional<HoldingHand> holding_hand(const Person&, const ObjectModel&,
                                         const Pose& T_world_object);
-/// Moves a hand and its wrist to other positions relative to an object; unknown joints stay
-/// unknown.
+/// Moves a hand and its wrist to other positions relative to an object and turns an observed palm;
+/// unknown joints and palms stay unknown.
 void move_hand(Person&, const HoldingHand&, const Pose& T_world_object);
 
 /// Returns the digits of the nearer hand of a person who holds an object, object frame. Fingers are
-/// not observed: they are assumed along the hand, the palm toward the nearest surface, the digits
-/// closed on the object. `turn`: of the hand about its fingers from that pose [rad]. Empty: wrist
-/// or hand are unknown, or the fingers point at the object. Own method.
+/// not observed: they are assumed along the hand, an unobserved palm toward the nearest surface,
+/// the digits closed on the object. `turn`: of the hand about its fingers from that pose [rad].
+/// Empty: wrist or hand are unknown, or the fingers point at the object. Own method.
 std::vector<HandPart> assumed_digits(const Person&, const ObjectModel&, const Pose& T_world_object,
                                      double turn = 0.0);
 

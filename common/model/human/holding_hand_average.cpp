@@ -18,6 +18,10 @@ constexpr int kSamplesAfterChange = 2;  // weight of such a mean, mixed with the
 void add_to(HoldingHand& average, const HoldingHand& seen, int samples) {
   average.p_wrist += (seen.p_wrist - average.p_wrist) / samples;
   average.p_hand += (seen.p_hand - average.p_hand) / samples;
+  if (average.palm && seen.palm)
+    *average.palm += (*seen.palm - *average.palm) / samples;
+  else
+    average.palm = seen.palm;
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kMotionStep = 0.04;          // [rad] between two checked states
-constexpr double kRetreatClearance = 0.005;   // [m] between an opened hand and the object
+constexpr double kMotionStep = 0.04;         // [rad] between two checked states
+constexpr double kRetreatClearance = 0.005;  // [m] between an opened hand and the object
 
 using FingerPoses = std::vector<std::vector<Pose>>;
 

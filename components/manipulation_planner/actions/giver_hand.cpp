@@ -100,7 +100,9 @@ Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
 
 Routine<std::optional<GraspIds>> clear_of_turned_hand(Parts& parts, const Offer& offer,
                                                       const std::vector<Grasp>& grasps) {
-  const double turn = parts.settings.digits_turn;
+  const Person* giver = parts.now.person(offer.giver);
+  const bool is_observed = giver != nullptr && !giver->palms.empty();
+  const double turn = is_observed ? 0 : parts.settings.digits_turn;
   std::vector<double> turns{0.0};
   if (turn > 0) turns = {-turn, -turn / 2, 0.0, turn / 2, turn};
   const HumanState around = people_with_digits(parts, offer, turns);

@@ -18,8 +18,8 @@ using GraspIds = std::set<std::uint64_t>;
 /// the giver's hand as observed now, or to its assumed digits. Failure: none is left.
 Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer, std::vector<Grasp>& grasps);
 /// Returns the ids of the grasps that keep the same clearance also where the giver's hand is turned
-/// about its fingers by up to `digits_turn` to either side: that turn is not observed. nullopt: the
-/// check did not end in time.
+/// about its fingers by up to `digits_turn` to either side, while the palm is not observed.
+/// nullopt: the check did not end in time.
 Routine<std::optional<GraspIds>> clear_of_turned_hand(Parts& parts, const Offer& offer,
                                                       const std::vector<Grasp>& grasps);
 

@@ -319,6 +319,7 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
     person.inflation = inflation(track, now);
     if (person.age <= settings_.lost_after)
       person.hands = hands_ahead(track, person, now, settings_);
+    person.palms = palms_of(track, now, settings_);
     out.people.push_back(std::move(person));
   }
   std::vector<Coverage> observed;

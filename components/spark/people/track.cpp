@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/cost/human_cost.hpp"
+#include "common/model/human/palm.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -93,6 +94,30 @@ void update_hands(Track& track, const std::array<bool, kJoints>& observed, TimeP
   }
 }
 
+/// Takes a sample of each palm whose two knuckles are observed.
+void update_palms(Track& track, const ObservedPerson& body, TimePoint seen, double min_confidence) {
+  const auto find = [&](const char* name) {
+    const auto it =
+        std::find_if(body.joints.begin(), body.joints.end(), [&](const ObservedJoint& joint) {
+          return joint.name == name && joint.position.allFinite() &&
+                 joint.confidence >= min_confidence;
+        });
+    return it == body.joints.end() ? nullptr : &it->position;
+  };
+  for (std::size_t side = 0; side < kHands.size(); ++side) {
+    const Vector3 *pinky = find(kKnuckles[side].pinky), *index_finger = find(kKnuckles[side].index);
+    if (pinky == nullptr || index_finger == nullptr) continue;
+    if (track.palm_seen[side] && *track.palm_seen[side] > seen) continue;
+    const Vector3 fingers =
+        joint_position(track.person, kHands[side]) - joint_position(track.person, kWrists[side]);
+    const auto normal =
+        palm_normal(side == 0 ? Side::left : Side::right, fingers, *index_finger - *pinky);
+    if (!normal) continue;
+    track.palms[side] = *normal;
+    track.palm_seen[side] = seen;
+  }
+}
+
 }  // namespace
 
 double distance(const Track& track, const ObservedPerson& body) {
@@ -170,10 +195,20 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
     inflate(jump, settings.doubt_time);
   person.joints = std::move(fitted);
   update_hands(track, observed, at, settings.joint_noise);
+  update_palms(track, body, seen, settings.min_confidence);
   track.seen = at;
   track.empty_since.reset();
   track.left_by.clear();
   track.adopted = false;
+}
+
+std::vector<PalmDirection> palms_of(const Track& track, TimePoint now,
+                                    const settings::SparkSettings& settings) {
+  std::vector<PalmDirection> out;
+  for (std::size_t side = 0; side < kHands.size(); ++side)
+    if (track.palm_seen[side] && to_seconds(now - *track.palm_seen[side]) <= settings.palm_memory)
+      out.push_back({kKnuckles[side].hand, track.palms[side]});
+  return out;
 }
 
 std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now,

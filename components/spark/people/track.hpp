@@ -30,6 +30,8 @@ struct Track {
   BodySize size;                                      ///< stature from the observed joints
   std::array<HandPredictor, 2> hands;                 ///< left, right
   std::array<std::optional<TimePoint>, 2> hand_seen;  ///< last sample of each predictor
+  std::array<Vector3, 2> palms;                       ///< normals of the palms, world: left, right
+  std::array<std::optional<TimePoint>, 2> palm_seen;  ///< capture of the last knuckles of each
   double extra_inflation{};                           ///< inflation until `extra_until` [m]
   TimePoint extra_until{};                            ///< end of `extra_inflation`
   /// Since when sources observe the volume of a lost person empty.
@@ -58,5 +60,9 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
 /// enlarges the volumes.
 std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now,
                                         const settings::SparkSettings& settings);
+
+/// Returns the palms whose knuckles were observed within `palm_memory`.
+std::vector<PalmDirection> palms_of(const Track& track, TimePoint now,
+                                    const settings::SparkSettings& settings);
 
 }  // namespace handsel::spark

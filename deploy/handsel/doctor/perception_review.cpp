@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/model/human/human_body.hpp"
+#include "common/model/human/palm.hpp"
 #include "common/topics/topics.hpp"
 #include "components/spark/sources.hpp"
 #include "sim/people/recording.hpp"
@@ -222,7 +223,7 @@ void PerceptionReview::add_person(Bodies& bodies, const ObservedPerson& person) 
   bodies.ids.insert(person.body);
   for (const ObservedJoint& joint : person.joints) {
     ++bodies.joints;
-    if (body_joint_index(joint.name) < 0)
+    if (body_joint_index(joint.name) < 0 && !is_knuckle(joint.name))
       bodies.unknown_joints.insert(joint.name);
     else
       ++bodies.known_joints;

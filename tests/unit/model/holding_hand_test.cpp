@@ -108,6 +108,30 @@ TEST_F(HoldingHandTest, an_object_in_nobodys_hand_changes_nobody) {
             at(last_.people[0], "r_hand"));
 }
 
+TEST_F(HoldingHandTest, an_observed_palm_is_averaged_on_an_object_that_turns) {
+  std::normal_distribution<double> noise(0, 0.2);
+  Vector3 palm = Vector3(0.2, -1, 0.1).normalized();  // of the object
+  const auto add_samples = [&](int samples) {
+    for (int i = 0; i < samples; ++i) {
+      const Vector3 seen =
+          (palm + Vector3(noise(random_), noise(random_), noise(random_))).normalized();
+      people_.people[0].palms = {{"r_hand", scene_.objects[0].T_world_object.linear() * seen}};
+      add(1);
+    }
+  };
+  add_samples(40);
+  scene_.objects[0].T_world_object.rotate(Eigen::AngleAxisd(0.8, Vector3::UnitZ()));
+  hold({0.0, 0.06, -0.04}, {0.09, 0.07, -0.05});
+  add_samples(1);
+  const HumanState averaged = average_.averaged(scene_, last_);
+  ASSERT_EQ(averaged.people[0].palms.size(), 1u);
+  const Vector3 expected = scene_.objects[0].T_world_object.linear() * palm;
+  EXPECT_LT(std::acos(averaged.people[0].palms[0].normal.dot(expected)), 0.1);
+  people_.people[0].palms.clear();
+  add(1);
+  EXPECT_TRUE(average_.averaged(scene_, last_).people[0].palms.empty());
+}
+
 TEST_F(HoldingHandTest, the_nearer_hand_holds) {
   const Pose& T = scene_.objects[0].T_world_object;
   const auto right = holding_hand(people_.people[0], box_, T);

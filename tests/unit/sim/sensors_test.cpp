@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "common/model/human/body_index.hpp"
+#include "common/model/human/palm.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 
 namespace handsel::sim::sensors_test {
@@ -73,6 +75,29 @@ TEST(Sensors, rate_from15_to120_hz_is_that_of_the_stream) {
     const Stream stream = watch(s, {person_at("anna", 1.4, 0)}, 10);
     EXPECT_NEAR(static_cast<double>(stream.size()), 10 * rate, 1.01) << rate;
   }
+}
+
+TEST(Sensors, knuckles_are_observed_of_a_hand_whose_turn_is_known) {
+  Person anna = person_at("anna", 1.4, 0);
+  EXPECT_FALSE(shows(watch(plain(), {anna}, 0.1).at(0).message, "r_index"));
+  const Vector3 fingers =
+      (anna.joints[body::r_hand].position - anna.joints[body::r_wrist].position).normalized();
+  const Vector3 normal = fingers.unitOrthogonal();
+  anna.palms.push_back({"r_hand", normal});
+  const Stream stream = watch(plain(), {anna}, 0.1);
+  const auto at = [&](const char* name) -> Vector3 {
+    for (const ObservedJoint& joint : stream.at(0).message.people.at(0).joints)
+      if (joint.name == name) return joint.position;
+    ADD_FAILURE() << name;
+    return Vector3::Zero();
+  };
+  const auto observed = palm_normal(Side::right, fingers, at("r_index") - at("r_pinky"));
+  ASSERT_TRUE(observed.has_value());
+  EXPECT_GT(observed->dot(normal), 0.999);
+  EXPECT_FALSE(shows(stream.at(0).message, "l_index"));
+  SensorSettings body_only = plain();
+  body_only.joints = {"r_wrist", "r_hand"};
+  EXPECT_FALSE(shows(watch(body_only, {anna}, 0.1).at(0).message, "r_index"));
 }
 
 TEST(Sensors, latency_and_jitter_are_those_of_the_stream_and_order_is_kept) {

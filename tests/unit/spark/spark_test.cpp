@@ -256,6 +256,38 @@ TEST(PeopleTracker, gaze_may_come_from_another_source_and_go_missing_for_a_momen
   EXPECT_FALSE(tracker.state(at(1.2), kReach).people[0].gaze_known);
 }
 
+TEST(PeopleTracker, knuckles_tell_how_a_hand_is_turned_until_they_are_unobserved) {
+  PeopleTracker tracker(settings());
+  ObservedPerson body = body_at("anna", 1.5, 0);
+  const auto joint = [&](const char* name) -> Vector3& {
+    return std::find_if(body.joints.begin(), body.joints.end(),
+                        [&](const ObservedJoint& j) { return j.name == name; })
+        ->position;
+  };
+  // Fingers forward, palms toward each other: the thumbs, beside the index fingers, are above.
+  const Vector3 forward(-1, 0, 0), left(0, -1, 0);
+  for (const char* side : {"l", "r"}) {
+    const std::string name = side;
+    const Vector3 p_hand = joint((name + "_hand").c_str());
+    joint((name + "_wrist").c_str()) = p_hand - 0.08 * forward;
+    body.joints.push_back({name + "_index", p_hand + Vector3(0, 0, 0.03), 0.9});
+    body.joints.push_back({name + "_pinky", p_hand - Vector3(0, 0, 0.03), 0.9});
+  }
+  look(tracker, {body}, 0, 0.3);
+  Person anna = tracker.state(at(0.3), kReach).people.at(0);
+  ASSERT_EQ(anna.palms.size(), 2u);
+  EXPECT_EQ(anna.palms[0].joint, "l_hand");
+  EXPECT_GT(anna.palms[0].normal.dot(-left), 0.95) << anna.palms[0].normal.transpose();
+  EXPECT_EQ(anna.palms[1].joint, "r_hand");
+  EXPECT_GT(anna.palms[1].normal.dot(left), 0.95) << anna.palms[1].normal.transpose();
+  EXPECT_EQ(anna.joints.size(), kBodyJoints.size());
+  std::erase_if(body.joints, [](const ObservedJoint& j) { return j.name == "l_pinky"; });
+  look(tracker, {body}, 0.33, 0.9);
+  anna = tracker.state(at(0.9), kReach).people.at(0);
+  ASSERT_EQ(anna.palms.size(), 1u);
+  EXPECT_EQ(anna.palms[0].joint, "r_hand");
+}
+
 TEST(PeopleTracker, eyes_without_a_body_are_somebody) {
   PeopleTracker tracker(settings());
   ObservedPerson eyes;
