@@ -24,12 +24,14 @@ Node::Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSett
     : bus_(bus),
       timing_{file.check_time, file.max_time, from_seconds(file.max_scene_age)},
       reply_out_(bus.advertise<PathReply>()),
+      digits_(context.objects, static_cast<int>(file.holding_samples), file.digit_clearance),
       solver_(context.robot, mobile_of(*context.robot, context.description), context.objects,
               load_cost_settings(context.settings), solver_settings(file)) {
   bus.subscribe<Scene>(
       [this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) {
     people_ = std::make_shared<HumanState>(people);
+    if (scene_) digits_.add(*scene_, people);
   });
   bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
     layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
@@ -79,7 +81,6 @@ void Node::on_request(const PathRequest& request) {
   start(whole);
 }
 
-/// Answers a cancelled request at once; its planning ends with the next check.
 void Node::cancel(const RequestId& id) {
   stop_running(id.client, id.number);
   for (const RequestId& open : requests_.cancel(id)) refuse(open, kCancelled);
@@ -96,6 +97,7 @@ std::string Node::not_ready() const {
 void Node::start(const PathRequest& request) {
   const auto task = std::make_shared<PlanningTask>(solver_.make_task(request, scene_));
   task->people = people_;
+  task->digits = digits_.obstacles(*scene_, *people_, request.allowed_contacts);
   task->layers = layers_.at(bus_.now());
   task->cost_gain = cost_gain_.at(bus_.now()).value_or(1.0);
   const double time = std::clamp(request.time_limit, 0.0, timing_.max_time);
@@ -129,7 +131,6 @@ void Node::answer(const PlanningTask& task) {
   reply_out_->publish(reply);
 }
 
-/// Cancels planning for the requests of a client up to this number; it ends with the next check.
 void Node::stop_running(std::uint64_t client, std::uint64_t last) {
   const auto of_client = running_.find(client);
   if (of_client == running_.end()) return;
@@ -142,7 +143,6 @@ void Node::refuse(const RequestId& id, const std::string& reason) {
   reply_out_->publish(*requests_.answer(id));
 }
 
-/// Refuses a request without storing the answer, so that the same request can be repeated.
 void Node::refuse_once(const RequestId& id, const std::string& reason) {
   reply_out_->publish(refusal(id, reason));
 }

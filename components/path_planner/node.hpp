@@ -14,6 +14,7 @@
 #include "common/cost/cost_layers.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
+#include "components/path_planner/held_digits.hpp"
 #include "components/path_planner/solver.hpp"
 
 namespace handsel::settings {
@@ -36,11 +37,14 @@ class Node {
     Duration max_scene_age{};
   };
   void on_request(const PathRequest& request);
+  /// Answers a cancelled request at once; its planning ends with the next check.
   void cancel(const RequestId& id);
   void start(const PathRequest& request);
   void answer(const PlanningTask& task);
+  /// Cancels planning for the requests of a client up to this number, as cancel() does.
   void stop_running(std::uint64_t client, std::uint64_t last);
   void refuse(const RequestId& id, const std::string& reason);
+  /// Refuses a request without storing the answer, so that the same request can be repeated.
   void refuse_once(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
 
@@ -50,6 +54,7 @@ class Node {
   std::unique_ptr<Publisher<PathReply>> reply_out_;
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
+  HeldDigits digits_;
   CostLayers layers_;
   AdvisedValue<double> cost_gain_;
   RequestQueue<PathReply> requests_{OlderRequests::supersede};

@@ -108,14 +108,28 @@ Solver::Selected Solver::select(const PathRequest& request) {
   return {{*on_platform_, mobile_->world, mobile_->cost}, &mobile_->navigation};
 }
 
+/// Sets people with the digits of those who hold objects. A straight motion was checked by its
+/// client, and a hand that touches digits at the start has to leave them: both plan without.
+static void set_people(CollisionWorld& world, const PlanningTask& task) {
+  if (!task.digits.empty() && !task.request.straight) {
+    HumanState with_digits = *task.people;
+    with_digits.robots.insert(with_digits.robots.end(), task.digits.begin(), task.digits.end());
+    world.set_people(with_digits);
+    const CollisionVerdict at_start = world.check_people(task.problem.start);
+    const auto is_touched = [&](const OtherRobot& digits) { return digits.name == at_start.id; };
+    if (at_start.free || std::none_of(task.digits.begin(), task.digits.end(), is_touched)) return;
+  }
+  world.set_people(*task.people);
+}
+
 void Solver::set_world(const Selected& selected, PlanningTask& task) {
   CollisionWorld& world = selected.models.world;
   Scene scene = *task.scene;
   scene.T_world_base = task.T_world_root;
   world.set_scene(scene);
   world.set_turning_margin(0);
-  world.set_people(*task.people);
   world.set_attachment(task.request.attachment, task.request.allowed_contacts);
+  set_people(world, task);
   if (!task.request.running.empty()) {
     world.set_moving_axes(task.problem.axes);
     const std::vector<Vector> ends = ends_of(task.problem, task.request.running.back());

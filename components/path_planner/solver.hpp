@@ -33,6 +33,7 @@ struct PlanningTask {
   Pose T_world_root{Pose::Identity()};       ///< Root of the planned robot in the world.
   std::shared_ptr<const Scene> scene;        ///< Never null.
   std::shared_ptr<const HumanState> people;  ///< Never null.
+  std::vector<OtherRobot> digits;            ///< Digits of people who hold objects, world.
   LayersNow layers;                          ///< Cost layers.
   double cost_gain{1.0};                     ///< Factor of the human-aware cost, by attention.
   ReplanOutcome outcome{};                   ///< Result of online replanning.

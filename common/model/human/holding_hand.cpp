@@ -117,4 +117,21 @@ std::vector<HandPart> assumed_digits(const Person& person, const ObjectModel& ob
   return digits;
 }
 
+OtherRobot digits_as_obstacles(const Person& person, const ObjectModel& object,
+                               const Pose& T_world_object, double margin,
+                               const std::vector<double>& turns) {
+  OtherRobot out{"digits of " + person.id, {}, 0};
+  for (const double turn : turns) {
+    for (const HandPart& part : assumed_digits(person, object, T_world_object, turn)) {
+      const HandPart placed = transformed(T_world_object, part);
+      MovingPart digit;
+      digit.a = placed.a;
+      digit.b = placed.b;
+      digit.radius = placed.radius + margin;
+      out.parts.push_back(digit);
+    }
+  }
+  return out;
+}
+
 }  // namespace handsel

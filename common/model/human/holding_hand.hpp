@@ -39,5 +39,9 @@ void move_hand(Person&, const HoldingHand&, const Pose& T_world_object);
 /// Empty: wrist or hand are unknown, or the fingers point at the object. Own method.
 std::vector<HandPart> assumed_digits(const Person&, const ObjectModel&, const Pose& T_world_object,
                                      double turn = 0.0);
+/// Returns these digits as obstacles without a body around them, world, for each of `turns`, their
+/// radii larger by `margin` [m].
+OtherRobot digits_as_obstacles(const Person&, const ObjectModel&, const Pose& T_world_object,
+                               double margin, const std::vector<double>& turns);
 
 }  // namespace handsel

@@ -20,22 +20,12 @@ HumanState people_with_digits(const Parts& parts, const Offer& offer,
   for (Person& person : around.people) {
     if (person.id != offer.giver) continue;
     const double margin = person.inflation + parts.settings.giver_hand_clearance;
-    OtherRobot digits{"digits of " + person.id, {}, 0};  // obstacles without a body around them
     if (held != nullptr && model != nullptr) {
-      for (const double turn : turns) {
-        for (const HandPart& part : assumed_digits(person, *model, held->T_world_object, turn)) {
-          const HandPart placed = transformed(held->T_world_object, part);
-          MovingPart digit;
-          digit.a = placed.a;
-          digit.b = placed.b;
-          digit.radius = placed.radius + margin;
-          digits.parts.push_back(digit);
-        }
-      }
+      around.robots.push_back(
+          digits_as_obstacles(person, *model, held->T_world_object, margin, turns));
       person = with_fingers_bent(person, held->T_world_object.translation());
     }
     person.inflation = margin;
-    around.robots.push_back(std::move(digits));
   }
   return around;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "common/messages/system.hpp"
 #include "components/collision_checker/node.hpp"
 #include "components/costmap/node.hpp"
+#include "components/path_planner/held_digits.hpp"
 #include "components/path_planner/node.hpp"
 #include "tests/support/cost_layer.hpp"
 #include "tests/support/planar_arm.hpp"
@@ -35,7 +37,9 @@ class Nodes : public ::testing::Test {
   Nodes() : network_(5) {
     setenv("HANDSEL_HOME", (std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy").c_str(), 1);
     context_.robot = std::make_shared<const RobotModel>(test::planar_arm());
-    context_.objects = [](const std::string&) -> const ObjectModel* { return nullptr; };
+    context_.objects = [this](const std::string& model) -> const ObjectModel* {
+      return model == "box" ? box_ : nullptr;
+    };
     context_.settings = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
     scene_.robot_known = true;
     scene_.robot_position = Vector::Zero(3);
@@ -58,6 +62,7 @@ class Nodes : public ::testing::Test {
 
   LocalNetwork network_;
   NodeContext context_;
+  const ObjectModel* box_{};  ///< the model "box"; null: unknown
   Scene scene_;
   HumanState people_;
   bool perceiving_{true};
@@ -106,6 +111,67 @@ TEST_F(PathNode, plans_once_and_repeats_the_same_answer) {
   ASSERT_TRUE(wait(2));
   EXPECT_EQ(heard_.messages[1].path, first.path);
   EXPECT_EQ(heard_.messages[1].checks, first.checks);
+}
+
+/// A person who holds a box before the arm.
+class PathNodeBesideHand : public PathNode {
+ protected:
+  PathNodeBesideHand() {
+    model_.parts.push_back({Box{{0.06, 0.06, 0.05}}, Pose::Identity()});
+    box_ = &model_;
+    scene_.boxes.clear();
+    scene_.objects.push_back({"thing", "box", make_pose({0.7, 0, 0}), Holder::human, "anna", 0});
+    put_person({1.4, 0, -1.2});
+    Person& anna = people_.people.front();
+    anna.joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position = {0.76, 0, 0};
+    anna.joints[static_cast<std::size_t>(body_joint_index("r_wrist"))].position = {0.8, 0, -0.07};
+    anna.palms.push_back({"r_hand", -Vector3::UnitX()});
+  }
+
+  /// Returns a configuration in which the arm touches the digits but not the rest of the person.
+  Vector touching_digits() {
+    path_planner::HeldDigits digits(context_.objects, 1, 0.0);
+    digits.add(scene_, people_);
+    HumanState with_digits = people_;
+    with_digits.robots = digits.obstacles(scene_, people_, {});
+    CollisionWorld body(*context_.robot, context_.objects), all(*context_.robot, context_.objects);
+    body.set_people(people_);
+    all.set_people(with_digits);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> angle(-1.2, 1.2);
+    for (int i = 0; i < 100000; ++i) {
+      const Vector q = Vector3(angle(random), angle(random), angle(random));
+      if (body.check_people(q).free && !all.check_people(q).free) return q;
+    }
+    ADD_FAILURE() << "the arm cannot touch a digit alone";
+    return Vector::Zero(3);
+  }
+
+  ObjectModel model_;
+};
+
+TEST_F(PathNodeBesideHand, paths_stay_clear_of_the_digits_of_a_hand_that_holds_an_object) {
+  network_.run_for(milliseconds(200));
+  PathRequest into = request(1);
+  into.start = Vector3(-1.5, 0, 0);
+  into.goals = {touching_digits()};
+    request_out_->publish(into);
+  ASSERT_TRUE(wait(1));
+  EXPECT_THAT(heard_.messages.back().reason, HasSubstr("digits of anna"));
+
+  into.id.number = 2;
+  into.allowed_contacts = {"thing", "anna"};  // the handover is engaged
+  request_out_->publish(into);
+  ASSERT_TRUE(wait(2));
+  EXPECT_TRUE(heard_.messages.back().solved) << heard_.messages.back().reason;
+
+  PathRequest out = into;
+  out.id.number = 3;
+  out.allowed_contacts = {"thing"};
+  std::swap(out.start, out.goals.front());  // a hand that touches digits leaves them
+  request_out_->publish(out);
+  ASSERT_TRUE(wait(3));
+  EXPECT_TRUE(heard_.messages.back().solved) << heard_.messages.back().reason;
 }
 
 TEST_F(PathNode, says_why_not) {
