@@ -59,7 +59,7 @@ const std::string kStamp = "seen.stamp = things.stamp = dds_time();",
 std::vector<Variant> issue_variants() {
   return {
       {"topic", own_writer("handsel/human_observations", ""), "topic",
-       "writes the topic handsel/human_observations, which nobody reads"},
+       "writes the topic handsel/human_observations, which no process reads"},
       {"qos", own_writer("handsel/human_observation", "dds_qset_deadline(qos, DDS_INFINITY);"),
        "QoS", "its DEADLINE is none, asked for is 0.2 s"},
       {"rate", {{"next += period", "next += 12 * period"}}, "rate", "times a second"},

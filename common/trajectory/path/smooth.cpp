@@ -129,8 +129,8 @@ bool is_factor(double x) { return x > 0 && x <= 1; }
 
 std::string why_bad_speeds(const std::vector<LimitZones>& speeds, std::size_t nodes) {
   if (!speeds.empty() && speeds.size() + 1 != nodes)
-    return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " +
-           std::to_string(nodes - 1);
+    return "there are speeds of " + std::to_string(speeds.size()) +
+           " path segments, the nodes make " + std::to_string(nodes - 1);
   for (const LimitZones& path_segment : speeds)
     for (const LimitZone& zone : path_segment)
       if (!is_factor(zone.scale.velocity) || !is_factor(zone.scale.acceleration) ||

@@ -114,7 +114,7 @@ std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& ne
     }
     if (settings.first < 0)
       return "it comes no nearer than " + std::to_string(nearest) +
-             " rad to where the motion before it is left";
+             " rad to the switch point of the running motion";
   }
   if (const SwitchOutcome outcome = go(SegmentTable(next), settings); outcome != SwitchOutcome::ok)
     return reason(outcome);

@@ -31,7 +31,7 @@ Finding check_size() {
       std::to_string(cores) + " cores, " + std::to_string(mb) + " MB of memory";
   if (cores >= 2 && mb >= 2000) return {"machine", Verdict::good, text, ""};
   return {"machine", Verdict::note, text,
-          "use a machine with two cores and 2 GB or more, the least that was tried"};
+          "use a machine with two cores and 2 GB or more, the smallest machine that was tried"};
 }
 
 /// Tries in a separate process what a real-time process does at its start.

@@ -134,10 +134,10 @@ void check_writers_of(const DomainView& view, const TopicRow& row, int received,
   for (const DomainEndpoint& endpoint : view.endpoints) {
     if (!endpoint.writes) continue;
     if (meant(endpoint, row)) {
-      out.push_back(bad(
-          "topic",
-          writer_text(endpoint) + " writes the topic " + endpoint.topic + ", which nobody reads",
-          std::string("the topic is ") + row.topic + ", its type " + type));
+      out.push_back(bad("topic",
+                        writer_text(endpoint) + " writes the topic " + endpoint.topic +
+                            ", which no process reads",
+                        std::string("the topic is ") + row.topic + ", its type " + type));
     }
     if (endpoint.topic != row.topic) continue;
     if (endpoint.type != type) {
@@ -149,7 +149,8 @@ void check_writers_of(const DomainView& view, const TopicRow& row, int received,
     }
     for (const std::string& policy : endpoint.unmatched)
       out.push_back(bad(
-          "QoS", "nobody hears " + writer_text(endpoint) + " on " + row.topic + ": its " + policy,
+          "QoS",
+          "no process receives " + writer_text(endpoint) + " on " + row.topic + ": its " + policy,
           "profile sensor: best effort, volatile, keep last 1, deadline 0.2 s, no partition"));
     if (endpoint.unmatched.empty()) right.push_back(&endpoint);
   }
@@ -256,9 +257,9 @@ std::vector<Finding> look(const DoctorOptions& options) {
   for (Finding& finding : review.findings()) out.push_back(std::move(finding));
   if (!reader)
     out.push_back({"readers", Verdict::note,
-                   "nobody reads people or objects here yet: no system runs on domain " +
+                   "no process reads people or objects yet: no system runs on domain " +
                        std::to_string(options.domain),
-                   "start one with `handsel up`; what is published was checked all the same"});
+                   "start one with `handsel up`; the published samples were checked nevertheless"});
   return out;
 }
 

@@ -157,7 +157,7 @@ TEST_F(PathNodeBesideHand, paths_stay_clear_of_the_digits_of_a_hand_that_holds_a
   PathRequest into = request(1);
   into.start = Vector3(-1.5, 0, 0);
   into.goals = {touching_digits()};
-    request_out_->publish(into);
+  request_out_->publish(into);
   ASSERT_TRUE(wait(1));
   EXPECT_THAT(heard_.messages.back().reason, HasSubstr("digits of anna"));
 
