@@ -7,7 +7,6 @@
 #include "components/manipulation_planner/handover/time_to_handover.hpp"
 
 namespace handsel::manipulation_planner {
-namespace {}  // namespace
 
 ManipulationPlanner::ManipulationPlanner(const settings::ManipulationPlannerSettings& settings,
                                          std::shared_ptr<const RobotModel> robot,

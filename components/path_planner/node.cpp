@@ -97,7 +97,8 @@ std::string Node::not_ready() const {
 void Node::start(const PathRequest& request) {
   const auto task = std::make_shared<PlanningTask>(solver_.make_task(request, scene_));
   task->people = people_;
-  task->digits = digits_.obstacles(*scene_, *people_, request.allowed_contacts);
+  if (!request.straight)  // reaches for an object or retreats from it, beside the hand
+    task->digits = digits_.obstacles(*scene_, *people_, request.allowed_contacts);
   task->layers = layers_.at(bus_.now());
   task->cost_gain = cost_gain_.at(bus_.now()).value_or(1.0);
   const double time = std::clamp(request.time_limit, 0.0, timing_.max_time);
@@ -113,9 +114,8 @@ void Node::start(const PathRequest& request) {
 
 void Node::answer(const PlanningTask& task) {
   const RequestId id = task.request.id;
-  auto& of_client = running_[id.client];
-  of_client.erase(id.number);
-  if (of_client.empty()) running_.erase(id.client);
+  if (auto& of_client = running_[id.client]; of_client.erase(id.number) > 0 && of_client.empty())
+    running_.erase(id.client);
   if (requests_.answer(id) != nullptr) return;  // cancelled
   PathReply reply = reply_of(id, task.result);
   if (!reply.solved && task.result.cancelled && requests_.superseded(id))

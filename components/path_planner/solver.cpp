@@ -108,18 +108,19 @@ Solver::Selected Solver::select(const PathRequest& request) {
   return {{*on_platform_, mobile_->world, mobile_->cost}, &mobile_->navigation};
 }
 
-/// Sets people with the digits of those who hold objects. A straight motion was checked by its
-/// client, and a hand that touches digits at the start has to leave them: both plan without.
+/// Sets people with the digits of those who hold objects. A hand that touches a person's digits at
+/// the start has to leave them: they do not count.
 static void set_people(CollisionWorld& world, const PlanningTask& task) {
-  if (!task.digits.empty() && !task.request.straight) {
+  std::vector<OtherRobot> digits = task.digits;
+  for (;;) {
     HumanState with_digits = *task.people;
-    with_digits.robots.insert(with_digits.robots.end(), task.digits.begin(), task.digits.end());
+    with_digits.robots.insert(with_digits.robots.end(), digits.begin(), digits.end());
     world.set_people(with_digits);
+    if (digits.empty()) return;
     const CollisionVerdict at_start = world.check_people(task.problem.start);
-    const auto is_touched = [&](const OtherRobot& digits) { return digits.name == at_start.id; };
-    if (at_start.free || std::none_of(task.digits.begin(), task.digits.end(), is_touched)) return;
+    const auto is_touched = [&](const OtherRobot& of) { return of.name == at_start.id; };
+    if (at_start.free || std::erase_if(digits, is_touched) == 0) return;
   }
-  world.set_people(*task.people);
 }
 
 void Solver::set_world(const Selected& selected, PlanningTask& task) {

@@ -14,12 +14,18 @@ constexpr double kListAge = 2.0;         // max age of a list of tracked bodies 
 
 Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 
+/// Returns the names of the joints of a body and of its knuckles.
+std::vector<const char*> frame_names() {
+  std::vector<const char*> names(kBodyJoints.begin(), kBodyJoints.end());
+  for (const Knuckles& hand : kKnuckles) names.insert(names.end(), {hand.index, hand.pinky});
+  return names;
+}
+
 }  // namespace
 
 std::optional<BodyFrame> body_frame(const std::string& frame) {
-  std::vector<const char*> names(kBodyJoints.begin(), kBodyJoints.end());
-  for (const Knuckles& hand : kKnuckles) names.insert(names.end(), {hand.index, hand.pinky});
-  for (const char* joint : names) {
+  static const std::vector<const char*> kNames = frame_names();
+  for (const char* joint : kNames) {
     const std::string begin = std::string(joint) + "_";
     if (frame.starts_with(begin) && frame.size() > begin.size())
       return BodyFrame{joint, frame.substr(begin.size())};
@@ -63,7 +69,9 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
       body = bodies_.erase(body);
       continue;
     }
-    if (joints.size() >= kMinJoints && (!listed || tracked_->contains(id)))
+    const auto knuckles = std::count_if(joints.begin(), joints.end(), is_knuckle);
+    if (joints.size() >= kMinJoints + static_cast<std::size_t>(knuckles) &&
+        (!listed || tracked_->contains(id)))
       out.people.push_back(std::move(person));
     ++body;
   }

@@ -16,9 +16,9 @@ namespace handsel::ros2_lane {
 /// "r_wrist_7f" -> {"r_wrist", "7f"}: a joint of a body as ROS4HRI names its frames. `torso` of
 /// ROS4HRI is between the shoulders: it is reported as `neck` here.
 struct BodyFrame {
-  std::string joint, body;  ///< one of kBodyJoints; id of the body
+  std::string joint, body;  ///< of a body or a knuckle; id of the body
 };
-/// Splits the name of a frame; nullopt when it does not begin with a joint of kBodyJoints and "_",
+/// Splits the name of a frame; nullopt when it does not begin with such a joint and "_",
 /// or has no body.
 std::optional<BodyFrame> body_frame(const std::string& frame);
 

@@ -206,7 +206,7 @@ void HumanSensor::add_knuckles(const Sight& sight, std::size_t person, const Vec
     for (const auto& [name, p] : {std::pair(names.index, Vector3(p_hand + across)),
                                   std::pair(names.pinky, Vector3(p_hand - across))}) {
       const Vector3 error = noise(knuckle_random_, knuckle_normal_, settings_.noise);
-      if (is_tracked(name) && sees(sight, person, p))
+      if (is_tracked(name) && sees(sight, person, p) && !stream_.happens(settings_.joint_dropout))
         observed.joints.push_back({name, p + shift + error, 0.9});
     }
   }

@@ -180,13 +180,16 @@ TEST_F(Lane, turns_frames_of_a_body_into_an_observation) {
                   frame("torso_7", "head_7", Vector3(0, 0, 0.25 + 0.001 * i), now),
                   frame("head_7", "l_eye_7", Vector3(0, 0, 0), now),
                   frame("world", "mast", Vector3(2, 0.5, 0), now),
-                  frame("world", "head_tilt", Vector3(0, 0, 1.5), now)}});
+                  frame("world", "head_tilt", Vector3(0, 0, 1.5), now),
+                  frame("world", "l_hand_tip", Vector3(0, 0, 1.5), now),
+                  frame("world", "l_index_tip", Vector3(0, 0, 1.5), now),
+                  frame("world", "l_pinky_tip", Vector3(0, 0, 1.5), now)}});
     run(0.034);
   }
   ASSERT_GE(seen.size(), 8u);
   const HumanObservation& last = seen.back();
   EXPECT_EQ(last.source, "ros2");
-  ASSERT_EQ(last.people.size(), 1u) << "head_tilt alone is no body";
+  ASSERT_EQ(last.people.size(), 1u) << "neither head_tilt nor the finger tips are a body";
   EXPECT_EQ(last.people[0].body, "7");
   std::map<std::string, Vector3> joints;
   for (const ObservedJoint& joint : last.people[0].joints) joints[joint.name] = joint.position;

@@ -35,9 +35,12 @@ std::optional<Pose> hand_frame(const HoldingHand& holding, const ObjectModel& ob
   constexpr double kMinAcross = 0.3;  // min sine of the angle between fingers and palm direction
   const Vector3& p_hand = holding.p_hand;
   const Vector3 fingers = (p_hand - holding.p_wrist).stableNormalized();
-  const Vector3 toward =
-      holding.palm ? holding.palm->stableNormalized() : direction_to(object, p_hand);
-  const Vector3 palm = toward - toward.dot(fingers) * fingers;
+  const auto across_fingers = [&](const Vector3& v) {
+    return Vector3(v - v.dot(fingers) * fingers);
+  };
+  Vector3 palm = Vector3::Zero();
+  if (holding.palm) palm = across_fingers(holding.palm->stableNormalized());
+  if (palm.norm() < kMinAcross) palm = across_fingers(direction_to(object, p_hand));
   if (palm.norm() < kMinAcross) return std::nullopt;
   Pose T = Pose::Identity();
   T.linear().col(0) = palm.normalized();

@@ -18,21 +18,28 @@ constexpr int kSamplesAfterChange = 2;  // weight of such a mean, mixed with the
 void add_to(HoldingHand& average, const HoldingHand& seen, int samples) {
   average.p_wrist += (seen.p_wrist - average.p_wrist) / samples;
   average.p_hand += (seen.p_hand - average.p_hand) / samples;
-  if (average.palm && seen.palm)
-    *average.palm += (*seen.palm - *average.palm) / samples;
-  else
-    average.palm = seen.palm;
+}
+
+/// Moves the average of a palm, which may be unobserved for some samples, toward a sample.
+void add_palm(HoldingHand& average, const HoldingHand& seen, int samples) {
+  if (!seen.palm) return;
+  if (!average.palm) average.palm = seen.palm;
+  *average.palm += (*seen.palm - *average.palm) / samples;
 }
 
 }  // namespace
 
 void HoldingHandAverage::Hold::add(const HoldingHand& seen, int max_samples) {
   samples = std::min(samples + 1, max_samples);
+  if (seen.palm) palm_samples = std::min(palm_samples + 1, max_samples);
+  add_palm(hand, seen, palm_samples);
+  add_palm(recent, seen, std::min(palm_samples, kRecentSamples));
   add_to(hand, seen, samples);
   add_to(recent, seen, std::min(samples, kRecentSamples));
   if ((recent.p_hand - hand.p_hand).norm() < kOtherPlaceOfMean) return;
   hand = recent;
   samples = std::min(samples, kSamplesAfterChange);
+  palm_samples = std::min(palm_samples, kSamplesAfterChange);
 }
 
 HoldingHandAverage::HoldingHandAverage(Models models, int samples)
@@ -48,7 +55,7 @@ void HoldingHandAverage::add(const Scene& scene, const HumanState& people) {
     if (person == people.people.end() || model == nullptr) continue;
     const auto seen = holding_hand(*person, *model, object.T_world_object);
     if (!seen) continue;
-    Hold hold{person->id, *seen, *seen, 0};
+    Hold hold{person->id, *seen, *seen, 0, 0};
     const auto before = holds_.find(object.id);
     if (before != holds_.end() && before->second.person == person->id &&
         before->second.hand.side == seen->side &&

@@ -32,7 +32,7 @@ class HoldingHandAverage {
     std::string person;  // id
     HoldingHand hand;    // on average
     HoldingHand recent;  // on average over the last few samples
-    int samples{};
+    int samples{}, palm_samples{};
 
     void add(const HoldingHand& seen, int max_samples);
   };

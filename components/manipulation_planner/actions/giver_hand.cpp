@@ -30,6 +30,16 @@ HumanState people_with_digits(const Parts& parts, const Offer& offer,
   return around;
 }
 
+/// Returns whether the palm of the hand that holds the object on offer is observed.
+bool is_palm_observed(const Parts& parts, const Offer& offer) {
+  const Person* giver = parts.now.person(offer.giver);
+  const SceneObject* held = parts.now.object(offer.object);
+  const ObjectModel* model = parts.now.model_of(offer.object);
+  if (giver == nullptr || held == nullptr || model == nullptr) return false;
+  const auto holding = holding_hand(*giver, *model, held->T_world_object);
+  return holding && holding->palm;
+}
+
 /// What select_clear() found.
 struct ClearGrasps {
   Outcome outcome;            ///< whether the search ended
@@ -90,9 +100,7 @@ Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
 
 Routine<std::optional<GraspIds>> clear_of_turned_hand(Parts& parts, const Offer& offer,
                                                       const std::vector<Grasp>& grasps) {
-  const Person* giver = parts.now.person(offer.giver);
-  const bool is_observed = giver != nullptr && !giver->palms.empty();
-  const double turn = is_observed ? 0 : parts.settings.digits_turn;
+  const double turn = is_palm_observed(parts, offer) ? 0 : parts.settings.digits_turn;
   std::vector<double> turns{0.0};
   if (turn > 0) turns = {-turn, -turn / 2, 0.0, turn / 2, turn};
   const HumanState around = people_with_digits(parts, offer, turns);

@@ -33,10 +33,12 @@ bool same(const std::vector<ObservedPerson>& a, const std::vector<ObservedPerson
       });
 }
 
-/// Returns the body with a head at the gaze origin if only the gaze was observed.
+/// Returns the body with a head at the gaze origin if of the body only the gaze was observed.
 ObservedPerson with_head(const ObservedPerson& body) {
   ObservedPerson out = body;
-  if (out.joints.empty() && out.has_gaze) out.joints.push_back({"head", body.gaze_origin, 0.5});
+  const auto is_of_body = [](const ObservedJoint& j) { return body_joint_index(j.name) >= 0; };
+  if (std::none_of(out.joints.begin(), out.joints.end(), is_of_body) && out.has_gaze)
+    out.joints.push_back({"head", body.gaze_origin, 0.5});
   return out;
 }
 

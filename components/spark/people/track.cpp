@@ -94,8 +94,10 @@ void update_hands(Track& track, const std::array<bool, kJoints>& observed, TimeP
   }
 }
 
-/// Takes a sample of each palm whose two knuckles are observed.
-void update_palms(Track& track, const ObservedPerson& body, TimePoint seen, double min_confidence) {
+/// Takes a sample of each palm whose two knuckles are observed with the hand or the wrist.
+void update_palms(Track& track, const ObservedPerson& body,
+                  const std::array<bool, kJoints>& observed, TimePoint seen,
+                  double min_confidence) {
   const auto find = [&](const char* name) {
     const auto it =
         std::find_if(body.joints.begin(), body.joints.end(), [&](const ObservedJoint& joint) {
@@ -107,6 +109,9 @@ void update_palms(Track& track, const ObservedPerson& body, TimePoint seen, doub
   for (std::size_t side = 0; side < kHands.size(); ++side) {
     const Vector3 *pinky = find(kKnuckles[side].pinky), *index_finger = find(kKnuckles[side].index);
     if (pinky == nullptr || index_finger == nullptr) continue;
+    if (!observed[static_cast<std::size_t>(kHands[side])] &&
+        !observed[static_cast<std::size_t>(kWrists[side])])
+      continue;
     if (track.palm_seen[side] && *track.palm_seen[side] > seen) continue;
     const Vector3 fingers =
         joint_position(track.person, kHands[side]) - joint_position(track.person, kWrists[side]);
@@ -195,7 +200,7 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
     inflate(jump, settings.doubt_time);
   person.joints = std::move(fitted);
   update_hands(track, observed, at, settings.joint_noise);
-  update_palms(track, body, seen, settings.min_confidence);
+  update_palms(track, body, observed, seen, settings.min_confidence);
   track.seen = at;
   track.empty_since.reset();
   track.left_by.clear();

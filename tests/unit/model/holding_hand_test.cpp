@@ -119,6 +119,7 @@ TEST_F(HoldingHandTest, an_observed_palm_is_averaged_on_an_object_that_turns) {
       add(1);
     }
   };
+  add(40);  // knuckles are observed later than the hand
   add_samples(40);
   scene_.objects[0].T_world_object.rotate(Eigen::AngleAxisd(0.8, Vector3::UnitZ()));
   hold({0.0, 0.06, -0.04}, {0.09, 0.07, -0.05});
@@ -128,7 +129,7 @@ TEST_F(HoldingHandTest, an_observed_palm_is_averaged_on_an_object_that_turns) {
   const Vector3 expected = scene_.objects[0].T_world_object.linear() * palm;
   EXPECT_LT(std::acos(averaged.people[0].palms[0].normal.dot(expected)), 0.1);
   people_.people[0].palms.clear();
-  add(1);
+  add(20);
   EXPECT_TRUE(average_.averaged(scene_, last_).people[0].palms.empty());
 }
 
