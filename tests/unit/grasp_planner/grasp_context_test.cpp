@@ -253,7 +253,7 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
     lowest = std::min(lowest, seen_fraction);
     highest = std::max(highest, seen_fraction);
   }
-  std::printf("shares %.2f to %.2f, on average %.3f beside those by steps\n", lowest, highest,
+  std::printf("ratios %.2f to %.2f, on average %.3f beside those by steps\n", lowest, highest,
               difference / grasps);
   EXPECT_LT(difference / grasps, 0.07);
   EXPECT_LT(lowest, highest - 0.2);
@@ -441,6 +441,22 @@ TEST(HeldOut, weaker_grasps_serve_from_a_hand_only_and_where_few_others_do) {
   EXPECT_EQ(serving(held, -1000, 2), 2U);
   EXPECT_EQ(serving(held, 1000, 2), 0U);
   EXPECT_EQ(serving(standing_mug, -1000, 2), 0U) << "nobody holds the mug";
+}
+
+TEST(HeldOut, as_shipped_no_grip_that_may_slip_is_used_from_a_hand) {
+  HumanState people;
+  const Scene scene = held_out(people);
+  settings::GraspPlannerSettings settings;
+  GraspList list = mug().list;
+  list.min_margin = settings.min_margin;
+  for (ListedGrasp& listed : list.grasps) listed.grasp.margin = settings.min_margin - 1;
+  const auto chosen = [&] {
+    const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, "arm");
+    return chooser.choose({request(), list, *mug().object, scene, people}).grasps.size();
+  };
+  EXPECT_EQ(chosen(), 0U);
+  settings.min_margin_held = settings.min_margin - 2;
+  EXPECT_GT(chosen(), 0U) << "only the setting excludes them";
 }
 
 TEST(HeldOut, a_failed_choice_names_what_the_hand_would_touch) {
