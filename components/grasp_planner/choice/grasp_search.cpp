@@ -15,7 +15,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kMotionStep = 0.04;  // [rad] between two states judged on either
+constexpr double kMotionStep = 0.04;  // [rad] between two checked states
 constexpr int kExchangeHeadings = 8;
 constexpr int kTransferReaches = 16;  // inverse kinematics tried for the places of one grasp
 

@@ -7,12 +7,12 @@
 
 namespace handsel::test {
 
-/// Returns the quantile `share` of times in seconds, in [ms]; 0 without times.
-inline double quantile_ms(std::vector<double> times, double share) {
+/// Returns the quantile `ratio` of times in seconds, in [ms]; 0 without times.
+inline double quantile_ms(std::vector<double> times, double ratio) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());
   return 1e3 * times[std::min(times.size() - 1,
-                              static_cast<std::size_t>(share * static_cast<double>(times.size())))];
+                              static_cast<std::size_t>(ratio * static_cast<double>(times.size())))];
 }
 
 }  // namespace handsel::test

@@ -24,12 +24,12 @@ inline double seconds(const std::function<void()>& work) {
 class Times {
  public:
   void add(double seconds) { all_.push_back(seconds); }
-  /// Returns the quantile `share` of the times [ms]; 0 without times.
-  double at(double share) {
+  /// Returns the quantile `ratio` of the times [ms]; 0 without times.
+  double at(double ratio) {
     std::sort(all_.begin(), all_.end());
     return all_.empty()
                ? 0.0
-               : all_[static_cast<std::size_t>(share * static_cast<double>(all_.size() - 1))] * 1e3;
+               : all_[static_cast<std::size_t>(ratio * static_cast<double>(all_.size() - 1))] * 1e3;
   }
   void print(const char* what) {
     std::printf("%-24s %4zu cases  median %7.2f  p95 %7.2f  p99 %7.2f  largest %7.2f ms\n", what,

@@ -35,15 +35,15 @@ void expect_hand_on(int arm, std::size_t grasp, const std::string& object, const
   EXPECT_LT((RobotModel::part(q, *side.arm.fingers) - g.hand_joints).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// Returns the min distance of the object's surface to the links that `judged` selects, by FCL.
+/// Returns the min distance of the object's surface to the links that `selected` selects, by FCL.
 double object_distance(const std::string& object, const Vector& q, const Pose& T_world_object,
-                       const std::function<bool(const std::string&)>& judged) {
+                       const std::function<bool(const std::string&)>& selected) {
   const Shape mesh = std::make_shared<TriangleMesh>(hand(0, object).object->mesh());
   std::vector<Pose> T;
   duo().robot.forward(q, T);
   double least = 1;
   for (std::size_t l = 0; l < T.size(); ++l) {
-    if (!judged(duo().robot.links()[l].name)) continue;
+    if (!selected(duo().robot.links()[l].name)) continue;
     for (const PlacedShape& s : duo().robot.links()[l].collision)
       least = std::min(
           least, shape_distance(s.shape, T[l] * s.T_parent_shape, mesh, T_world_object).distance);
