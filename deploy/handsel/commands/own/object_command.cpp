@@ -64,7 +64,8 @@ void print_summary(const MadeObject& made, const std::string& name) {
     std::printf("  a container of %.3g l, open with z up\n", 1e3 * made.cavity);
   else
     std::printf("  no container\n");
-  std::printf("  stands in %zu ways", made.placements.size());
+  const std::size_t count = made.placements.size();
+  std::printf("  stands in %zu %s", count, count == 1 ? "way" : "ways");
   for (const Placement& p : made.placements)
     if ((p.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999)
       std::printf("; with z up it tips at %.1f deg", p.tipping * 180 / std::numbers::pi);
