@@ -180,7 +180,9 @@ bool SimWorld::follows() const { return impl_->people->any_follows_source(); }
 
 std::string SimWorld::control(const SimControl& c) { return impl_->control(c); }
 
-const std::string& SimWorld::last_limit_violation() const { return impl_->limits.last_violation(); }
+const std::string& SimWorld::first_limit_violation() const {
+  return impl_->limits.first_violation();
+}
 const std::string& SimWorld::last_collision() const { return impl_->last_collision; }
 DriveMode SimWorld::mode() const { return impl_->side.mode(); }
 const std::vector<Touch>& SimWorld::touches() const { return impl_->touches; }

@@ -56,7 +56,7 @@ class SimWorld {
   /// Writes all fields but stamp and real_time_factor.
   void ground_truth(GroundTruth& out) const;
 
-  const std::string& last_limit_violation() const;  ///< one sentence; empty: none
+  const std::string& first_limit_violation() const;  ///< one sentence; empty: none
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
   DriveMode mode() const;                           ///< as reported by the emulated robot
   bool robot_grips() const;                       ///< Returns whether a robot hand holds an object.

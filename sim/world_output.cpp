@@ -68,7 +68,7 @@ void WorldOutput::publish_ground_truth(SimWorld& world, const std::function<Stam
   world.ground_truth(ground_truth_);
   if (before == 0 && ground_truth_.limit_violations > 0)
     std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world.time(),
-                 world.last_limit_violation().c_str());
+                 world.first_limit_violation().c_str());
   if (collisions_before == 0 && ground_truth_.self_or_scene_collisions > 0)
     std::fprintf(stderr, "sim: at %.3f s the first collision, %s\n", world.time(),
                  world.last_collision().c_str());

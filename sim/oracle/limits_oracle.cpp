@@ -44,8 +44,9 @@ LimitsOracle::LimitsOracle(const RobotModel& model, double restart_after, double
 
 void LimitsOracle::violated(const char* what, Eigen::Index axis, double value, double bound) {
   bad_ = true;
-  last_ = std::string(what) + " of " + model_.axes()[axis].name + ": " + std::to_string(value) +
-          " beyond " + std::to_string(bound);
+  if (first_.empty())
+    first_ = std::string(what) + " of " + model_.axes()[axis].name + ": " +
+             std::to_string(value) + " beyond " + std::to_string(bound);
 }
 
 void LimitsOracle::check_bounds(const JointCommand& c) {

@@ -46,7 +46,7 @@ class LimitsOracle {
   double ratio_jerk() const { return ratios_[2]; }          ///< max |jerk| / limit so far
   /// Returns the number of set-points beyond a bound by more than 1e-6 of the bound.
   std::uint64_t violations() const { return violations_; }
-  const std::string& last_violation() const { return last_; }  ///< one sentence; empty: none
+  const std::string& first_violation() const { return first_; }  ///< one sentence; empty: none
   std::uint64_t count() const { return count_; }               ///< set-points checked so far
   std::uint64_t writers() const { return writers_.size(); }    ///< different writers so far
   double max_gap() const { return max_gap_; }  ///< max gap between arrivals so far [s]
@@ -70,7 +70,7 @@ class LimitsOracle {
   std::set<std::uint64_t> writers_;
   std::vector<Held> waiting_;
   JointCommand previous_;
-  std::string last_;
+  std::string first_;
 };
 
 }  // namespace handsel::sim

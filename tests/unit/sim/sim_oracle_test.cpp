@@ -56,7 +56,7 @@ TEST(LimitsOracleTest, a_legal_stream_has_no_violation_and_its_true_shares) {
   Judge judge;
   Stream stream(0.9);
   for (int i = 0; i < 2000; ++i) judge.see(stream.next());
-  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.first_violation();
   EXPECT_NEAR(judge.oracle.ratio_jerk(), 0.9, 1e-6);
   EXPECT_NEAR(judge.oracle.ratio_acceleration(), 0.9, 1e-2);
   EXPECT_DOUBLE_EQ(judge.oracle.period(), 0.001);
@@ -71,7 +71,7 @@ TEST(LimitsOracleTest, late_set_points_are_no_violation) {
     if (i == 90) judge.now += 0.018;  // delay of a busy machine
     judge.see(stream.next());
   }
-  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.first_violation();
   EXPECT_DOUBLE_EQ(judge.oracle.period(), 0.001);
 }
 
@@ -87,7 +87,7 @@ TEST(LimitsOracleTest, left_out_cycles_and_a_clock_that_falls_behind_are_no_viol
     c.stamp = stamp;
     oracle.observe(c, 1, simulated, c.position);
   }
-  EXPECT_EQ(oracle.violations(), 0u) << oracle.last_violation();
+  EXPECT_EQ(oracle.violations(), 0u) << oracle.first_violation();
   EXPECT_DOUBLE_EQ(oracle.period(), 0.001);
 }
 
@@ -102,7 +102,7 @@ TEST(LimitsOracleTest, lost_set_points_are_no_violation) {
       judge.see(c);
     }
   }
-  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.first_violation();
   EXPECT_LE(judge.oracle.ratio_jerk(), 1 + 1e-6);
 }
 
@@ -124,7 +124,7 @@ std::string broken_by(const Break& mutate, int at = 500) {
   JointCommand bad = stream.next();
   mutate(bad);
   judge.see(bad);
-  return judge.oracle.violations() == 1 ? judge.oracle.last_violation() : "not caught";
+  return judge.oracle.violations() == 1 ? judge.oracle.first_violation() : "not caught";
 }
 
 TEST(LimitsOracleTest, every_mutant_is_caught_by_name) {
@@ -160,7 +160,7 @@ std::uint64_t violations_across(double offset, std::uint64_t writer, bool restar
   Judge judge;
   Stream stream(0.5);
   for (int i = 0; i < at; ++i) judge.see(stream.next());
-  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.first_violation();
   for (int i = 0; i < 200; ++i) {
     JointCommand c = stream.next();
     c.position[1] += offset;

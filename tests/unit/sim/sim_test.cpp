@@ -272,7 +272,7 @@ TEST(SimHandover, a_taker_reaches_pulls_and_carries_the_mug_alone) {
   EXPECT_GE(ground_truth.max_lifted, 0.10);
   EXPECT_GE(ground_truth.human_contact_before_release, 0.2);
   EXPECT_EQ(world.person_phase(0), PersonPhase::keeping);
-  EXPECT_EQ(ground_truth.limit_violations, 0u) << world.last_limit_violation();
+  EXPECT_EQ(ground_truth.limit_violations, 0u) << world.first_limit_violation();
 }
 
 TEST(SimHandover, fails_with_a_person_who_never_moves) {
