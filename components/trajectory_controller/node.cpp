@@ -54,6 +54,9 @@ bool Node::has_second_writer() const {
 }
 
 void Node::tick(TimePoint now) {
+  // A process that is suspended within a cycle sends an obsolete set-point once it runs again: the
+  // time of the begin of the cycle tells.
+  command_.stamp = bus_.stamp_now();
   const std::uint64_t late = timer_ ? timer_->late_cycles : 0;
   if (core_.step(now, late != late_before_) && !settings_.dry_run) {
     ++command_.sequence;

@@ -24,6 +24,7 @@ struct DriverSettings {
   double fade_fraction{0.1};
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
   RobotSideSettings watch;              ///< limits of the check of the set-points
+  double max_setpoint_age{0.1};         ///< older set-points are left out [s]
 };
 
 /// What the maker's controller measured in a cycle; all axes of the robot description.

@@ -6,17 +6,16 @@
 namespace handsel::drivers {
 
 DriverNode::DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<CycleSource> source,
-                       std::unique_ptr<Driver> driver, double cycle)
+                       std::unique_ptr<Driver> driver, double cycle, double max_age)
     : bus_(bus),
       context_(context),
       source_(std::move(source)),
       driver_(std::move(driver)),
       state_out_(bus.advertise<RobotState>()) {
-  bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
-    if (m.robot != context_.robot->name()) {
-      bus_.count_left_out("joint_command: for another robot", 1);
-      return;
-    }
+  bus.subscribe<JointCommand>([this, max_age](const JointCommand& m, const Receipt& r) {
+    if (m.robot != context_.robot->name())
+      return bus_.count_left_out("joint_command: for another robot", 1);
+    if (to_seconds(r.age) > max_age) return bus_.count_left_out("joint_command: too old", 1);
     const std::lock_guard lock(mutex_);
     driver_->command(m, to_seconds(r.arrival.time_since_epoch()));
   });

@@ -24,9 +24,9 @@ class CycleSource {
 
 class DriverNode {
  public:
-  /// `cycle` of the arm's controller [s].
+  /// `cycle` of the arm's controller [s]; set-points older than `max_age` [s] are left out.
   DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<CycleSource> source,
-             std::unique_ptr<Driver> driver, double cycle);
+             std::unique_ptr<Driver> driver, double cycle, double max_age);
   ~DriverNode();
   DriverNode(const DriverNode&) = delete;
   DriverNode& operator=(const DriverNode&) = delete;

@@ -20,6 +20,7 @@ Place read_common(const std::filesystem::path& folder, const RobotModel& robot,
   out.watch.min_stop = in.min_stop;
   out.watch.period = controller.period;
   out.watch.max_gap = in.max_setpoint_gap;
+  out.max_setpoint_age = in.max_setpoint_age;
   out.T_world_base = Eigen::Translation3d(in.base_x, in.base_y, in.base_z) *
                      Eigen::AngleAxisd(in.base_yaw, Vector3::UnitZ());
   const Group* group = robot.group(in.group);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     auto arm = std::make_unique<PositionArm>(*context.robot, place.axes, settings.cycle,
                                              source->link, settings.common);
     return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm),
-                                        settings.cycle);
+                                        settings.cycle, settings.common.max_setpoint_age);
   };
   return run_process(argc, argv, "driver", make, Urgency::control);
 }

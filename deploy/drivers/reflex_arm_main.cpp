@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     auto source = std::make_unique<UdpSource<UdpReflexLink>>(place.port);
     auto arm = std::make_unique<ReflexArm>(*context.robot, place.axes, source->link, settings);
     return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm),
-                                        ReflexArm::kCycle);
+                                        ReflexArm::kCycle, settings.common.max_setpoint_age);
   };
   return run_process(argc, argv, "driver", make, Urgency::control);
 }

@@ -28,6 +28,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.robot_side.max_ahead = s.robot_side.max_gap;
   s.robot_side.period = controller.period;
   s.robot_side.min_stop = read.min_stop;
+  s.max_setpoint_age = read.max_setpoint_age;
   s.robot_grip.max_force = read.grip_force;
   s.robot_grip.max_torque = read.grip_torque;
   s.person_grip.max_force = read.person_grip_force;

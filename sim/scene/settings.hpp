@@ -21,6 +21,7 @@ struct SimSettings {
   /// A grasp constraint of limited force helps to hold while the contacts pass force closure.
   bool constraint{false};
   RobotSideSettings robot_side;  ///< handling of set-points by the robot's driver
+  double max_setpoint_age{0.1};  ///< older set-points are left out [s]
   /// Grasp constraint of a robot's hand, grip of a person's hand.
   GripSettings robot_grip, person_grip;
   PersonHandSettings person_hand;     ///< free hand of a person on its spring

@@ -8,3 +8,4 @@ handsel_test(recording GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/recording
 handsel_test(robot_side GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/robot_side_test.cpp LINK handsel_drivers LABEL property)
 handsel_test(platform_odometry GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/platform_odometry_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(moving_offer GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/moving_offer_test.cpp LINK handsel_sim_core LABEL unit)
+handsel_test(sim_node GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_node_test.cpp LINK handsel_sim LABEL unit)
