@@ -222,6 +222,7 @@ class PersonModel {
   std::optional<Vector3> choose_place_to_give(const ObjectModel&, const Eigen::Quaterniond& turn);
   void hold_to_give_back(const PersonView&);
   void hold_otherwise(const PersonView&);
+  void remember_hold();
   bool gives_from_place() const;
   double lean_to_reach(const Vector3& p_hand) const;
   double lean_to_take(const PersonView&) const;

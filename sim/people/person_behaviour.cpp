@@ -172,6 +172,7 @@ void PersonModel::offer(double dt, const PersonView& view) {
   if (is_to_offer() && !(is_hand_near && settings_.behaviour.withdraws && !first_attempt_over_))
     return;
   first_attempt_over_ = true;
+  if (!is_to_offer()) remember_hold();
   from_ = hand_target_;
   duration_ = kSecondOfferDelay;
   enter(PersonPhase::keeping);

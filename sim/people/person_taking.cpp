@@ -92,15 +92,23 @@ std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
   return make_pose(*p_hand_object, turn);
 }
 
-/// Chooses a partner's grasp of the requested object anew while the robot's hand is far.
+/// Chooses a partner's grasp of the requested object anew while the robot's hand is far: none in
+/// which the object was offered in vain, while the hand has another place.
 void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_.reset();
-  held_in_vain_.clear();
   const bool is_far = view.object != nullptr && !view.held_by_robot &&
                       (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
   if (settings_.kind != PersonKind::partner || !taking_.has_place() || !is_far) return;
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
+  if (p_hand_object_to_give_ || held_in_vain_.empty()) return;
+  held_in_vain_.clear();
+  p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
+}
+
+/// Remembers that the object was offered in vain in the present grasp.
+void PersonModel::remember_hold() {
+  if (gives_from_place()) held_in_vain_.push_back(taking_.goal(Pose::Identity()));
 }
 
 /// Changes the grasp of an object that the robot has not taken; keeps it where the hand has
@@ -109,7 +117,7 @@ void PersonModel::hold_otherwise(const PersonView& view) {
   const bool is_far =
       view.object != nullptr && (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
   if (!gives_from_place() || !is_far) return;
-  held_in_vain_.push_back(taking_.goal(Pose::Identity()));
+  remember_hold();
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   const auto p_hand_object = choose_place_to_give(*view.object, turn);
   if (p_hand_object)
@@ -121,6 +129,7 @@ void PersonModel::hold_otherwise(const PersonView& view) {
 void PersonModel::choose_place(const PersonView& view) {
   const auto arm = human_arm(body_, side_);
   if (!arm) return;
+  held_in_vain_.clear();
   FreeGraspQuery query = place_query(*view.object, *arm);
   query.T_world_object = view.T_world_object;
   query.preferred = side_to_take(view);

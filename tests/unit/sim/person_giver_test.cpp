@@ -277,6 +277,25 @@ TEST(SimPerson, partner_whose_offer_is_not_taken_holds_it_otherwise) {
   EXPECT_TRUE(moved > 0.05 || cosine < 0.7) << moved << " m, " << cosine;
 }
 
+TEST(SimPerson, partner_who_offered_in_vain_holds_the_object_otherwise_when_asked_again) {
+  PartnerWithMug partner;
+  partner.live(4);
+  partner.person().announce(Announcement::asks);
+  partner.live(4);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::offering);
+  const Pose first = partner.T_object_palm();
+  partner.person().announce(Announcement::none);
+  partner.live(4);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::keeping);
+  partner.person().announce(Announcement::asks);
+  partner.live(4);
+  ASSERT_EQ(partner.person().phase(), PersonPhase::offering);
+  const Pose second = partner.T_object_palm();
+  const double moved = (second.translation() - first.translation()).norm();
+  const double cosine = second.linear().col(0).dot(first.linear().col(0));
+  EXPECT_TRUE(moved > 0.05 || cosine < 0.7) << moved << " m, " << cosine;
+}
+
 TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
   PersonModel person(giver());
   live(person, 3, {1.0, -0.2, 1.2});
