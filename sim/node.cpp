@@ -9,15 +9,13 @@ namespace handsel::sim {
 
 namespace {
 
-// Max steps in one tick, well below the gap that stops the robot; further delay slows the
-// simulation.
+// Max steps in one tick, below the gap that stops the robot; more delay slows the simulation.
 constexpr std::uint64_t kMaxStepsPerTick = 5;
 
 constexpr Duration kTickPeriod = std::chrono::milliseconds(2);          // with simulated time
 constexpr Duration kGrantRepeatPeriod = std::chrono::milliseconds(20);  // while no step is made
 // One set-point is applied per step; it is skipped if its successor is older than this.
 constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
-
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
@@ -31,7 +29,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
     if (m.robot != context_.robot->name())
       bus_.count_left_out("joint_command: for another robot", 1);
-    else if (to_seconds(age_of(m, r)) > settings_.max_setpoint_age)
+    else if (to_seconds(set_point_age_.of(m, r, keeper_)) > settings_.max_setpoint_age)
       bus_.count_left_out("joint_command: too old", 1);
     else if (keeper_)
       set_points_.push_back({m, r.writer});
@@ -88,14 +86,6 @@ void Node::on_control(const SimControl& control) {
 
 Stamp Node::stamp_now() const {
   return keeper_ ? bus_.stamp_now() - (bus_.now() - keeper_->time()).count() : bus_.stamp_now();
-}
-
-/// Returns the age of a set-point at arrival, in simulated time where the simulator gives the time.
-Duration Node::age_of(const JointCommand& command, const Receipt& receipt) {
-  if (!keeper_ || keeper_->grant_number() == 0) return receipt.age;
-  if (receipt.writer != sender_) setpoint_ages_ = {};
-  sender_ = receipt.writer;
-  return setpoint_ages_.update(command.stamp, keeper_->time());
 }
 
 void Node::announce(TimePoint now) {

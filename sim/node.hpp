@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/intake.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/config/schema/scenario.pb.h"
 #include "sim/known_processes.hpp"
 #include "sim/real_time_factor.hpp"
+#include "sim/set_point_age.hpp"
 #include "sim/time_keeper.hpp"
 #include "sim/world.hpp"
 #include "sim/world_output.hpp"
@@ -30,7 +30,6 @@ class Node {
   void step_when_granted(TimePoint now);
   void announce(TimePoint now);
   Stamp stamp_now() const;
-  Duration age_of(const JointCommand& command, const Receipt& receipt);
   /// Steps the world and publishes its state.
   void step_world();
   void on_control(const SimControl&);
@@ -50,8 +49,7 @@ class Node {
   };
   KnownProcesses processes_;         // processes that answered a grant
   std::deque<SetPoint> set_points_;  // waiting for a step
-  AgeEstimator setpoint_ages_;       // with simulated time
-  std::uint64_t sender_{};           // writer of the newest set-point
+  SetPointAge set_point_age_;
   SimClock clock_;
   TimePoint announced_{};
   std::uint64_t steps_{0}, since_start_{0};

@@ -57,8 +57,8 @@ class SimWorld {
   void ground_truth(GroundTruth& out) const;
 
   const std::string& first_limit_violation() const;  ///< one sentence; empty: none
-  const std::string& last_collision() const;        ///< "link hits table"; empty: none
-  DriveMode mode() const;                           ///< as reported by the emulated robot
+  const std::string& last_collision() const;         ///< "link hits table"; empty: none
+  DriveMode mode() const;                            ///< as reported by the emulated robot
   bool robot_grips() const;                       ///< Returns whether a robot hand holds an object.
   const std::vector<Touch>& touches() const;      ///< of the last step; robot bodies by number
   const std::string& robot_body(int body) const;  ///< name of its link

@@ -45,8 +45,8 @@ LimitsOracle::LimitsOracle(const RobotModel& model, double restart_after, double
 void LimitsOracle::violated(const char* what, Eigen::Index axis, double value, double bound) {
   bad_ = true;
   if (first_.empty())
-    first_ = std::string(what) + " of " + model_.axes()[axis].name + ": " +
-             std::to_string(value) + " beyond " + std::to_string(bound);
+    first_ = std::string(what) + " of " + model_.axes()[axis].name + ": " + std::to_string(value) +
+             " beyond " + std::to_string(bound);
 }
 
 void LimitsOracle::check_bounds(const JointCommand& c) {

@@ -47,8 +47,8 @@ class LimitsOracle {
   /// Returns the number of set-points beyond a bound by more than 1e-6 of the bound.
   std::uint64_t violations() const { return violations_; }
   const std::string& first_violation() const { return first_; }  ///< one sentence; empty: none
-  std::uint64_t count() const { return count_; }               ///< set-points checked so far
-  std::uint64_t writers() const { return writers_.size(); }    ///< different writers so far
+  std::uint64_t count() const { return count_; }                 ///< set-points checked so far
+  std::uint64_t writers() const { return writers_.size(); }      ///< different writers so far
   double max_gap() const { return max_gap_; }  ///< max gap between arrivals so far [s]
   double period() const { return period_; }    ///< [s]; 0: unknown so far
 
