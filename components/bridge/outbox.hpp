@@ -33,7 +33,7 @@ struct OutboxSettings {
   /// Samples of one queued subscription that may wait; the oldest goes first.
   std::size_t max_queued{64};
   /// Of samples that may wait altogether [bytes]; the oldest goes first.
-  std::size_t max_bytes{32u * 1024u * 1024u};
+  std::size_t max_bytes{std::size_t{32} << 20U};
 };
 
 class Outbox {

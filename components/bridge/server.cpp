@@ -41,12 +41,12 @@ struct Server::Impl {
         ++state.counters.connections;
         const std::size_t open = state.connections.size() + state.clients.size();
         const auto connection = std::make_shared<HttpConnection>(std::move(socket), state);
-        if (open >= 8u * state.settings.max_clients) {
+        if (open >= std::size_t{8} * state.settings.max_clients) {
           ++state.counters.refused_connections;  // refused without an answer, as that would occupy
                                                  // a connection
         } else {
           state.connections.insert(connection);
-          if (open >= 4u * state.settings.max_clients) {
+          if (open >= std::size_t{4} * state.settings.max_clients) {
             connection->turn_away("too many connections are open");
           } else {
             connection->read();

@@ -74,7 +74,7 @@ std::optional<fs::path> asset(const fs::path& resources, std::string_view path, 
   if (kind != "robots" && kind != "hands" && !(with_objects && kind == "objects"))
     return std::nullopt;
   if (path.size() == kind.size() || resources.empty()) return std::nullopt;
-  const auto file = file_in(resources / kind, path.substr(kind.size() + 1));
+  auto file = file_in(resources / kind, path.substr(kind.size() + 1));
   if (!file ||
       std::find(kAssetKinds.begin(), kAssetKinds.end(), extension_of(*file)) == kAssetKinds.end())
     return std::nullopt;
@@ -89,8 +89,8 @@ fs::path canonical_or_empty(const fs::path& folder) {
 
 }  // namespace
 
-Site::Site(fs::path page, const fs::path& resources)
-    : page_(page.empty() ? page : canonical_or_empty(page)),
+Site::Site(const fs::path& page, const fs::path& resources)
+    : page_(page.empty() ? fs::path() : canonical_or_empty(page)),
       resources_(canonical_or_empty(resources)) {}
 
 void Site::serve(const std::string& address, const fs::path& file) {

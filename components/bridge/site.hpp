@@ -19,7 +19,7 @@ class Site {
 
   /// `page`: folder of the built page, empty when there is none; `resources`: the folder that holds
   /// robots/, hands/ and objects/.
-  Site(std::filesystem::path page, const std::filesystem::path& resources);
+  Site(const std::filesystem::path& page, const std::filesystem::path& resources);
 
   /// Serves a mesh that lies outside the folders under an address of its own; none when the
   /// address is empty.

@@ -12,8 +12,8 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 
-constexpr std::size_t kMaxMessage = 64 * 1024;  // max size of a message of a client [bytes]
-constexpr int kSendBuffer = 512 * 1024;         // kernel buffer [bytes]; stale if a client is slow
+constexpr std::size_t kMaxMessage = 65536;  // max size of a message of a client [bytes]
+constexpr int kSendBuffer = 512 * 1024;     // kernel buffer [bytes]; stale if a client is slow
 
 TimePoint monotonic() {
   return TimePoint(

@@ -36,10 +36,13 @@ void HANDSEL_FILL_ROW(const RowPerson& person, const RowPoints& points,
     const float seen = handsel::detail::acos_fraction(cosine), v = far > cut ? 0 : seen;
     const float byte = static_cast<float>(static_cast<int>(comfort[i])),
                 c = byte > 254 ? 254 : byte;
+    // NOLINTBEGIN(bugprone-incorrect-roundings): lround does not vectorise; the values are in [0,
+    // 254].
     safety[i] = static_cast<std::uint8_t>(static_cast<int>(254 * s + 0.5f));
     visibility[i] = static_cast<std::uint8_t>(static_cast<int>(254 * v + 0.5f));
     total[i] = static_cast<std::uint8_t>(
         static_cast<int>(254 * (h.w_safety * s + h.w_visibility * v) + h.w_comfort * c + 0.5f));
+    // NOLINTEND(bugprone-incorrect-roundings)
   }
 }
 

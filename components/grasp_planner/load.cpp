@@ -35,7 +35,7 @@ std::shared_ptr<TransferCache> make_transfer_cache(const settings::GraspPlannerS
 
 settings::GraspPlannerSettings load_settings(const std::filesystem::path& folder) {
   SettingsText text;
-  const auto s = settings::read_grasp_planner_settings(folder / "grasp_planner.txtpb", &text);
+  auto s = settings::read_grasp_planner_settings(folder / "grasp_planner.txtpb", &text);
   if (!(s.weight_stability + s.weight_centre + s.weight_force + s.weight_curvature > 0))
     text.refuse("weight_stability",
                 "is 0 as the other weights of the quality; one must be above 0");

@@ -76,7 +76,7 @@ void Node::step(TimePoint now) {
   for (auto& m : out.trajectories) trajectory_out_->publish(m);
   for (auto& m : out.hand_commands) hand_out_->publish(m);
   for (auto& job : out.jobs) {
-    constexpr Duration kModelled = std::chrono::milliseconds(60);
+    static constexpr Duration kModelled = std::chrono::milliseconds(60);
     bus_.run_job(
         [job = std::move(job)](const CancelToken&) {
           job();

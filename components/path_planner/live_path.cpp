@@ -65,9 +65,8 @@ class PathReplanner {
     }
     std::vector<Vector> path = rest;
     smooth(space_, path, random_);
-    if (was_blocked || other_goal) {
-      prune(space_, path);  // returned without delay; later calls reduce the price
-    } else if (space_.costs().concerns_people()) {
+    // A path that was blocked is returned without delay; later calls reduce the price.
+    if (!was_blocked && !other_goal && space_.costs().concerns_people()) {
       deform(path);
       drop_nodes(path, out.before);
     } else {
@@ -336,7 +335,7 @@ ReplanResult continue_path(const PlanningModels& models, const Problem& problem,
       problem.start.size() == robot.dof() && problem.start.allFinite() && !problem.axes.empty() &&
       !problem.straight &&
       std::all_of(problem.axes.begin(), problem.axes.end(),
-                  [&](int a) { return a >= 0 && a < robot.dof(); }) &&
+                  [dof = robot.dof()](int a) { return a >= 0 && a < dof; }) &&
       std::all_of(problem.goals.begin(), problem.goals.end(), [&](const Vector& g) {
         return g.size() == static_cast<Eigen::Index>(problem.axes.size()) && g.allFinite();
       });

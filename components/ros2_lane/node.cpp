@@ -12,7 +12,7 @@ constexpr Duration kStep = std::chrono::milliseconds(10);
 
 settings::Ros2LaneSettings load(const NodeContext& context) {
   SettingsText text;
-  const auto s = settings::read_ros2_lane_settings(context.settings / "ros2_lane.txtpb", &text);
+  auto s = settings::read_ros2_lane_settings(context.settings / "ros2_lane.txtpb", &text);
   if (s.world_frame.empty())
     text.refuse("world_frame", "is empty, must name the frame of TF that is our world");
   if (s.tf.empty() && (s.people || !s.objects.empty() || s.tf_out))
@@ -92,8 +92,8 @@ void Node::open_robot(const NodeContext& context) {
 
 std::string Node::trouble() const {
   const TimePoint now = bus_.now();
-  if (const std::string joints = joints_.trouble(now); !joints.empty()) return joints;
-  if (const std::string conflict = conflicts_.trouble(now); !conflict.empty()) return conflict;
+  if (std::string joints = joints_.trouble(now); !joints.empty()) return joints;
+  if (std::string conflict = conflicts_.trouble(now); !conflict.empty()) return conflict;
   return trajectories_.trouble(now);
 }
 

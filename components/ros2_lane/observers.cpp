@@ -24,8 +24,8 @@ std::vector<const char*> frame_names() {
 }  // namespace
 
 std::optional<BodyFrame> body_frame(const std::string& frame) {
-  static const std::vector<const char*> kNames = frame_names();
-  for (const char* joint : kNames) {
+  static const std::vector<const char*> names = frame_names();
+  for (const char* joint : names) {
     const std::string begin = std::string(joint) + "_";
     if (frame.starts_with(begin) && frame.size() > begin.size())
       return BodyFrame{joint, frame.substr(begin.size())};

@@ -127,7 +127,7 @@ std::string SceneModel::left_out_in_reach() const {
 }
 
 std::string SceneModel::trouble(TimePoint now) const {
-  const std::string left_out = left_out_in_reach();
+  std::string left_out = left_out_in_reach();
   if (refused_ == 0 || to_seconds(now - refused_at_) > kRefusalTime) return left_out;
   return refusal_ + ": refused, " + std::to_string(refused_) + " so far" +
          (left_out.empty() ? "" : "; ") + left_out;

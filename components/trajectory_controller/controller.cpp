@@ -182,7 +182,7 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
 std::string Controller::accept(const HandCommand& command, Duration age, TimePoint) {
   if (hands_.accepted(command.id)) return {};
   const CommandHead head{command.robot, command.epoch, to_seconds(age)};
-  const std::string reason =
+  std::string reason =
       hands_.accept(command, why_not_now(head, conditions()), arm_.movers().moved());
   if (reason.empty())
     commands_.accept_hand();

@@ -40,7 +40,7 @@ Vector3 PersonModel::side_to_take(const PersonView& view) const {
 }
 
 FreeGraspQuery PersonModel::place_query(const ObjectModel& object, const HumanArm& arm) const {
-  static const std::vector<HandPart> kNothing;
+  static const std::vector<HandPart> nothing;
   FreeGraspQuery query;
   query.object = &object;
   query.arm = arm;
@@ -48,7 +48,7 @@ FreeGraspQuery PersonModel::place_query(const ObjectModel& object, const HumanAr
   query.forward = forward();
   query.trunk = trunk();
   query.wrist = (template_[kHand[hand_index()]] - template_[kWrist[hand_index()]]).norm();
-  query.robot = &kNothing;
+  query.robot = &nothing;
   return query;
 }
 

@@ -44,18 +44,18 @@ constexpr double kLargestNumber =
 /// Throws ConfigError if a numeric attribute, in the element or below, has another content, or if a
 /// name contains a control character.
 void require_attributes(const tinyxml2::XMLElement& e, const fs::path& file) {
-  static const std::set<std::string_view> kNumeric{
+  static const std::set<std::string_view> numeric{
       "xyz", "rpy", "size", "radius", "length", "scale",  "ixx",      "ixy",        "ixz",
       "iyy", "iyz", "izz",  "lower",  "upper",  "effort", "velocity", "multiplier", "offset"};
-  static const std::set<std::string_view> kNames{"name", "link", "joint", "filename", "type"};
+  static const std::set<std::string_view> names{"name", "link", "joint", "filename", "type"};
   const bool is_mass = std::string_view(e.Name()) == "mass";
   for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
     const std::string_view key = a->Name(), value = a->Value();
-    if (kNames.contains(key) &&
+    if (names.contains(key) &&
         std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 32; }))
       throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() +
                         " of <" + printable(e.Name(), 40) + "> holds a control character");
-    if (!kNumeric.contains(key) && !(is_mass && key == "value")) continue;
+    if (!numeric.contains(key) && !(is_mass && key == "value")) continue;
     std::istringstream words(a->Value());
     for (std::string word; words >> word;) {
       char* end = nullptr;

@@ -286,7 +286,7 @@ std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& g
       continue;
     Pose T = T_world_hand;
     T.translate(Vector3(stand_off() * direction));
-    const auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
+    auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
     if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > settings().max_approach_turn) continue;
     if (approach_free(site, *q, grasp_q, g)) return q;
   }

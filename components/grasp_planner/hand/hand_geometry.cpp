@@ -7,6 +7,7 @@ namespace {
 
 std::vector<FingerChain> make_chains(const HandModel& hand) {
   std::vector<FingerChain> chains;
+  chains.reserve(hand.fingers().size());
   for (int f = 0; f < static_cast<int>(hand.fingers().size()); ++f) chains.emplace_back(hand, f);
   return chains;
 }

@@ -88,6 +88,7 @@ std::vector<Eigen::AlignedBox3d> PointTree::boxes(int depth) const {
     level = std::move(next);
   }
   std::vector<Eigen::AlignedBox3d> out;
+  out.reserve(level.size());
   for (const std::uint32_t id : level) out.push_back(nodes_[id].box);
   return out;
 }

@@ -25,6 +25,7 @@ std::vector<std::string> surfaces_for(const Parts& parts, const std::string& arm
   std::stable_sort(near.begin(), near.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> out;
+  out.reserve(near.size());
   for (auto& [distance, surface] : near) out.push_back(std::move(surface));
   return out;
 }

@@ -32,6 +32,7 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
   auto settings = parts.settings;
   settings.exchange_goals = 1;
   std::vector<Vector3> backs;
+  backs.reserve(grasps.size());
   for (const Grasp& grasp : grasps) backs.push_back(parts.arm.direction_back(grasp));
   return [result = std::move(result), grasps, settings, person, T_world_object,
           robot = parts.arm.shared_robot(), arm = parts.arm.group(), scene = parts.now.scene(),

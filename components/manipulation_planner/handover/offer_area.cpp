@@ -91,6 +91,7 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
   });
   if (places.size() > kMaxConfigurations) places.resize(kMaxConfigurations);
   std::vector<Vector> out;
+  out.reserve(places.size());
   for (Place& place : places) out.push_back(std::move(place.joints));
   return out;
 }

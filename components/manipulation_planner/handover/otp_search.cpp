@@ -343,7 +343,8 @@ OtpSearch shifted_otp(const RobotModel& robot, const Group& arm, const OtpQuery&
   for (const double ratio : kRatios) {
     if (ratio * shift.norm() < settings.min_shift) break;
     for (int k = 0; k <= 2 * kMaxTurn; ++k) {
-      const double turn = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * 2 * std::numbers::pi / kHeadings;
+      const int steps = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
+      const double turn = steps * 2 * std::numbers::pi / kHeadings;
       Pose T_shifted = T_world_object;
       T_shifted.translation() += ratio * shift;
       T_shifted.linear() = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * T_world_object.linear();

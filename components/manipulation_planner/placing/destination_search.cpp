@@ -144,6 +144,7 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
                                      T_now = thing->T_world_object] {
     set_world(in);
     std::vector<std::vector<Pose>> upright;
+    upright.reserve(surfaces.size());
     for (const SceneBox& box : surfaces)
       upright.push_back(best_places_on(in, box, object, T_now, limits.max_places));
     for (const double margin : {in.margin, 0.0}) {

@@ -104,13 +104,12 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
     const std::string seen =
         evidence("toward %.40s at %.2f m/s, %.2f m away", receiver.c_str(), toward, away);
     out.push_back({FactKind::offering, giver.id, object.id, toward, begins, near && !back, seen});
-    if (begins)
+    const bool was_offering = offering_.count(pair) > 0;
+    if (begins || (was_offering && !back)) {
       offering_[pair] = now;
-    else if (offering_.count(pair) && back) {
+    } else if (was_offering) {
       withdrawn_[pair] = {now, seen};
       offering_.erase(pair);
-    } else if (offering_.count(pair)) {
-      offering_[pair] = now;
     }
   }
 }

@@ -3,7 +3,7 @@
 namespace handsel::spark {
 
 RobotsLink::RobotsLink(Bus& bus, const settings::SparkSettings& settings,
-                       std::shared_ptr<const RobotModel> robot, const std::string& name)
+                       const std::shared_ptr<const RobotModel>& robot, const std::string& name)
     : bus_(bus),
       others_(settings, name.empty() ? robot->name() : name),
       volume_(robot),

@@ -16,7 +16,7 @@ class RobotsLink {
   /// `name`: of the robot in RobotReport; empty: that of its model. Subscribes and publishes on
   /// `bus`, which must outlive this.
   RobotsLink(Bus& bus, const settings::SparkSettings& settings,
-             std::shared_ptr<const RobotModel> robot, const std::string& name);
+             const std::shared_ptr<const RobotModel>& robot, const std::string& name);
 
   /// Takes the state of the own robot; ignores one with another number of axes.
   void update(const RobotState& state);

@@ -156,7 +156,7 @@ std::vector<Extra> ConditionCompiler::extras(
 
 Literal ConditionCompiler::effect(const std::string& text, const Scope& scope,
                                   const std::string& where, bool any) const {
-  const Literal l = literal(text, scope, where);
+  Literal l = literal(text, scope, where);
   if (l.negated)
     throw_at(where, "an effect is not negated; what holds no more is listed under removes");
   for (const Term& t : l.args)

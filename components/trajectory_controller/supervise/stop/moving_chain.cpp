@@ -194,16 +194,16 @@ void MovingChain::enclose_hands(const Vector& position) noexcept {
     for (std::size_t k = 0; k < hand.frames.size(); ++k) {
       const ChainFrame& frame = hand.frames[k];
       hand.enclosed_at[k] = position[frame.axis];
-      static const FrameMotion kHand;
-      place(frame, frame.parent < 0 ? kHand : hand.placed[static_cast<std::size_t>(frame.parent)],
+      static const FrameMotion at_hand;
+      place(frame, frame.parent < 0 ? at_hand : hand.placed[static_cast<std::size_t>(frame.parent)],
             position[frame.axis], hand.placed[k]);
     }
     Vector3 low = Vector3::Constant(1e9), high = -low;
     const auto each_end = [&](const auto& use) {
       for (const FingerPart& part : hand.parts) {
-        static const FrameMotion kHand;
+        static const FrameMotion at_hand;
         const FrameMotion& at =
-            part.frame < 0 ? kHand : hand.placed[static_cast<std::size_t>(part.frame)];
+            part.frame < 0 ? at_hand : hand.placed[static_cast<std::size_t>(part.frame)];
         use(Vector3(at.p + at.R * part.a), part.radius);
         use(Vector3(at.p + at.R * part.b), part.radius);
       }
@@ -225,12 +225,12 @@ void MovingChain::enclose_hands(const Vector& position) noexcept {
 void MovingChain::move(const Vector& position, const Vector& velocity,
                        const std::vector<char>& needed,
                        std::vector<FrameMotion>& out) const noexcept {
-  static const FrameMotion kRoot;
+  static const FrameMotion at_root;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     if (!needed[k]) continue;
     const ChainFrame& frame = frames_[k];
     const FrameMotion& parent =
-        frame.parent < 0 ? kRoot : out[static_cast<std::size_t>(frame.parent)];
+        frame.parent < 0 ? at_root : out[static_cast<std::size_t>(frame.parent)];
     FrameMotion& motion = out[k];
     place(frame, parent, position[frame.axis], motion);
     const Vector3 rate = frame.factor * velocity[frame.axis] * (motion.R * frame.direction);

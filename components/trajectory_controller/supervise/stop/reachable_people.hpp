@@ -28,8 +28,8 @@ double start_speed(const PersonCapsule& part, double uncertainty,
 /// Max distance of each part of all people from its measured position. HumanState carries at most
 /// 16 people.
 struct PartReaches {
-  std::array<double, 16 * kBodyCapsules> distance;  ///< [m], the first `count`
-  std::size_t count{};                              ///< number of capsules in PersonCapsules
+  std::array<double, std::size_t{16} * kBodyCapsules> distance;  ///< [m], the first `count`
+  std::size_t count{};  ///< number of capsules in PersonCapsules
 };
 
 /// Computes the reaches `time` [s] after now. Allocates nothing.
