@@ -16,16 +16,17 @@ constexpr int kHandDirections = 40;              // number of directions about t
 constexpr int kHandRolls = 16;                   // number of rotations about the palm's normal
 constexpr double kTilts[] = {0.0, -0.45, 0.45};  // of the hand about the axis across it [rad]
 constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fingers' direction [m]
-constexpr double kMinLength = 0.12;              // min extent held off the middle [m]
-constexpr double kMinLengthToGive = 0.07;        // same, of a person who gives [m]
-constexpr double kOffMiddle = 0.32;              // such a place, divided by the extent
-constexpr double kOffMiddleToGive = 0.45;        // same, of a person who gives
-constexpr double kMaxOffMiddleToGive = 0.10;     // max distance of such a place [m]
-constexpr double kMinTowardPreferred = -0.6;     // min cosine to the preferred direction
-constexpr int kGivingChoices = 200;      // number of usable places from which a giver chooses
-constexpr double kOtherPlace = 0.05;     // min distance of a different place [m]
-constexpr double kOtherSide = 0.7;       // or max cosine between the palms' normals
-constexpr int kApproachSteps = 4;        // number of poses tested before the grasp
+constexpr int kPalmGaps = 2;  // number of distances from the palm to the object, beyond contact
+constexpr double kMinLength = 0.12;           // min extent held off the middle [m]
+constexpr double kMinLengthToGive = 0.07;     // same, of a person who gives [m]
+constexpr double kOffMiddle = 0.32;           // such a place, divided by the extent
+constexpr double kOffMiddleToGive = 0.45;     // same, of a person who gives
+constexpr double kMaxOffMiddleToGive = 0.10;  // max distance of such a place [m]
+constexpr double kMinTowardPreferred = -0.6;  // min cosine to the preferred direction
+constexpr int kGivingChoices = 200;           // number of usable places from which a giver chooses
+constexpr double kOtherPlace = 0.05;          // min distance of a different place [m]
+constexpr double kOtherSide = 0.7;            // or max cosine between the palms' normals
+constexpr int kApproachSteps = 4;             // number of poses tested before the grasp
 constexpr double kPalmOverlap = 0.003;   // depth by which flesh is compressed by the object [m]
 constexpr double kDigitOverlap = 0.004;  // same, of a digit [m]
 constexpr double kDifference = 1e-4;     // step of the finite differences [m]
@@ -187,12 +188,12 @@ void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction)
   }
 }
 
-/// Moves the hand from `start` against `direction` to the object and keeps the pose if the arm
-/// reaches the pose.
+/// Moves the hand from `start` against `direction` to the object; of a person who gives the pose
+/// there is a candidate, and some with the palm off the object: givers use precision grips, which
+/// leave the receiver more of the object.
 void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const Vector3& fingers,
                           double tilt) {
-  constexpr double kFar = 0.4;   // max length of the motion [m]
-  constexpr double kRoom = 0.2;  // distance from a point to leave free that costs nothing [m]
+  constexpr double kFar = 0.4;  // max length of the motion [m]
   double moved = 0, beyond = distance(start) - kPalmDistance;
   for (int i = 0; i < 40 && moved < kFar && beyond > 5e-4; ++i) {
     moved += beyond;
@@ -203,6 +204,17 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
   T.linear() << -direction, fingers.cross(-direction), fingers;
   T.linear() = T.linear() * Eigen::AngleAxisd(tilt, Vector3::UnitY()).toRotationMatrix();
   T.translation() = start - moved * direction;
+  add_candidate(T, direction);
+  if (!query_.p_left || settings_.max_palm_gap <= 0) return;
+  for (int i = 1; i <= kPalmGaps; ++i) {
+    T.translation() += settings_.max_palm_gap / kPalmGaps * direction;
+    add_candidate(T, direction);
+  }
+}
+
+/// Keeps a pose of the hand, with the palm's normal against `direction`, if the arm reaches it.
+void FreeGraspSearch::add_candidate(const Pose& T, const Vector3& direction) {
+  constexpr double kRoom = 0.2;  // distance from a point to leave free that costs nothing [m]
   Pose T_wrist = T;
   T_wrist.translation() -= query_.wrist * T.linear().col(2);
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);

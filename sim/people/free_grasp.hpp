@@ -31,6 +31,7 @@ struct FreeGraspSettings {
   double min_opposition{0.2};   ///< min cosine between thumb or palm and opposed fingers
   double side_preference{0.5};  ///< cost of a hand opposite the preferred direction
   double room_preference{2.0};  ///< cost of a hand near the surface left to a receiver
+  double max_palm_gap{0.045};   ///< max distance of a giver's palm from the object [m]
   double away_weight{0.7};      ///< side away from the robot, relative to that toward the person
 };
 
@@ -74,6 +75,7 @@ class FreeGraspSearch {
   bool is_clear(const HandPart& part) const;
   void add_about(const Vector3& anchor, const Vector3& direction);
   void add(const Vector3& start, const Vector3& direction, const Vector3& fingers, double tilt);
+  void add_candidate(const Pose& T_world_hand, const Vector3& direction);
   HumanArm leaning_to(const Vector3& p_wrist) const;
   void consider(const Candidate& candidate);
   std::optional<FreeGrasp> test(const Candidate& candidate) const;

@@ -41,6 +41,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.taking.side_preference = read.taking_side_preference;
   s.taking.away_weight = read.taking_away_weight;
   s.taking.room_preference = read.giving_room_preference;
+  s.taking.max_palm_gap = read.giving_palm_gap;
   s.touch_force = read.touch_force;
   s.grasp_time = read.grasp_time;
   s.lose_time = read.lose_time;

@@ -102,6 +102,40 @@ TEST_F(FreeGraspTest, a_hand_that_gives_leaves_the_upper_end_free) {
   }
 }
 
+/// In a precision grip the hand is near less of the surface than with the palm on the object.
+TEST_F(FreeGraspTest, a_hand_that_gives_may_hold_by_the_digits_alone) {
+  query_.preferred = Vector3(-0.6, -0.8, 0);
+  load("mug");
+  query_.p_left = query_.T_world_object * Vector3(0, 0, 0.1);
+  const auto free_fraction = [&](const FreeGrasp& grasp) {
+    const std::vector<HandPart> parts = hand(grasp);
+    double free = 0, all = 0;
+    for (const auto& t : object_.mesh.triangles) {
+      const Vector3 &a = object_.mesh.vertices[t[0]], &b = object_.mesh.vertices[t[1]],
+                    &c = object_.mesh.vertices[t[2]];
+      const double area = (b - a).cross(c - a).norm();
+      const Vector3 p = query_.T_world_object * ((a + b + c) / 3);
+      const bool is_free = std::none_of(parts.begin(), parts.end(), [&p](const HandPart& part) {
+        return distance({p, p, 0}, part) < 0.03;
+      });
+      all += area;
+      free += is_free ? area : 0;
+    }
+    return free / all;
+  };
+  FreeGraspSettings palm_on_object;
+  palm_on_object.max_palm_gap = 0;
+  const auto with_palm = find_free_grasp(query_, shape_, palm_on_object);
+  const auto by_digits = find_free_grasp(query_, shape_);
+  ASSERT_TRUE(with_palm && by_digits);
+  EXPECT_GE(by_digits->digits_in_contact, 3);
+  EXPECT_GT(surface_distance(object_, by_digits->T_object_hand.translation()),
+            kPalmDistance + 0.01);
+  std::printf("free of the hand: %.2f by the digits, %.2f with the palm\n",
+              free_fraction(*by_digits), free_fraction(*with_palm));
+  EXPECT_GT(free_fraction(*by_digits), free_fraction(*with_palm) + 0.1);
+}
+
 /// A planner's assumption of a giver's digits, of whom only wrist and hand are observed.
 TEST_F(FreeGraspTest, assumed_digits_are_near_those_of_a_hand_that_gives) {
   query_.preferred = Vector3(-0.6, -0.8, 0);
