@@ -16,6 +16,13 @@ settings::SparkSettings load_settings(const std::filesystem::path& folder) {
   auto settings = settings::read_spark_settings(folder / "spark.txtpb", &text);
   if (settings.max_period < std::max(settings.human_period, settings.publish_period))
     text.refuse("max_period", "must be at least human_period and publish_period");
+  double inner = 0.0;
+  for (const double limit : {settings.contact_zone, settings.danger_zone, settings.interaction_zone,
+                             settings.social_zone}) {
+    if (!(limit > inner))
+      text.refuse("contact_zone", "the zones must grow: contact, danger, interaction, social");
+    inner = limit;
+  }
   std::set<std::string> clocks;
   for (const settings::SourceClock& clock : settings.clocks)
     if (clock.source.empty() || !clocks.insert(clock.source).second)

@@ -17,15 +17,8 @@
 namespace handsel::spark {
 namespace {
 
-// Max distances of the zones contact, danger, interaction and social [m].
-constexpr std::array kZoneLimits = {0.1, 0.45, 1.2, 3.6};
 constexpr std::array kZoneFacts = {FactKind::in_contact_zone, FactKind::in_danger_zone,
                                    FactKind::in_interaction_zone, FactKind::in_social_zone};
-constexpr double kHysteresis = 1.2;        // ratio of the limits at which a fact ends and begins
-constexpr double kReachHysteresis = 1.02;  // the same ratio for the reach
-// Half angle of the field of view about the gaze, or about the body's direction without gaze [rad].
-constexpr double kFieldOfView = 1.05;
-constexpr double kUnknownExtent = 0.1;  // side length of an object without a model [m]
 
 double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
@@ -55,20 +48,22 @@ FactFinder::FactFinder(const settings::SparkSettings& settings,
       library_(std::move(objects)),
       capsules_(robot_capsules(*robot_)),
       arms_(reaches_of(*robot_)),
+      zone_limits_{settings.contact_zone, settings.danger_zone, settings.interaction_zone,
+                   settings.social_zone},
       handover_(settings),
       lasting_(settings.fact_dwell),
       instant_(0) {}
 
 int FactFinder::zone_level(Zone& zone, double distance, TimePoint now) const {
   int level = 0;
-  while (level < 4 && distance > kZoneLimits[static_cast<std::size_t>(level)]) ++level;
+  while (level < 4 && distance > zone_limits_[static_cast<std::size_t>(level)]) ++level;
   if (level <= zone.level) {
     zone.level = level;
     zone.last_inside = now;
     return level;
   }
   const bool beyond =
-      distance > kZoneLimits[static_cast<std::size_t>(zone.level)] + settings_.zone_hysteresis;
+      distance > zone_limits_[static_cast<std::size_t>(zone.level)] + settings_.zone_hysteresis;
   if (!beyond) zone.last_inside = now;
   if (beyond && to_seconds(now - zone.last_inside) >= settings_.zone_dwell) zone.level = level;
   return zone.level;
@@ -96,12 +91,12 @@ void FactFinder::robot_facts(const Scene& scene, const Person& person, const Rob
                                        joint_of(person, "torso").velocity, gap.on_robot);
   const double limit = settings_.approach_speed;
   out.push_back({FactKind::approaching, person.id, "", approach, approach > limit,
-                 approach > limit / kHysteresis,
+                 approach > limit / settings_.fact_hysteresis,
                  evidence("%.2f m/s toward the robot, %.2f m away", approach, gap.distance)});
   if (person.gaze_known) {
     const double angle = std::min(angle_to(person, robot.tool), angle_to(person, robot.body));
     out.push_back({FactKind::attentive, person.id, "", angle, angle < settings_.attentive_angle,
-                   angle < kHysteresis * settings_.attentive_angle,
+                   angle < settings_.fact_hysteresis * settings_.attentive_angle,
                    evidence("gaze %.0f degrees off the robot", degrees(angle))});
   }
   const int level = zone_level(zones_[person.id], gap.distance, now);
@@ -117,7 +112,8 @@ void FactFinder::gaze_facts(const Scene& scene, const HumanState& people, const 
     const double distance = (p_world - person.gaze_origin).norm();
     const double beside = angle_to(person, p_world) - std::atan2(radius, distance);
     out.push_back({FactKind::looking_at, person.id, at, std::max(0.0, beside),
-                   beside < settings_.looking_angle, beside < kHysteresis * settings_.looking_angle,
+                   beside < settings_.looking_angle,
+                   beside < settings_.fact_hysteresis * settings_.looking_angle,
                    evidence("gaze %.0f degrees beside it, %.1f m away",
                             degrees(std::max(0.0, beside)), distance)});
   };
@@ -141,7 +137,7 @@ void FactFinder::hand_facts(const Scene& scene, const Person& person,
                    (object.T_world_object.translation() - joint_of(person, hand).position).norm());
     out.push_back({FactKind::hand_near_object, person.id, object.id, min_distance,
                    min_distance < settings_.near_distance,
-                   min_distance < kHysteresis * settings_.near_distance,
+                   min_distance < settings_.fact_hysteresis * settings_.near_distance,
                    evidence("hand %.2f m from its middle", min_distance)});
   }
 }
@@ -154,8 +150,8 @@ FactFinder::Extent FactFinder::extent(const SceneObject& object) const {
   } else {
     e.box = object_extent(nullptr, object.primitive);
     if (e.box.isEmpty())
-      e.box = Eigen::AlignedBox3d(Vector3::Constant(-kUnknownExtent / 2),
-                                  Vector3::Constant(kUnknownExtent / 2));
+      e.box = Eigen::AlignedBox3d(Vector3::Constant(-settings_.unknown_size / 2),
+                                  Vector3::Constant(settings_.unknown_size / 2));
     e.box.transform(object.T_world_object);
   }
   e.radius = e.box.diagonal().norm() / 2;
@@ -181,7 +177,8 @@ void FactFinder::pair_facts(const Scene& scene, std::size_t i, std::size_t k,
   const bool nested = inside(a, ea, b, eb) | inside(b, eb, a, ea);
   const double limit = settings_.next_distance;
   out.push_back({FactKind::next_to, a.id, b.id, apart, !nested && apart < limit,
-                 !nested && apart < kHysteresis * limit, evidence("%.2f m apart", apart)});
+                 !nested && apart < settings_.fact_hysteresis * limit,
+                 evidence("%.2f m apart", apart)});
 }
 
 Candidate FactFinder::reach_fact(const Scene& scene, const SceneObject& object) const {
@@ -200,7 +197,7 @@ Candidate FactFinder::reach_fact(const Scene& scene, const SceneObject& object) 
           "",
           distance_to_shoulder,
           distance_to_shoulder < length,
-          distance_to_shoulder < kReachHysteresis * length,
+          distance_to_shoulder < settings_.reach_hysteresis * length,
           evidence("%.2f m from the shoulder of an arm of %.2f m", distance_to_shoulder, length)};
 }
 
@@ -234,7 +231,8 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people,
         hidden = hides(SightCapsule{T * c.a, T * c.b, c.radius}, eyes, middle);
       }
       out.push_back({FactKind::visible_to, object.id, person.id, aside,
-                     !hidden && aside < kFieldOfView, !hidden && aside < kHysteresis * kFieldOfView,
+                     !hidden && aside < settings_.field_of_view,
+                     !hidden && aside < settings_.fact_hysteresis * settings_.field_of_view,
                      evidence("%.0f degrees from where they look", degrees(aside))});
     }
     for (std::size_t k = i + 1; k < scene.objects.size(); ++k) pair_facts(scene, i, k, out);

@@ -2,6 +2,7 @@
 // proximity and handover. Pure.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -58,6 +59,7 @@ class FactFinder {
   std::vector<Pose> links_;
   std::vector<Extent> extents_;  // extents of the scene's objects
   std::vector<ArmReach> arms_;
+  std::array<double, 4> zone_limits_;  // of the zones contact, danger, interaction and social [m]
   std::map<std::string, Zone> zones_;
   HandoverFacts handover_;
   FactMemory lasting_, instant_;  // with dwell time; for candidates with their own hysteresis

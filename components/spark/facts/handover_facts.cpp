@@ -10,11 +10,6 @@
 namespace handsel::spark {
 namespace {
 
-// Min cosine of the angle between an offered object and its receiver.
-constexpr double kMinOfferCosine = 0.0;
-// Max distance of a reached-for target beyond the length of the arm [m].
-constexpr double kMaxBeyondArm = 0.5;
-
 /// Returns the distance of the hand in front of its shoulder, divided by the length of the arm.
 double stretch(const Person& person, Side side) {
   const bool left = side == Side::left;
@@ -95,7 +90,7 @@ void HandoverFacts::offered(const SceneObject& object, const HumanState& people,
                     [&](const auto& r) { return r.first.first == object.id; });
     const bool is_at_rest_offer =
         !is_changing_hands && std::abs(toward) < settings_.offer_speed &&
-        cosine > kMinOfferCosine &&
+        cosine > settings_.min_offer_cosine &&
         stretch(giver, nearer_hand(giver, object.T_world_object.translation())) >
             settings_.stretched;
     const bool begins = near && (toward > settings_.offer_speed || is_at_rest_offer);
@@ -121,7 +116,7 @@ void HandoverFacts::reached_for(const Person& person, const std::string& target,
   double toward = -1e9, distance = 0, back = 1e9;
   for (const char* side : {"l_hand", "r_hand"}) {
     const BodyJoint& hand = joint_of(person, side);
-    if ((p_world - hand.position).norm() > arm_length(person) + kMaxBeyondArm) continue;
+    if ((p_world - hand.position).norm() > arm_length(person) + settings_.max_beyond_arm) continue;
     const double speed = speed_toward(hand.position, hand.velocity - torso.velocity, p_world);
     back = std::min(back, speed);
     if (speed <= toward) continue;

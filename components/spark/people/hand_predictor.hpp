@@ -3,6 +3,7 @@
 
 #include <deque>
 
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
 #include "components/spark/people/fading_motion.hpp"
 
@@ -15,9 +16,10 @@ namespace handsel::spark {
 class HandPredictor {
  public:
   HandPredictor();
+  using Settings = settings::SparkSettings::HandPrediction;
   /// Restarts with a first sample, or after a gap. `trunk`: mean of several trunk joints, world
   /// [m]; `noise`: standard deviation of a joint [m].
-  void reset(const Vector3& hand, const Vector3& trunk, double noise);
+  void reset(const Vector3& hand, const Vector3& trunk, double noise, const Settings& settings);
   /// Takes a sample, world [m]. `dt`: time since the last sample, > 0 [s]; `noise`: standard
   /// deviation of a joint [m].
   void update(const Vector3& hand, const Vector3& trunk, double dt, double noise);
@@ -36,6 +38,7 @@ class HandPredictor {
   };
   Ball at(double horizon, double factor) const;
 
+  Settings settings_;
   FadingMotion hand_, trunk_;           // hand_: relative to the trunk
   double clock_{0};                     // time since the reset [s]
   double error_factor_{1};              // factor of the radius by recent errors

@@ -9,8 +9,6 @@
 namespace handsel::spark {
 namespace {
 
-// Max time without observation for which walking is assumed under another id [s].
-constexpr double kMaxOtherIdGap = 0.3;
 constexpr double kGridStep = 0.3;       // distance of the tested places of a lost person [m]
 constexpr double kMaxTestRadius = 5;    // max radius of the tested volume of a lost person [m]
 constexpr double kMaxBodyExtent = 4;    // max extent of a body; farther bodies are not compared [m]
@@ -62,8 +60,9 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation,
       const auto known = track.bodies.find(observation.source);
       const bool same_id = known != track.bodies.end() && known->second == body.body;
       const double gap = std::max(0.0, track.age(seen));
-      const double reach = settings_.association_distance +
-                           settings_.lost_speed * (same_id ? gap : std::min(gap, kMaxOtherIdGap));
+      const double reach =
+          settings_.association_distance +
+          settings_.lost_speed * (same_id ? gap : std::min(gap, settings_.max_other_id_gap));
       if ((middle - position(track.person, kTorso)).head<2>().norm() > reach + kMaxBodyExtent)
         continue;
       const double d = distance(track, body);

@@ -11,9 +11,7 @@ namespace handsel::spark {
 namespace {
 
 constexpr double kMergeTime = 0.1;       // max time between observations merged to one body [s]
-constexpr double kConfirmTime = 0.15;    // inflation time of a lost person after the return [s]
 constexpr double kMaxHandGap = 0.5;      // max gap of samples before a hand's motion restarts [s]
-constexpr double kUnseenNoise = 3;       // factor of the noise of an unobserved joint
 constexpr int kPredictions = 5;          // number of predictions of a hand
 constexpr double kPredictionStep = 0.1;  // time between predictions [s]
 constexpr std::size_t kJoints = kBodyJoints.size();
@@ -73,7 +71,7 @@ void place_unobserved(const Track& track, std::vector<BodyJoint>& body) {
 
 /// Takes a sample of each observed hand; an observed wrist also determines the hand.
 void update_hands(Track& track, const std::array<bool, kJoints>& observed, TimePoint at,
-                  double noise) {
+                  const settings::SparkSettings& settings) {
   Vector3 trunk = Vector3::Zero();
   for (const int joint : kTrunkMiddle)
     trunk += joint_position(track.person, joint) / static_cast<double>(kTrunkMiddle.size());
@@ -85,9 +83,9 @@ void update_hands(Track& track, const std::array<bool, kJoints>& observed, TimeP
     std::optional<TimePoint>& last = track.hand_seen[side];
     const double dt = last ? to_seconds(at - *last) : kMaxHandGap;
     if (dt >= kMaxHandGap)
-      track.hands[side].reset(hand, trunk, noise);
+      track.hands[side].reset(hand, trunk, settings.joint_noise, settings.hand_prediction);
     else if (dt > 1e-4)
-      track.hands[side].update(hand, trunk, dt, noise);
+      track.hands[side].update(hand, trunk, dt, settings.joint_noise);
     else
       continue;
     last = at;
@@ -187,19 +185,20 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   place_unobserved(track, fitted);
   std::array<double, kJoints> noise{};
   for (std::size_t i = 0; i < kJoints; ++i)
-    noise[i] =
-        observed_recently[i] ? 0.0 : settings.joint_noise * (observed[i] ? 1.0 : kUnseenNoise);
+    noise[i] = observed_recently[i]
+                   ? 0.0
+                   : settings.joint_noise * (observed[i] ? 1.0 : settings.unobserved_noise);
   track.motion.update(fitted, noise, at);
   const auto inflate = [&](double by, double time) {
     track.extra_inflation = seen < track.extra_until ? track.extra_inflation + by : by;
     track.extra_until = std::max(track.extra_until, seen + from_seconds(time));
   };
   if (known && dt > settings.lost_after)
-    inflate(settings.lost_speed * dt + jump, kConfirmTime);
+    inflate(settings.lost_speed * dt + jump, settings.confirm_time);
   else if (known && jump > settings.person_max_speed * (dt + behind) + settings.settled_distance)
     inflate(jump, settings.doubt_time);
   person.joints = std::move(fitted);
-  update_hands(track, observed, at, settings.joint_noise);
+  update_hands(track, observed, at, settings);
   update_palms(track, body, observed, seen, settings.min_confidence);
   track.seen = at;
   track.empty_since.reset();

@@ -11,9 +11,6 @@
 namespace handsel::spark {
 namespace {
 
-// Min gap to the support at which an object in a loaded hand is lifted [m].
-constexpr double kMinLiftGap = 0.01;
-
 /// Returns the distance of a palm from an object [m]: from its bounding box, plus half the smallest
 /// side of the box. The centre of a long object may be far from a hand that holds one end.
 double palm_distance(const Vector3& p_palm, const ObjectModel& model, const Pose& T_world_object) {
@@ -153,8 +150,8 @@ void HolderAssignment::assign(ObjectTrack& track) const {
     track.T_palm_object = in_.robot.hands()[*by].T_world_palm.inverse() * object.T_world_object;
   }
   if (!robot_holds && is_in_hand_of_holder(object)) return;
-  if (const SceneBox* box =
-          support_under(object, robot_holds ? kMinLiftGap : in_.settings.support_gap)) {
+  if (const SceneBox* box = support_under(
+          object, robot_holds ? in_.settings.min_lift_gap : in_.settings.support_gap)) {
     object.holder = Holder::surface;
     object.holder_id = box->id;
     return;
