@@ -18,6 +18,10 @@ settings::ManipulationPlannerSettings load_settings(const NodeContext& context) 
     if (!(s.replan_time > 0)) text.refuse("replan_time", "must be above 0 unless live_period is 0");
     if (!(s.live_reach > 0)) text.refuse("live_reach", "must be above 0 unless live_period is 0");
   }
+  if (s.otp_max_ahead < s.otp_min_ahead)
+    text.refuse("otp_max_ahead", "must be at least otp_min_ahead");
+  if (s.otp_max_below < s.otp_min_below)
+    text.refuse("otp_max_below", "must be at least otp_min_below");
   s.people = load_people(context.settings).people;
   return s;
 }

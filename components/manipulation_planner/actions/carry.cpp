@@ -15,7 +15,6 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kSamePlace = 0.004;  // what moved less is where it was planned to be taken [m]
-constexpr double kMassRatio = 0.5;    // of the object's mass that each hand bears
 constexpr std::size_t kSteps = 3;     // of a plan: two grasps and the place
 
 /// The steps of the plan.
@@ -53,7 +52,7 @@ Routine<Outcome> grip(Parts& parts, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
   const double timeout = 2 * parts.settings.hand_timeout;
   HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout,
-                                              &grasp.hand_effort, kMassRatio);
+                                              &grasp.hand_effort, parts.settings.two_hand_share);
   if (!closed.outcome.good) co_return closed.outcome;
   if (closed.state != HandState::grasped)
     co_return Outcome::failure("the hand " + parts.arm.fingers().name + " closed on nothing",

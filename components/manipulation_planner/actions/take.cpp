@@ -9,8 +9,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kOfferCheckPeriod = 0.02;  // [s]
-
 /// How far an attempt has come.
 enum class Progress : std::uint8_t {
   failed,       ///< another grasp or offer is needed
@@ -268,7 +266,7 @@ Routine<Outcome> await_release(Parts& parts, const TakeAttempt& take, const Gras
   while (parts.now.time() < deadline &&
          to_seconds(parts.now.time() - since) < parts.settings.release_time) {
     if (!is_given()) since = parts.now.time();
-    co_await parts.waiting.pause(kOfferCheckPeriod);
+    co_await parts.waiting.pause(parts.settings.release_check_period);
   }
   co_return is_given() ? Outcome{}
                        : Outcome::failure(offer.giver + " does not release " + offer.object);

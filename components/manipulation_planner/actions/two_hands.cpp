@@ -10,9 +10,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinEdgeDistance = 0.01;                    // of any part of the object [m]
-constexpr double kGrid = 0.02;                               // between places that are tried [m]
-constexpr std::size_t kMaxPlacesOfTwo = 4;                   // on a surface
 constexpr double kReleaseRetreatRatios[] = {1.0, 0.8, 0.6};  // of the planned retreat
 
 /// Returns the shoulders of all arms in the world.
@@ -35,7 +32,11 @@ class SurfacePlaces {
   SurfacePlaces(const Scene& scene, const SceneBox& box, const SceneObject& seen,
                 const Eigen::AlignedBox3d& extent,
                 const settings::ManipulationPlannerSettings& settings)
-      : scene_(scene), box_(box), seen_(seen), extent_(extent) {
+      : scene_(scene),
+        box_(box),
+        seen_(seen),
+        extent_(extent),
+        edge_(settings.two_hand_object_edge) {
     const Pose& now = seen.T_world_object;
     const double yaw = std::atan2(now.linear()(1, 0), now.linear()(0, 0));
     turn_ = Eigen::AngleAxisd(yaw, Vector3::UnitZ());
@@ -60,8 +61,8 @@ class SurfacePlaces {
         const Vector3 corner =
             box_.T_world_box.inverse() *
             (p + turn_ * (extent_.center() + Vector3(x * half_.x(), y * half_.y(), 0)));
-        if (std::abs(corner.x()) > box_.size.x() / 2 - kMinEdgeDistance ||
-            std::abs(corner.y()) > box_.size.y() / 2 - kMinEdgeDistance)
+        if (std::abs(corner.x()) > box_.size.x() / 2 - edge_ ||
+            std::abs(corner.y()) > box_.size.y() / 2 - edge_)
           return false;
       }
     return true;
@@ -73,7 +74,7 @@ class SurfacePlaces {
   Eigen::AlignedBox3d extent_;
   Eigen::Quaterniond turn_;
   Vector3 half_{Vector3::Zero()};
-  double gap_{};
+  double gap_{}, edge_{};  // to other things, to the edge [m]
 };
 
 /// Returns the grasp by which the hand in use holds what it does, as it lies there now.
@@ -132,8 +133,8 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
   const double x_end = std::max(0.0, box->size.x() / 2 - settings.two_hand_edge),
                y_end = std::max(0.0, box->size.y() / 2 - settings.two_hand_edge);
   const bool both = goal.kind == ActionKind::carry;
-  for (double x = -x_end; x <= x_end + 1e-9; x += kGrid) {
-    for (double y = -y_end; y <= y_end + 1e-9; y += kGrid) {
+  for (double x = -x_end; x <= x_end + 1e-9; x += settings.two_hand_grid) {
+    for (double y = -y_end; y <= y_end + 1e-9; y += settings.two_hand_grid) {
       const Vector3 at = box->T_world_box * Vector3(x, y, box->size.z() / 2);
       if (!surface.is_free(at)) continue;
       // Neither folded nor stretched does an arm move well.
@@ -153,7 +154,8 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
     const auto is_near = [&](const Pose& o) {
       return (o.translation() - p.at).head<2>().norm() < settings.two_hand_gap / 2;
     };
-    if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= kMaxPlacesOfTwo) continue;
+    if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= settings.two_hand_places)
+      continue;
     out.push_back(make_pose(p.at + model.height_above_support * Vector3::UnitZ(), surface.turn()));
   }
   return out;

@@ -11,11 +11,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
-constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
-constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
-constexpr int kHeadings = 24;  // of the object at each place
-
 struct Candidate {
   Pose T_world_object;
   double cost;
@@ -159,6 +154,17 @@ class OtpCosts {
   bool apart_{};
 };
 
+/// Returns the values from `min` to `max` in steps, each rounded to micrometres so that it does not
+/// depend on how the steps add up [m].
+std::vector<double> values_between(double min, double max, double step) {
+  constexpr double kMicrometres = 1e6;  // in a metre
+  const int steps = static_cast<int>(std::floor((max - min) / step + 1e-6));
+  std::vector<double> values;
+  for (int k = 0; k <= steps; ++k)
+    values.push_back(std::round((min + k * step) * kMicrometres) / kMicrometres);
+  return values;
+}
+
 /// Places and headings of the object before the person, the cheapest first, and how many places
 /// were left out.
 struct Candidates {
@@ -166,15 +172,17 @@ struct Candidates {
   int out_of_reach{}, blocked{}, forbidden{};
 };
 
-Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
+Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs,
+                           const settings::ManipulationPlannerSettings& settings) {
   Candidates found;
   const double shoulder_z =
       query.person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
   const Vector3& toward_robot = costs.toward_robot();
   const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
   const auto add_headings = [&](const Vector3& p, double cost) {
-    for (int k = 0; k < kHeadings; ++k) {
-      const double yaw = 2 * std::numbers::pi * k / kHeadings;
+    const int headings = static_cast<int>(settings.otp_headings);
+    for (int k = 0; k < headings; ++k) {
+      const double yaw = 2 * std::numbers::pi * k / headings;
       Pose T = query.T_world_object;
       T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * query.T_world_object.linear();
       T.translation() = p;
@@ -182,9 +190,14 @@ Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
         found.all.push_back({T, cost + *attitude});
     }
   };
-  for (const double ahead : kAhead) {
-    for (const double aside : kAside) {
-      for (const double below : kBelowShoulder) {
+  const std::vector<double> to_side =
+      values_between(-settings.otp_max_aside, settings.otp_max_aside, settings.otp_aside_step);
+  const std::vector<double> below_shoulder =
+      values_between(settings.otp_min_below, settings.otp_max_below, settings.otp_below_step);
+  for (const double ahead :
+       values_between(settings.otp_min_ahead, settings.otp_max_ahead, settings.otp_ahead_step)) {
+    for (const double aside : to_side) {
+      for (const double below : below_shoulder) {
         Vector3 p = costs.torso() + ahead * toward_robot + aside * across;
         p.z() = shoulder_z - below;
         double cost = 0;
@@ -265,7 +278,7 @@ OtpSearch find_otp(const RobotModel& robot, const Group& arm, const OtpQuery& qu
     out.reason = "person " + query.person.id + " stands inside the robot's base";
     return out;
   }
-  Candidates candidates = find_candidates(query, costs);
+  Candidates candidates = find_candidates(query, costs, settings);
   add_partners(costs, settings.partner_poses, candidates.all);
   int unreachable = 0;
   std::vector<OtpPose> confined;  // the hand could not retreat
@@ -344,7 +357,7 @@ OtpSearch shifted_otp(const RobotModel& robot, const Group& arm, const OtpQuery&
     if (ratio * shift.norm() < settings.min_shift) break;
     for (int k = 0; k <= 2 * kMaxTurn; ++k) {
       const int steps = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
-      const double turn = steps * 2 * std::numbers::pi / kHeadings;
+      const double turn = steps * 2 * std::numbers::pi / static_cast<int>(settings.otp_headings);
       Pose T_shifted = T_world_object;
       T_shifted.translation() += ratio * shift;
       T_shifted.linear() = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * T_world_object.linear();

@@ -98,7 +98,8 @@ struct PoseShift {
 };
 
 /// Shifts a handover from the pose to the point wanted, with the heading of the object
-/// as little changed as reach permits, by at most 60 degrees. Where that is no object transfer
+/// as little changed as reach permits, by at most four of the headings that find_otp() compares.
+/// Where that is no object transfer
 /// point, out of reach, or fits no grasp of the person's ready hand, shifts by three quarters, the
 /// half or a quarter of that. Returns at most one pose; none where the shift would fall below
 /// min_shift.

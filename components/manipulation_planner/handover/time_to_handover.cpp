@@ -7,7 +7,6 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kMinSpeedFactor = 0.05;  // that a motion is expected to have
 
 }  // namespace
 
@@ -29,7 +28,7 @@ double time_to_handover(const ActionStatus& action, const Snapshot& now,
       active.trajectory != status->trajectory)
     return kNever;
   const double left = std::max(0.0, active.rest.duration() - active.time) /
-                      std::clamp(active.speed_factor, kMinSpeedFactor, 1.0);
+                      std::clamp(active.speed_factor, settings.predicted_min_factor, 1.0);
   return left + (phase == ActionPhase::approach ? settings.predicted_reach_time : 0.0) +
          (receives ? settings.predicted_close_time : 0.0);
 }

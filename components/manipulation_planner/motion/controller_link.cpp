@@ -3,9 +3,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr int kMaxTries = 5;          // to send a trajectory command
-constexpr double kTryPeriod = 0.3;    // between tries [s]
-constexpr double kStopPeriod = 0.1;   // between stops of a dropped motion [s]
 constexpr double kMaxDuration = 600;  // of a motion whose end is awaited [s]
 
 }  // namespace
@@ -46,10 +43,10 @@ HandCommand ControllerLink::hand_command() {
 
 Routine<Outcome> ControllerLink::send(const TrajectoryCommand& command) {
   const std::uint64_t id = command.id;
-  for (int tries = 0; tries < kMaxTries; ++tries) {
+  for (std::uint32_t tries = 0; tries < settings_.command_tries; ++tries) {
     outbox_.trajectories.push_back(command);
     const bool acknowledged = co_await waiting_.until(
-        [this, id] { return now_.execution()->trajectory == id; }, kTryPeriod);
+        [this, id] { return now_.execution()->trajectory == id; }, settings_.command_period);
     if (acknowledged) co_return Outcome{};
   }
   co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
@@ -85,9 +82,10 @@ Routine<Outcome> ControllerLink::end_of(std::uint64_t command) {
 
 Routine<Outcome> ControllerLink::stop() {
   const TrajectoryCommand command = stop_command();
-  for (int tries = 0; tries < kMaxTries && now_.execution()->trajectory != command.id; ++tries) {
+  for (std::uint32_t tries = 0;
+       tries < settings_.command_tries && now_.execution()->trajectory != command.id; ++tries) {
     outbox_.trajectories.push_back(command);
-    co_await waiting_.pause(kTryPeriod);
+    co_await waiting_.pause(settings_.command_period);
   }
   co_return Outcome{};
 }
@@ -106,7 +104,7 @@ void ControllerLink::repeat_stop() {
   const bool acknowledged =
       status && status->trajectory == dropped_stop_->id && status->motion != MotionState::refused;
   if (acknowledged || now_.active().trajectory == 0) return dropped_stop_.reset();
-  if (to_seconds(waiting_.now() - stop_sent_) < kStopPeriod) return;
+  if (to_seconds(waiting_.now() - stop_sent_) < settings_.stop_period) return;
   stop_sent_ = waiting_.now();
   dropped_stop_->epoch = status ? status->epoch : 0;
   outbox_.trajectories.push_back(*dropped_stop_);

@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::uint32_t kBlocked = bit(Cause::forecast_collision);
 constexpr std::uint32_t kTooNear = bit(Cause::separation) | bit(Cause::attention_slow);
-constexpr double kMinFollowed = 0.02;  // shift of an object that the motion follows [m]
 
 }  // namespace
 
@@ -103,7 +102,7 @@ std::optional<Vector3> MotionMonitor::follow_object(MotionSpec& motion,
   Pose T_world_object = object->T_world_object;
   if (p_ahead) T_world_object.translation() = *p_ahead;
   const Vector3 p_object = T_world_object.translation();
-  if ((p_object - motion.object->p_world).norm() < kMinFollowed) return std::nullopt;
+  if ((p_object - motion.object->p_world).norm() < settings_.min_followed) return std::nullopt;
   const std::optional<Grasp> grasp = arm_.grasp_at(T_world_object, *motion.object->grasp);
   if (!grasp) return std::nullopt;
   motion.goals = {grasp->approach_joints};

@@ -11,10 +11,9 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kReachStep = 0.1;      // or within this more, as often as braking needs it [rad]
-constexpr double kReturnTimeout = 1.0;  // for the controller to report the old command again [s]
-constexpr double kSameTime = 1e-6;      // [s]
-constexpr double kAtRest = 1e-9;        // [rad/s, m/s]
+constexpr double kReachStep = 0.1;  // or within this more, as often as braking needs it [rad]
+constexpr double kSameTime = 1e-6;  // [s]
+constexpr double kAtRest = 1e-9;    // [rad/s, m/s]
 
 /// Returns whether one of the last `segments` segments must be slower than it was timed, to less
 /// than `ratio` of that. Speeds as in TrajectoryReply.
@@ -44,7 +43,12 @@ SwitchPlanner OnlineReplanner::switch_planner(const MotionSpec& motion) const {
   const auto& settings = parts_.settings;
   return {parts_.arm.shared_robot(),
           group_of(parts_, motion),
-          {settings.live_slower, settings.live_gain}};
+          {.max_slower = settings.live_slower,
+           .min_saved = settings.live_gain,
+           .reserve = settings.switch_reserve,
+           .step = settings.switch_step,
+           .rest_step = settings.switch_rest_step,
+           .margin = settings.switch_margin}};
 }
 
 PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
@@ -232,7 +236,7 @@ Routine<Outcome> OnlineReplanner::switch_to_candidate(
     const auto is_back = [this, &running] {
       return parts_.now.execution()->trajectory == running.command;
     };
-    co_await parts_.waiting.until(is_back, kReturnTimeout);
+    co_await parts_.waiting.until(is_back, parts_.settings.switch_back_timeout);
     co_return why;
   }
   running = next;

@@ -10,10 +10,8 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kStep = 0.01;       // of the retreat [m]
-constexpr double kLookahead = 0.02;  // of a motion, by its fastest axis [rad, m]
-constexpr double kDamping = 1e-3;    // of the least-squares solution
-constexpr double kMaxTurn = 0.1;     // of one axis for a step [rad, m]
+constexpr double kDamping = 1e-3;  // of the least-squares solution
+constexpr double kMaxTurn = 0.1;   // of one axis for a step [rad, m]
 
 struct Placed {
   Vector3 a, b;
@@ -48,7 +46,9 @@ bool RetreatPlanner::leads_away(const Vector& from, const Vector& to, const Pose
   const double farthest = (to - from).cwiseAbs().maxCoeff();
   if (farthest < 1e-9) return true;
   const std::vector<Pose> before = links(from),
-                          after = links(from + std::min(1.0, kLookahead / farthest) * (to - from));
+                          after =
+                              links(from + std::min(1.0, settings_.retreat_lookahead / farthest) *
+                                               (to - from));
   Vector3 on_robot, on_person;
   for (const Person& person : people.people) {
     for (const BodyCapsule& part : body_capsules(person)) {
@@ -98,7 +98,7 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
   std::vector<Vector> out;
   const auto n = static_cast<Eigen::Index>(arm_.axes.size());
   Vector q = from;
-  for (double gone = 0.0; gone < max_distance; gone += kStep) {
+  for (double gone = 0.0; gone < max_distance; gone += settings_.retreat_step) {
     const std::vector<Pose> T_root_link = links(q);
     std::vector<Near> near;
     for (const Person& person : people.people) {
@@ -132,8 +132,8 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
     }
     const Eigen::MatrixXd normal = rates * rates.transpose() +
                                    kDamping * Eigen::MatrixXd::Identity(rates.rows(), rates.rows());
-    const Vector change =
-        rates.transpose() * normal.ldlt().solve(Vector::Constant(rates.rows(), kStep));
+    const Vector change = rates.transpose() * normal.ldlt().solve(Vector::Constant(
+                                                  rates.rows(), settings_.retreat_step));
     Vector next = q;
     for (Eigen::Index i = 0; i < n; ++i) next[arm_.axes[static_cast<std::size_t>(i)]] += change[i];
     if (change.cwiseAbs().maxCoeff() > kMaxTurn || !within_limits(next) ||

@@ -21,10 +21,10 @@ class RetreatPlanner {
   /// person going clearly away from that person.
   bool leads_away(const Vector& from, const Vector& to, const Pose& T_world_base,
                   const HumanState& people) const;
-  /// Returns configurations of the arm, each about a centimetre further, that lead every link near
-  /// a person away from them, at most `max_distance` [m] in all, ending where no person is near any
-  /// more or a link or a joint limit allows no more; empty: no person is near, or nothing leads
-  /// away.
+  /// Returns configurations of the arm, each about `retreat_step` further, that lead every link
+  /// near a person away from them, at most `max_distance` [m] in all, ending where no person is
+  /// near any more or a link or a joint limit allows no more; empty: no person is near, or nothing
+  /// leads away.
   std::vector<Vector> steps_away(const Vector& from, const Pose& T_world_base,
                                  const HumanState& people, double max_distance) const;
   /// Returns the distance between the robot in a configuration and a point of the world [m].

@@ -8,11 +8,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSwitchStep = 0.004;  // checks of the connecting motion [rad, max norm]
-constexpr double kRestStep = 0.01;     // checks of what follows it [rad, max norm]
-constexpr double kMargin = 0.01;       // around furniture and what other axes turn [m]
-constexpr double kReserve =
-    1.1;  // part of the limits that a switch keeps: so the comfort limits hold
 constexpr double kCostStep = 0.1;  // samples of the cost along a trajectory [s]
 
 /// Returns until when the trajectory has not been farther than `reach` from `from` [s].
@@ -37,13 +32,13 @@ Switched SwitchPlanner::join(const MotionState3& from, const Trajectory& to,
                              const SwitchCandidate& candidate) const {
   KinematicLimits limits = robot_->comfort_limits();
   for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk})
-    *part = kReserve * RobotModel::part(*part, arm_);
+    *part = bounds_.reserve * RobotModel::part(*part, arm_);
   if (candidate.speed < 1) {
-    const Vector present = limits.velocity.cwiseMin(kReserve * from.velocity.cwiseAbs());
+    const Vector present = limits.velocity.cwiseMin(bounds_.reserve * from.velocity.cwiseAbs());
     limits.velocity = (candidate.speed * limits.velocity).cwiseMax(present);
   }
   SwitchSettings settings;
-  settings.reserve = kReserve;
+  settings.reserve = bounds_.reserve;
   settings.last = within_reach(to, from.position, candidate.max_reach);
   return switch_to(from, to, limits, settings);
 }
@@ -66,14 +61,16 @@ bool SwitchPlanner::is_upright(const Vector& q, const PlanningSnapshot& now) con
 
 bool SwitchPlanner::is_free(CollisionWorld& world, const Switched& motion,
                             const PlanningSnapshot& now) const {
-  double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
+  double rate =
+      bounds_.reserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
   for (const AxisTrajectory& axis : motion.trajectory.axes)
     rate = std::max(rate, std::abs(axis.start.velocity));
   // Behind the connecting motion the path is known to be free, but its blends are not.
   const double whole = motion.trajectory.duration(), connecting = motion.connecting;
-  const int first = std::max(2, static_cast<int>(std::ceil(rate * connecting / kSwitchStep)));
+  const int first = std::max(2, static_cast<int>(std::ceil(rate * connecting / bounds_.step)));
   const int steps =
-      first + static_cast<int>(std::ceil(rate * std::max(0.0, whole - connecting) / kRestStep));
+      first +
+      static_cast<int>(std::ceil(rate * std::max(0.0, whole - connecting) / bounds_.rest_step));
   for (int k = 0; k <= steps; ++k) {
     const double t = k <= first ? connecting * k / first
                                 : connecting + (whole - connecting) * (k - first) / (steps - first);
@@ -97,7 +94,7 @@ std::optional<Trajectory> SwitchPlanner::free_motion(CollisionWorld& world,
   world.set_moving_axes(arm_.axes);
   const Vector q_start = RobotModel::with(now.q, arm_, from.position);
   const Vector q_end = RobotModel::with(now.q, arm_, to.at(to.duration()).position);
-  set_scene_with_margins(world, now.scene, {kMargin, kMargin}, {q_start, q_end});
+  set_scene_with_margins(world, now.scene, {bounds_.margin, bounds_.margin}, {q_start, q_end});
   if (!is_free(world, motion, now)) return std::nullopt;
   return motion.trajectory;
 }

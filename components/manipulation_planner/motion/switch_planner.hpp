@@ -18,6 +18,10 @@ namespace handsel::manipulation_planner {
 struct SwitchBounds {
   double max_slower{};  ///< duration that a path may take longer, relative, per saved ratio of cost
   double min_saved{};   ///< ratio of the cost that a switch must save
+  double reserve{};     ///< max ratio of the connecting motion to the comfort limits
+  double step{};        ///< of the checks of the connecting motion [rad, max norm]
+  double rest_step{};   ///< of the checks of what follows it [rad, max norm]
+  double margin{};      ///< around furniture and what other axes turn [m]
 };
 
 /// A path that is offered while another one runs.

@@ -10,9 +10,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr std::size_t kMaxAllPlaces = 400;     // that are tried where none of those serves
-constexpr std::size_t kMaxConfigurations = 6;  // that motions are planned to
-constexpr std::size_t kMaxPassedPlaces = 16;   // for an object that changes hands before
 constexpr double kPassedTurns[] = {0, 0.5 * std::numbers::pi, std::numbers::pi,
                                    -0.5 * std::numbers::pi};  // about the vertical [rad]
 
@@ -27,8 +24,10 @@ struct PlacingJob {
   PlacingMotion motion;
   double margin;  // preferred
   Vector q;
-  PlacingSettings placing;  // with the reach of the arm that is to reach the places well
-  std::size_t max_places;   // of a surface that are tried first
+  PlacingSettings placing;         // with the reach of the arm that is to reach the places well
+  std::size_t max_places;          // of a surface that are tried first
+  std::size_t max_all_places;      // of a surface that are tried where none of those serves
+  std::size_t max_configurations;  // that motions are planned to
 };
 
 /// Returns the settings for places that the arm in use is to reach well.
@@ -39,12 +38,20 @@ PlacingSettings placing_for(const Parts& parts) {
 }
 
 PlacingJob placing_job(Parts& parts) {
-  return {parts.arm.shared_robot(),    parts.worker.world(parts.arm.robot(), parts.now.objects()),
-          parts.now.objects(),         parts.now.scene(),
-          parts.now.people(),          parts.arm.group(),
-          parts.arm.fingers(),         {.from_above = parts.settings.lift_height},
-          parts.settings.place_margin, parts.arm.configuration(),
-          placing_for(parts),          parts.settings.surface_places};
+  return {parts.arm.shared_robot(),
+          parts.worker.world(parts.arm.robot(), parts.now.objects()),
+          parts.now.objects(),
+          parts.now.scene(),
+          parts.now.people(),
+          parts.arm.group(),
+          parts.arm.fingers(),
+          {.from_above = parts.settings.lift_height},
+          parts.settings.place_margin,
+          parts.arm.configuration(),
+          placing_for(parts),
+          parts.settings.surface_places,
+          parts.settings.all_surface_places,
+          parts.settings.place_goals};
 }
 
 /// Searches for places that an arm of this name reaches well, from now on.
@@ -86,7 +93,7 @@ std::vector<Pose> all_places_on(const PlacingJob& job, const SceneBox& surface,
   PlacingSettings every = job.placing;
   every.apart = 0;
   every.gap = gap;
-  std::vector<Pose> places = places_on(job, surface, object, T_now, kMaxAllPlaces, every);
+  std::vector<Pose> places = places_on(job, surface, object, T_now, job.max_all_places, every);
   if (!chosen) return places;
   const auto distance = [&](const Pose& T) {
     return (T.translation() - chosen->T_world_object.translation()).norm();
@@ -169,8 +176,9 @@ Routine<std::vector<Pose>> find_standing_places(Parts& parts, const SceneBox& su
   search_for(parts, taker, placing);
   auto found = std::make_shared<std::vector<Pose>>();
   const std::function<void()> job = [found, box = surface, object, in = std::move(placing),
-                                     T_now = T_world_object] {
-    for (const Pose& place : best_places_on(in, box, object, T_now, kMaxPassedPlaces)) {
+                                     T_now = T_world_object,
+                                     max_places = parts.settings.passed_places] {
+    for (const Pose& place : best_places_on(in, box, object, T_now, max_places)) {
       for (const double turn : kPassedTurns) {
         Pose T = place;
         T.linear() = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * place.linear();
@@ -204,7 +212,7 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
     const auto stand = [&](const std::vector<Pose>& at) {
       Putting upright(*in.world, *in.robot, in.arm, in.scene.T_world_base, {at}, in.motion);
       if (chosen) upright.search_near(chosen->arm_at);
-      found->configurations = upright.anywhere(in.q, opened, held, kMaxConfigurations);
+      found->configurations = upright.anywhere(in.q, opened, held, in.max_configurations);
       found->objections = upright.objections();
       return !found->configurations.empty();
     };
@@ -219,7 +227,7 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
     // Taken from where the object lay, the hand may be below the object when that stands.
     Putting lying(*in.world, *in.robot, in.arm, in.scene.T_world_base,
                   lying_places(coarse, *model, in.placing.min_tipping), in.motion);
-    found->configurations = lying.anywhere(in.q, opened, held, kMaxConfigurations);
+    found->configurations = lying.anywhere(in.q, opened, held, in.max_configurations);
     found->is_lying = !found->configurations.empty();
   };
   found->outcome = co_await parts.worker.run(job);
