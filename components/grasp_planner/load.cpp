@@ -86,8 +86,15 @@ RegraspSettings regrasp_settings(const settings::GraspPlannerSettings& text) {
   s.max_turn = text.max_approach_turn;
   s.handover_tries = static_cast<int>(text.regrasp_poses);
   s.max_steps_tried = text.regrasp_steps;
+  s.costs.quality = text.regrasp_quality_cost;
+  s.costs.weak = text.regrasp_weak_cost;
+  s.costs.max_weakness = text.regrasp_max_weakness;
+  s.costs.strain = text.regrasp_strain_cost;
+  s.comfortable = text.regrasp_comfortable;
+  s.hand_clearance = text.regrasp_hand_clearance;
   s.min_apart = text.both_apart;
   s.max_pairs_tried = text.both_pairs;
+  s.motions_tried = text.both_motions;
   s.grip = list_settings(text, 1).grip;
   return s;
 }

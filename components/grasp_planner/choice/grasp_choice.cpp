@@ -10,15 +10,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-// Max calls of inverse kinematics for handover places, per tilt.
-constexpr std::uint64_t kTransferBudget = 600;
-// Max grasps for which a handover place is searched, per wanted grasp.
-constexpr std::size_t kTransferTries = 12;
-constexpr double kSameDistance = 0.02;    // [m] max distance of two grasps of one variant
-constexpr double kSameAngle = 0.35;       // [rad] max rotation between two grasps of one variant
-constexpr std::size_t kShortList = 40;    // distinct grasps tried at each platform pose
 constexpr std::size_t kReasonsGiven = 3;  // max reasons reported when no grasp is feasible
-constexpr std::size_t kPlacesServed = 3;  // platform poses with grasps that end the search
 
 /// Returns an arm of the robot with its hand; ConfigError where one of the two is missing.
 Manipulator hand_of(const RobotModel& robot, const std::string& arm) {
@@ -34,10 +26,11 @@ Manipulator hand_of(const RobotModel& robot, const std::string& arm) {
   throw ConfigError("robot " + robot.name() + ": group \"" + arm + "\" carries no hand");
 }
 
-bool alike(const Pose& a, const Pose& b) {
-  return (a.translation() - b.translation()).norm() < kSameDistance &&
+/// Returns whether two grasps are of one variant.
+bool alike(const Pose& a, const Pose& b, const settings::GraspPlannerSettings& settings) {
+  return (a.translation() - b.translation()).norm() < settings.same_distance &&
          Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() <
-             kSameAngle;
+             settings.same_angle;
 }
 
 }  // namespace
@@ -193,13 +186,13 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   std::vector<std::pair<double, std::size_t>> others = order;
   const auto levels = search.places ? tilt_levels(pairs->settings()) : std::vector<double>{};
   for (const double tilt : levels) {
-    search.transfer_budget = search.out.transfer_reaches + kTransferBudget;
+    search.transfer_budget = search.out.transfer_reaches + settings_.transfer_budget;
     std::size_t tries = 0;
     std::vector<std::pair<double, std::size_t>> left;
     for (const auto& [rank, index] : others) {
       const Grasp& g = list.grasps[index].grasp;
       std::optional<TransferPose> transfer;
-      const bool try_it = found.size() < enough && tries < kTransferTries * enough &&
+      const bool try_it = found.size() < enough && tries < settings_.transfer_tries * enough &&
                           !pairs->partners(index).empty();
       if (try_it && !search.below_support(g)) {
         ++tries;
@@ -229,7 +222,7 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   // One grasp of each variant first, so that a retry uses a different variant.
   const auto known = [&](const Found& f, const std::vector<Found>& among) {
     return std::any_of(among.begin(), among.end(), [&](const Found& g) {
-      return alike(g.grasp.T_object_hand, f.grasp.T_object_hand);
+      return alike(g.grasp.T_object_hand, f.grasp.T_object_hand, settings_);
     });
   };
   std::vector<Found> ordered, again;
@@ -257,9 +250,9 @@ void GraspChooser::search_places(Search& search,
   std::vector<std::pair<double, std::size_t>> tried;
   for (const auto& [rank, index] : order) {
     const Grasp& g = list.grasps[index].grasp;
-    if (tried.size() >= kShortList) break;
+    if (tried.size() >= settings_.platform_grasps) break;
     const bool again = std::any_of(tried.begin(), tried.end(), [&](const auto& t) {
-      return alike(list.grasps[t.second].grasp.T_object_hand, g.T_object_hand);
+      return alike(list.grasps[t.second].grasp.T_object_hand, g.T_object_hand, settings_);
     });
     if (!again && !search.below_support(g)) tried.emplace_back(rank, index);
   }
@@ -276,8 +269,8 @@ void GraspChooser::search_places(Search& search,
   for (const PlatformPlace& place :
        places_around(*robot_, *manipulator_.arm, request.start, T_world_now,
                      search.start.T_world_object.translation())) {
-    if (served >= kPlacesServed || found.size() >= enough || search.out.reaches >= budget ||
-        (cancelled && cancelled()))
+    if (served >= settings_.platform_places || found.size() >= enough ||
+        search.out.reaches >= budget || (cancelled && cancelled()))
       break;
     ++counts.places;
     const Pose T_world_there = standing_at(place, T_world_now);

@@ -16,8 +16,6 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr double kMotionStep = 0.04;  // [rad] between two checked states
-constexpr int kExchangeHeadings = 8;
-constexpr int kTransferReaches = 16;  // inverse kinematics tried for the places of one grasp
 
 std::size_t touching(const Grasp& g) {
   std::set<std::uint32_t> fingers;
@@ -184,7 +182,8 @@ std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, co
     if (q && !free(*held, *q, g.hand_joints)) q.reset();
     return q;
   };
-  return places->best(*inputs.pairs, index, g.T_object_hand, tilt, try_reach, kTransferReaches);
+  return places->best(*inputs.pairs, index, g.T_object_hand, tilt, try_reach,
+                      static_cast<int>(settings().transfer_reaches));
 }
 
 GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& g,
@@ -193,10 +192,11 @@ GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& 
   HandoverPlace best;
   best.T_world_object = start.T_world_object;
   best.T_world_object.translation() = handover_place;
-  for (int k = 0; k < kExchangeHeadings; ++k) {
+  const int headings = static_cast<int>(settings().handover_headings);
+  for (int k = 0; k < headings; ++k) {
     Pose T_world_held = Pose::Identity();
     T_world_held.linear() =
-        Eigen::AngleAxisd(2 * std::numbers::pi * k / kExchangeHeadings, Vector3::UnitZ()) *
+        Eigen::AngleAxisd(2 * std::numbers::pi * k / headings, Vector3::UnitZ()) *
         start.T_world_object.linear();
     T_world_held.translation() = handover_place;
     const Pose T_world_hand = T_world_held * g.T_object_hand;

@@ -12,46 +12,61 @@
 
 #include "common/grasp/grip_force.hpp"
 #include "common/messages/planning.hpp"
+#include "components/grasp_planner/file_defaults.hpp"
 #include "components/grasp_planner/hand/hand_geometry.hpp"
 #include "components/grasp_planner/object/graspable.hpp"
 
 namespace handsel::grasp_planner {
 
 struct QualityWeights {
-  double stability{0.45};  ///< epsilon
-  double centre{0.2};      ///< distance of the contacts' mean to the mass centre
-  double force{0.15};      ///< contact normals along the main axes of the force ellipsoids
-  double curvature{0.2};   ///< 1 - normalised mean curvature at the contacts
+  double stability{file_defaults().weight_stability};  ///< epsilon
+  /// Distance of the contacts' mean to the mass centre.
+  double centre{file_defaults().weight_centre};
+  /// Contact normals along the main axes of the force ellipsoids.
+  double force{file_defaults().weight_force};
+  /// 1 - normalised mean curvature at the contacts.
+  double curvature{file_defaults().weight_curvature};
 };
 
+/// As the settings file has them by default, but with fewer orientations and without what the grip
+/// force adds: `creep`, `weight_grip` and `min_margin`.
 struct GraspListSettings {
-  std::uint32_t positions{60};  ///< of the grasp frame in the object's box, uniform
+  /// Of the grasp frame in the object's box, uniform.
+  std::uint32_t positions{file_defaults().positions};
   /// In a large box as many more as make them about this far apart [m]; 0: never more.
-  double spacing{0.04};
-  std::uint32_t orientations{144};       ///< of the incremental grid over all rotations
-  double step_fraction{0.6};             ///< distance of contact points / fingertip radius
-  double friction{0};                    ///< Coulomb coefficient; 0: the object's
-  int cone_edges{8};                     ///< of a linearised friction cone, >= 6
-  double full_epsilon{0.25};             ///< an epsilon from which on the stability counts as 1
-  QualityWeights weights;                ///< of the terms of the quality
-  std::uint32_t contacts_per_finger{4};  ///< max alternatives per finger of a frame
-  std::uint32_t tries_per_finger{24};    ///< max candidates checked per finger
-  double depth{0.0008};                  ///< max penetration of a touching finger model [m]
-  double opening{0.025};         ///< pre-grasp distance of the fingertips along the normal [m]
-  double pad_hollow{0.003};      ///< a pad bridges a hollow that is no deeper [m]
-  double open_clearance{0.004};  ///< min pre-grasp clearance of the whole finger [m]
-  GripForceSettings grip;        ///< grip force and load
+  double spacing{file_defaults().spacing};
+  std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
+  /// Distance of contact points / fingertip radius.
+  double step_fraction{file_defaults().step_fraction};
+  double friction{0};  ///< Coulomb coefficient; 0: the object's
+  /// Of a linearised friction cone, >= 6.
+  int cone_edges{static_cast<int>(file_defaults().cone_edges)};
+  /// An epsilon from which on the stability counts as 1.
+  double full_epsilon{file_defaults().full_epsilon};
+  QualityWeights weights;  ///< of the terms of the quality
+  /// Max alternatives per finger of a frame.
+  std::uint32_t contacts_per_finger{file_defaults().contacts_per_finger};
+  /// Max candidates checked per finger.
+  std::uint32_t tries_per_finger{file_defaults().tries_per_finger};
+  double depth{0.0008};  ///< max penetration of a touching finger model [m]
+  /// Pre-grasp distance of the fingertips along the normal [m].
+  double opening{file_defaults().opening};
+  /// A pad bridges a hollow that is no deeper [m].
+  double pad_hollow{file_defaults().pad_hollow};
+  /// Min pre-grasp clearance of the whole finger [m].
+  double open_clearance{file_defaults().open_clearance};
+  GripForceSettings grip;  ///< grip force and load
   /// Distance that a fingertip may creep over the surface, which turns the normal where the surface
   /// is curved: the grip does not use that part of the friction cone [m].
   double creep{0};
   /// Weight of the grip margin / sturdy_margin, -2 to 1, beside the quality in the choice among the
   /// contacts of a frame.
   double weight_grip{0};
-  double sturdy_margin{2.0};  ///< a grip margin that counts as 1 [N]
+  double sturdy_margin{file_defaults().sturdy_margin};  ///< a grip margin that counts as 1 [N]
   /// Min grip margin of a grasp by which one hand alone bears the object [N].
   double min_margin{-std::numeric_limits<double>::infinity()};
   /// Min distance of the surface from the hand to count as free for another hand [m].
-  double free_distance{0.03};
+  double free_distance{file_defaults().free_distance};
   std::uint64_t seed{1};  ///< of the contact points; the same gives the same list
 };
 

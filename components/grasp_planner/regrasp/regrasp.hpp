@@ -12,8 +12,10 @@
 #include "common/collision/collision_world.hpp"
 #include "common/grasp/grip_force.hpp"
 #include "common/model/manipulator.hpp"
+#include "components/grasp_planner/file_defaults.hpp"
 #include "components/grasp_planner/pair/double_grasp.hpp"
 #include "components/grasp_planner/pair/load_share.hpp"
+#include "components/grasp_planner/regrasp/step_graph.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -54,19 +56,30 @@ struct RegraspStep {
 
 struct RegraspSettings {
   /// Grasps of each list that are considered, spread over all orientations.
-  std::size_t max_of_each{200};
-  double clearance{0.004};  ///< between the hands [m]
+  std::size_t max_of_each{file_defaults().regrasp_grasps};
+  double clearance{file_defaults().regrasp_clearance};  ///< between the hands [m]
   /// Max error of a held object's position when the other hand takes it [m].
-  double slack{0.005};
-  double stand_off{0.09};   ///< distance of a hand before its approach and after its retreat [m]
-  double lift{0.08};        ///< straight vertical motion after a pick and before a place [m]
-  double max_turn{0.9};     ///< max motion of an arm axis on a straight path [rad]
-  int handover_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
+  double slack{file_defaults().regrasp_slack};
+  /// Distance of a hand before its approach and after its retreat [m].
+  double stand_off{file_defaults().stand_off};
+  /// Straight vertical motion after a pick and before a place [m].
+  double lift{file_defaults().lift};
+  /// Max motion of an arm axis on a straight path [rad].
+  double max_turn{file_defaults().max_approach_turn};
+  /// Places and turns of the object tried to pass it in one double grasp.
+  int handover_tries{static_cast<int>(file_defaults().regrasp_poses)};
   /// The search ends when so many picks, passes and places were checked.
-  std::uint64_t max_steps_tried{3000};
-  GripForceSettings grip;            ///< of hands that bear a load together
-  double min_apart{0.25};            ///< of the palms of two hands that carry together [m]
-  std::size_t max_pairs_tried{400};  ///< of two hands at once
+  std::uint64_t max_steps_tried{file_defaults().regrasp_steps};
+  StepCosts costs;  ///< of the steps
+  /// Fraction of the length of an arm up to which its hand is away without strain.
+  double comfortable{file_defaults().regrasp_comfortable};
+  /// Between an opened hand and the object on a straight path [m].
+  double hand_clearance{file_defaults().regrasp_hand_clearance};
+  GripForceSettings grip;  ///< of hands that bear a load together
+  /// Of the palms of two hands that carry together [m].
+  double min_apart{file_defaults().both_apart};
+  std::size_t max_pairs_tried{file_defaults().both_pairs};  ///< of two hands at once
+  std::size_t motions_tried{file_defaults().both_motions};  ///< of each arm for one pair
 };
 
 struct RegraspPlan {

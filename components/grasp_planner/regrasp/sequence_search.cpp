@@ -8,7 +8,8 @@ SequenceSearch::SequenceSearch(StepCheck& check, CheckedPasses& passes, const Re
     : check_(check),
       passes_(passes),
       task_(task),
-      start_{task.start.arm, task.start.grasp.value_or(0)} {
+      start_{task.start.arm, task.start.grasp.value_or(0)},
+      graph_(check.settings().costs) {
   check_task();
   add_places();
   add_grasps();

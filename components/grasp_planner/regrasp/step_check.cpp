@@ -11,8 +11,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kMotionStep = 0.04;         // [rad] between two checked states
-constexpr double kRetreatClearance = 0.005;  // [m] between an opened hand and the object
+constexpr double kMotionStep = 0.04;  // [rad] between two checked states
 
 using FingerPoses = std::vector<std::vector<Pose>>;
 
@@ -109,14 +108,14 @@ std::optional<Vector> StepCheck::straight(int arm, std::size_t i, const Pose& T_
 }
 
 std::optional<double> StepCheck::strain(int arm, std::size_t i, const Pose& T_world_object) const {
-  constexpr double kComfortable = 0.7;  // fraction of the arm's length
+  const double comfortable = settings_.comfortable;
   const auto a = static_cast<std::size_t>(arm);
   const Pose T_world_hand = T_world_object * grasp(arm, i).T_object_hand;
   const Vector3 away = T_world_hand.translation() - p_shoulders_[a];
   const double stretched = away.norm() / lengths_[a];
   if (stretched > 1) return std::nullopt;
   const double backward = (1 - T_world_hand.linear().col(2).dot(away.stableNormalized())) / 2;
-  return 0.5 * backward + 0.5 * std::max(0.0, stretched - kComfortable) / (1 - kComfortable);
+  return 0.5 * backward + 0.5 * std::max(0.0, stretched - comfortable) / (1 - comfortable);
 }
 
 CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_object) {
@@ -155,7 +154,7 @@ std::optional<Vector> StepCheck::stand_off(int arm, std::size_t i, const Pose& T
   all.push_back((T_world_object * g.T_object_hand).linear().transpose() * Vector3::UnitZ());
   for (const Vector3& direction : all) {
     if (!retreat_free(hand_geometry, T_open, object_, g.T_object_hand,
-                      {direction, settings_.stand_off, kRetreatClearance}))
+                      {direction, settings_.stand_off, settings_.hand_clearance}))
       continue;
     if (auto off = straight(arm, i, T_world_object, q, arm_q, direction)) return off;
   }

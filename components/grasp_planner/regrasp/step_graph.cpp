@@ -5,22 +5,12 @@
 #include <utility>
 
 namespace handsel::grasp_planner {
-namespace {
-
-// Weight of grasp quality per step: decides between sequences of equal length.
-constexpr double kQualityCost = 0.01;
-// Max cost of a step whose grip force does not bear the load in every direction.
-constexpr double kWeakCost = 0.05;
-// Max cost of a strained step: strained steps are checked last.
-constexpr double kStrainCost = 0.03;
-constexpr double kMaxWeakness = 10;  // [N] negative margin at which kWeakCost is reached
-
-}  // namespace
 
 void StepGraph::add(const GraphNode& from, const GraphNode& to, double quality, double margin,
                     double strain, std::size_t pair) {
-  const double weak = std::clamp(-margin / kMaxWeakness, 0.0, 1.0);
-  const double cost = 1 + kQualityCost * (1 - quality) + kWeakCost * weak + kStrainCost * strain;
+  const double weak = std::clamp(-margin / costs_.max_weakness, 0.0, 1.0);
+  const double cost =
+      1 + costs_.quality * (1 - quality) + costs_.weak * weak + costs_.strain * strain;
   edges_[from].push_back({to, cost, pair});
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "components/grasp_planner/file_defaults.hpp"
+
 namespace handsel::grasp_planner {
 
 /// A state of the search: the object held, or at rest at one of the places of the task.
@@ -16,9 +18,22 @@ struct GraphNode {
   auto operator<=>(const GraphNode&) const = default;
 };
 
+/// What a step costs beyond 1.
+struct StepCosts {
+  /// Of the worst quality: decides between sequences of equal length.
+  double quality{file_defaults().regrasp_quality_cost};
+  /// Max cost of a step whose grip force does not bear the load in every direction.
+  double weak{file_defaults().regrasp_weak_cost};
+  double max_weakness{file_defaults().regrasp_max_weakness};  ///< negative margin that costs so [N]
+  /// Max cost of a strained step: strained steps are checked last.
+  double strain{file_defaults().regrasp_strain_cost};
+};
+
 /// Steps between nodes. Each costs about 1; grasps decide between sequences of equal length.
 class StepGraph {
  public:
+  explicit StepGraph(const StepCosts& costs) : costs_(costs) {}
+
   /// Adds a step. `quality`: of its grasps, [0, 1]. `margin`: the smallest of the grasps that it
   /// leads from or to [N]. `strain`: StepCheck::strain(), [0, 1]. `pair`: of a
   /// pass: index of the pair of grasps.
@@ -39,6 +54,7 @@ class StepGraph {
     double cost;
     std::size_t pair;
   };
+  StepCosts costs_;
   std::map<GraphNode, std::vector<Edge>> edges_;
 };
 

@@ -10,8 +10,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kPathStep = 0.03;        // [m] between two poses of the carried object
-constexpr std::size_t kMotionsTried = 5;  // motions tried per arm
+constexpr double kPathStep = 0.03;  // [m] between two poses of the carried object
 
 /// Returns the path of the object: up by `lift` [m], straight across and down.
 std::vector<Pose> carried_over(const Pose& T_start, const Pose& T_goal, double lift) {
@@ -121,9 +120,9 @@ std::optional<std::pair<Vector, Vector>> TwoHandSearch::both_along(const DoubleG
                                    check_.grasp(0, i).hand_joints),
                        1, y.joints[n], check_.grasp(1, k).hand_joints);
   };
-  for (std::size_t sum = 0; sum < 2 * kMotionsTried - 1; ++sum) {
-    for (std::size_t x = sum < kMotionsTried ? 0 : sum - kMotionsTried + 1;
-         x <= std::min(sum, kMotionsTried - 1); ++x) {
+  const std::size_t tried = check_.settings().motions_tried;  // of each arm
+  for (std::size_t sum = 0; sum < 2 * tried - 1; ++sum) {
+    for (std::size_t x = sum < tried ? 0 : sum - tried + 1; x <= std::min(sum, tried - 1); ++x) {
       if (x >= first.size() || sum - x >= second.size()) continue;
       const CarriedMotion &one = first[x], &other = second[sum - x];
       const auto free = [&](std::size_t n) {
