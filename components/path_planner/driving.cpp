@@ -6,12 +6,6 @@
 #include "components/path_planner/search/random.hpp"
 
 namespace handsel::path_planner {
-namespace {
-
-constexpr int kTries = 1500;                  // random platform poses per pose of the tip
-constexpr double kMaxPlatformDistance = 1.2;  // max horizontal distance of these from the pose [m]
-
-}  // namespace
 
 bool is_of_platform(const std::string& group) {
   return group == kPlatformGroup || group == kWholeRobotGroup;
@@ -59,7 +53,7 @@ void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, const Fu
 
 PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
                               const std::vector<PoseGoal>& poses, const Vector& q_start,
-                              std::uint64_t seed, int each) {
+                              std::uint64_t seed, const PlatformSampling& sampling) {
   PoseGoals found;
   Random random(seed);
   const Group& whole = mobile.require_group(kWholeRobotGroup);
@@ -71,9 +65,9 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
       double x, y, heading, far;
     };
     std::vector<Place> places = {{here.x(), here.y(), q_start[platform[2]], -1}};
-    for (int k = 0; k < kTries; ++k) {
+    for (int k = 0; k < sampling.tries; ++k) {
       const double bearing = random.between(-M_PI, M_PI),
-                   range = kMaxPlatformDistance * std::sqrt(random.unit());
+                   range = sampling.max_distance * std::sqrt(random.unit());
       const Eigen::Vector2d at = poses[i].T_root_tip.translation().head<2>() +
                                  range * Eigen::Vector2d(std::cos(bearing), std::sin(bearing));
       const double heading = nearest_heading(random.between(-M_PI, M_PI), q_start[platform[2]]);
@@ -83,7 +77,7 @@ PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
     std::sort(places.begin(), places.end(),
               [](const Place& a, const Place& b) { return a.far < b.far; });
     int configurations = 0;
-    for (std::size_t k = 0; k < places.size() && configurations < each; ++k) {
+    for (std::size_t k = 0; k < places.size() && configurations < sampling.each; ++k) {
       Vector q = q_start;
       q[platform[0]] = places[k].x;
       q[platform[1]] = places[k].y;

@@ -30,11 +30,18 @@ struct FurnitureRoom {
 void keep_clear_of_furniture(CollisionWorld& world, const Scene& scene, const FurnitureRoom& room,
                              const std::vector<Vector>& ends);
 
-/// Returns up to `each` configurations of the whole robot per pose: random platform poses around
-/// it, nearest to the start first, from which the arm reaches the pose with all other axes as in
+/// Random platform poses that are tried for each pose of the tip.
+struct PlatformSampling {
+  int tries{1500};           ///< number of these
+  double max_distance{1.2};  ///< max horizontal distance of these from the pose [m]
+  int each{4};               ///< configurations after which the search ends
+};
+
+/// Returns configurations of the whole robot for each pose: random platform poses around it,
+/// nearest to the start first, from which the arm reaches the pose with all other axes as in
 /// q_start; free of collisions with bodies at rest.
 PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world,
                               const std::vector<PoseGoal>& poses, const Vector& q_start,
-                              std::uint64_t seed, int each = 4);
+                              std::uint64_t seed, const PlatformSampling& sampling = {});
 
 }  // namespace handsel::path_planner

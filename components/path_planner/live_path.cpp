@@ -14,10 +14,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSameGoal = 1e-6;  // max difference of equal goals [rad]
-// Max distance from an end at which motions are checked exactly if the batch check is unclear
-// [rad].
-constexpr double kReplanNearEnds = 0.3;
+constexpr double kSameGoal = 1e-6;       // max difference of equal goals [rad]
 constexpr double kMaxDropLoss = 0.01;    // max relative increase of the price by removed waypoints
 constexpr double kMaxDropGain = 0.3;     // or max fraction of the preceding reduction of the price
 constexpr double kMinReplanGain = 1e-6;  // min reduction of the price by a perturbation
@@ -58,7 +55,7 @@ class PathReplanner {
     std::size_t first = 0, last = 0;
     const bool was_blocked = !other_goal && blocked(rest, first, last);
     out.before = was_blocked || other_goal ? kInfinite : space_.costs().price(rest);
-    space_.check_in_batches({rest.back()}, kReplanNearEnds);
+    space_.check_in_batches({rest.back()}, live_.near_ends);
     if (was_blocked && !repair(rest)) {
       if (!search_anew(rest, goal)) return std::nullopt;
       other_goal = true;
@@ -141,7 +138,7 @@ class PathReplanner {
     if (goals.empty()) return false;
     const std::uint64_t limit = space_.limit(), left = limit - std::min(limit, space_.checks());
     space_.limit(limit - left / 2);
-    space_.check_in_batches(goals, kReplanNearEnds);
+    space_.check_in_batches(goals, live_.near_ends);
     Found found = search(space_, goals, PlannerKind::rrt_connect, false, problem_.seed);
     space_.limit(limit);
     if (found.path.empty()) {

@@ -28,6 +28,9 @@ struct ReplanSettings {
   double verify_step{0.002};  ///< step of the check of the returned path [rad]
   int rounds{60};             ///< max number of shortcuts and perturbations
   int tries{60};              ///< max number of perturbations for the repair
+  /// Max distance from an end at which motions are checked exactly if the batch check is unclear
+  /// [rad].
+  double near_ends{0.3};
 };
 
 struct ReplanResult {

@@ -18,6 +18,9 @@ Settings core_settings(const settings::PathPlannerSettings& s) {
   out.smoothing_rounds = s.smoothing_rounds;
   out.max_idle_rounds = s.max_idle_rounds;
   out.max_edge = s.max_edge;
+  out.max_attempts = s.max_attempts;
+  out.first_budget_fraction = s.first_budget_fraction;
+  out.near_ends = s.near_ends;
   return out;
 }
 
@@ -29,11 +32,14 @@ SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
   out.live.min_gain = s.live_gain;
   out.live.rounds = s.live_rounds;
   out.live.tries = s.live_tries;
+  out.live.near_ends = s.live_near_ends;
   out.replan_margins = {s.live_margin, s.live_turning_margin};
   out.roam = s.roam;
   out.furniture = {s.furniture_room, s.end_room_fraction};
   out.driven_room_fraction = s.driven_room_fraction;
   out.head_room = s.head_room;
+  out.sampling.tries = s.platform_tries;
+  out.sampling.max_distance = s.max_platform_distance;
   return out;
 }
 

@@ -12,13 +12,7 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr std::uint64_t kFirstTreeChecks = 40000;  // checks before the first restart of a search
-// Max number of attempts: the first with the batch check only, the third and fourth with a fine
-// step, because the fine check may refuse a path that the coarse check accepted.
-constexpr int kMaxAttempts = 4;
-constexpr double kFineStepRatio = 0.1;        // fine step divided by the step of the settings
-constexpr double kBatchBudgetFraction = 0.3;  // fraction of the budget for the first attempt
-// Max distance from start or goals at which the first attempt checks motions exactly [rad].
-constexpr double kNearEnds = 0.3;
+constexpr double kFineStepRatio = 0.1;             // fine step divided by the step of the settings
 
 std::string contact(const CollisionVerdict& verdict) {
   return verdict.first + " touches " + verdict.second;
@@ -88,14 +82,14 @@ class Planning {
   Result run() {
     if (!ends_free()) return result_;
     if (problem_.straight) return straight_line();
-    for (int attempt = 0; attempt < kMaxAttempts && !space_.exhausted(); ++attempt) {
+    for (int attempt = 0; attempt < settings_.max_attempts && !space_.exhausted(); ++attempt) {
       const bool in_batches = attempt == 0;
       space_.set_step(attempt < 2 ? settings_.step : kFineStepRatio * settings_.step);
-      max_checks_ = in_batches ? static_cast<std::uint64_t>(kBatchBudgetFraction *
+      max_checks_ = in_batches ? static_cast<std::uint64_t>(settings_.first_budget_fraction *
                                                             static_cast<double>(problem_.budget))
                                : problem_.budget;
       space_.limit(max_checks_);
-      if (in_batches) space_.check_in_batches(goals_, kNearEnds);
+      if (in_batches) space_.check_in_batches(goals_, settings_.near_ends);
       const bool found = find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919);
       space_.check_exactly();
       space_.limit(problem_.budget);

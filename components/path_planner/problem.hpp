@@ -27,6 +27,11 @@ struct Settings {
   double length_weight{0.05};  ///< price of a radian without human-aware cost
   int smoothing_rounds{120};   ///< max number of shortcuts and perturbations
   int max_idle_rounds{40};     ///< max number of successive ones without gain
+  /// Max number of searches for one path: the first with the batch check only, from the third on
+  /// with a fine step, because the fine check may refuse a path that the coarse check accepted.
+  int max_attempts{4};
+  double first_budget_fraction{0.3};  ///< fraction of the budget for the first of them
+  double near_ends{0.3};  ///< distance from start or goals at which it checks exactly [rad]
   /// l_max: max length replaced by a perturbation on each side [rad].
   double max_edge{0.6};
 };

@@ -227,7 +227,8 @@ Result Solver::plan_to_poses(const Selected& selected, const std::vector<PoseGoa
   Problem& problem = task.problem;
   PoseGoals found =
       selected.navigation != nullptr
-          ? reach_with_platform(robot, world, poses, problem.start, problem.seed)
+          ? reach_with_platform(robot, world, poses, problem.start, problem.seed,
+                                settings_.sampling)
           : reach(robot, *robot.group(task.request.group), poses, problem.start, problem.seed);
   problem.goals = std::move(found.goals);
   Result result;

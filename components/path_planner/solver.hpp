@@ -24,6 +24,7 @@ struct SolverSettings {
   FurnitureRoom furniture;  ///< Horizontal clearance of the platform from furniture.
   double driven_room_fraction{0.5};  ///< Fraction of this clearance in online replanning.
   double head_room{};                ///< Clearance of paths between configurations to heads [m].
+  PlatformSampling sampling;         ///< Platform poses tried for a pose of the tip.
 };
 
 /// One request with the state of the world at its arrival.
