@@ -35,6 +35,9 @@ DurableState restore(const StateStore* store, double override_factor, Stamp now)
 Ability ability_of(const settings::SupervisorSettings& settings, const NodeContext& context) {
   Ability ability;
   ability.spot = settings.spot;
+  ability.min_edge = settings.surface_edge;
+  ability.place_step = settings.surface_step;
+  ability.max_places = settings.max_places;
   ability.objects = context.objects;
   ability.person_reach = settings.person_reach;
   if (context.robot == nullptr) return ability;

@@ -4,7 +4,6 @@ namespace handsel::supervisor {
 namespace {
 
 constexpr std::size_t kMaxReported = 64;  // max number of stored tasks
-constexpr double kTimeout = 5.0;          // max time until a goal is sent again [s]
 
 }  // namespace
 
@@ -14,7 +13,7 @@ std::optional<TaskStatus> OrphanWatch::step(std::optional<std::uint64_t> id, Tim
     return std::nullopt;
   }
   if (!since_) since_ = now;
-  if (to_seconds(now - *since_) < kTimeout) return std::nullopt;
+  if (to_seconds(now - *since_) < timeout_) return std::nullopt;
   reported_.insert(*id);
   if (reported_.size() > kMaxReported) reported_.erase(reported_.begin());
   TaskStatus status;

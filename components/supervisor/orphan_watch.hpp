@@ -14,11 +14,15 @@ namespace handsel::supervisor {
 /// action.
 class OrphanWatch {
  public:
+  /// `timeout`: max time until a goal is sent again [s].
+  explicit OrphanWatch(double timeout) : timeout_(timeout) {}
+
   /// Returns the failed status of a task without a goal for the timeout, once per task. `id`: task
   /// of the running action without a goal; nullopt: none.
   std::optional<TaskStatus> step(std::optional<std::uint64_t> id, TimePoint now);
 
  private:
+  double timeout_;
   std::set<std::uint64_t> reported_;
   std::optional<TimePoint> since_;
 };

@@ -20,7 +20,8 @@ Supervisor::Supervisor(const settings::SupervisorSettings& settings, Domain doma
       keeper_(settings, restored.safety.revision),
       situation_(std::move(ability)),
       next_action_(first_action),
-      inbox_(settings.max_goals) {}
+      inbox_(settings.max_goals),
+      orphans_(settings.orphan_timeout) {}
 
 Supervisor::Supervisor(const settings::SupervisorSettings& settings, Domain domain, Ability ability,
                        std::uint64_t first_action)

@@ -10,10 +10,6 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr double kMinEdge = 0.08;  // min distance of an object from the edge of a surface [m]
-constexpr double kStep = 0.05;     // step of the grid of tested places [m]
-constexpr double kMaxPlaces = 24;  // max number of counted places
-
 std::vector<Type> types_of(FactKind kind) {
   using T = Type;
   switch (kind) {
@@ -62,24 +58,24 @@ bool reach(const std::vector<Ability::Arm>& arms, const Vector3& p) {
                                      [&](const Ability::Arm& arm) { return reaches(arm, p); });
 }
 
-/// Returns the number of free places within reach of an arm, at most kMaxPlaces. `spot`: min
-/// distance between objects [m].
+/// Returns the number of free places within reach of one of `arms`, at most as many as are counted.
 double places_on(const SceneBox& box, const Scene& scene, const std::vector<Ability::Arm>& arms,
-                 double spot) {
+                 const Ability& ability) {
   const double top = box.size.z() / 2;
   std::vector<Vector3> occupied;  // box frame
   for (const auto& object : scene.objects)
     if (object.holder == Holder::surface && object.holder_id == box.id)
       occupied.push_back(box.T_world_box.inverse() * object.T_world_object.translation());
   double found = 0;
-  const double x_end = std::max(0.0, box.size.x() / 2 - kMinEdge),
-               y_end = std::max(0.0, box.size.y() / 2 - kMinEdge);
-  for (double x = -x_end; x <= x_end + 1e-9 && found < kMaxPlaces; x += kStep)
-    for (double y = -y_end; y <= y_end + 1e-9 && found < kMaxPlaces; y += kStep) {
+  const double x_end = std::max(0.0, box.size.x() / 2 - ability.min_edge),
+               y_end = std::max(0.0, box.size.y() / 2 - ability.min_edge);
+  for (double x = -x_end; x <= x_end + 1e-9 && found < ability.max_places; x += ability.place_step)
+    for (double y = -y_end; y <= y_end + 1e-9 && found < ability.max_places;
+         y += ability.place_step) {
       const Vector3 p(x, y, top);
       if (!reach(arms, box.T_world_box * p)) continue;
       const bool free = std::all_of(occupied.begin(), occupied.end(), [&](const Vector3& t) {
-        return (t - p).head<2>().norm() >= spot;
+        return (t - p).head<2>().norm() >= ability.spot;
       });
       if (!free) continue;
       occupied.push_back(p);
@@ -93,7 +89,7 @@ std::vector<Ability::Arm> arms_with_room(const SceneBox& box, const Scene& scene
                                          const Ability& ability) {
   std::vector<Ability::Arm> out;
   for (const Ability::Arm& arm : ability.arms)
-    if (places_on(box, scene, {arm}, ability.spot) > 0) out.push_back(arm);
+    if (places_on(box, scene, {arm}, ability) > 0) out.push_back(arm);
   return out;
 }
 
@@ -288,10 +284,10 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability,
   }
   for (const auto& box : scene.boxes) {
     if (!box.supports) continue;
-    const double places = places_on(box, scene, anywhere.arms, ability.spot);
+    const double places = places_on(box, scene, anywhere.arms, ability);
     if (places <= 0) continue;
     const Symbol s = world.symbol(box.id);
-    if (!ability.drives || places_on(box, scene, ability.arms, ability.spot) > 0) set_near(box.id);
+    if (!ability.drives || places_on(box, scene, ability.arms, ability) > 0) set_near(box.id);
     state.set({predicate_of(Derived::room), {s, kNothing}}, places);
     state.set({predicate_of(Derived::one_arm), {kNothing, s}});
     const std::vector<Ability::Arm> near = arms_with_room(box, scene, anywhere);

@@ -124,6 +124,9 @@ struct Ability {
   bool drives{};            ///< whether the robot is mobile
   double person_reach{};    ///< max distance of a near person beyond an arm's reach [m]
   double spot{0.15};        ///< min distance between objects on a surface [m]
+  double min_edge{0.08};    ///< min distance of an object from the edge of a surface [m]
+  double place_step{0.05};  ///< step of the grid of tested places of a surface [m]
+  double max_places{24};    ///< max number of places of a surface that are counted
   /// Returns the object model with a name; nullptr: unknown.
   std::function<const ObjectModel*(const std::string&)> objects{};
 };
