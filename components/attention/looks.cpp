@@ -50,8 +50,6 @@ NearHand nearest_hand(const Person& person, const Vector3& p) {
 
 namespace {
 
-constexpr double kHandToObject = 0.12;  // from a receiving hand to the centre of the object [m]
-
 /// Returns whether a hand is extended toward the robot and at rest.
 bool is_extended(const Person& person, Side side, const Vector3& p_robot,
                  const MotorSettings& motor) {
@@ -78,15 +76,15 @@ std::optional<Vector3> shift_to_extended_hand(const ActionStatus& action, const 
     const auto hand = side == Side::left ? body::l_hand : body::r_hand;
     const Vector3 to_hand = person.joints[hand].position - action.exchange_point;
     const double distance = to_hand.norm();
-    if (distance > kHandToObject && (!nearest || distance - kHandToObject < nearest->norm()))
-      nearest = (1 - kHandToObject / distance) * to_hand;
+    if (distance > motor.hand_to_object &&
+        (!nearest || distance - motor.hand_to_object < nearest->norm()))
+      nearest = (1 - motor.hand_to_object / distance) * to_hand;
   }
   return nearest;
 }
 
-double urgency(double distance, double closing) {
-  constexpr double kReferenceSpeed = 0.5;  // reference speed of a hand [m/s]
-  return std::max(0.0, closing > kReferenceSpeed ? distance * kReferenceSpeed / closing : distance);
+double urgency(double distance, double closing, double urgent_speed) {
+  return std::max(0.0, closing > urgent_speed ? distance * urgent_speed / closing : distance);
 }
 
 double ramp(double x, double low, double high) {

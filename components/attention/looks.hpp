@@ -43,8 +43,8 @@ bool in_handover_with(const World& w, const std::string& person);
 /// engaged; empty otherwise.
 SeparationExemption handover_exemption(const World& w);
 /// Returns the stimulus for a distance [m] and a closing speed [m/s]: the distance, or the time to
-/// contact times the reference speed 0.5 m/s if that is less [m], >= 0.
-double urgency(double distance, double closing);
+/// contact times `urgent_speed` [m/s] if that is less [m], >= 0.
+double urgency(double distance, double closing, double urgent_speed);
 /// Returns 0 up to `low`, 1 from `high`, linear in between.
 double ramp(double x, double low, double high);
 

@@ -115,7 +115,7 @@ class Avoid : public Schema {
     for (const Person& person : w.people->people)
       if (person.id == s.person)
         closing = directed_speed(person, s.part, (s.on_robot - s.on_person).normalized());
-    double stimulus = urgency(s.distance, closing);
+    double stimulus = urgency(s.distance, closing, motor_.urgent_speed);
     if (w.forecast && w.forecast->trajectory != 0 && w.forecast->trajectory == active.trajectory)
       stimulus = std::min(stimulus, std::max(0.0, w.forecast->clearance));
     if (!near_) return stimulus;
@@ -220,7 +220,7 @@ class Pick : public Schema {
 class ReachWatch {
  public:
   explicit ReachWatch(const MotorSettings& motor)
-      : near_(motor.reach_near), hold_(motor.reach_hold) {}
+      : near_(motor.reach_near), arrived_(motor.reach_arrived), hold_(motor.reach_hold) {}
 
   /// Returns the distance of the nearest reaching hand [m]; +inf: none.
   double observe(const World& w, const Vector3& p_held, TimePoint now) {
@@ -229,8 +229,7 @@ class ReachWatch {
     if (w.people == nullptr) return nearest;
     for (const Person& person : w.people->people) {
       const double distance = nearest_hand(person, p_held).distance;
-      if (distance > near_ || distance > nearest ||
-          !(reaches(w, person.id) || distance < kMaxArrived))
+      if (distance > near_ || distance > nearest || !(reaches(w, person.id) || distance < arrived_))
         continue;
       nearest = distance;
       nearest_person = person.id;
@@ -246,7 +245,6 @@ class ReachWatch {
   }
 
  private:
-  static constexpr double kMaxArrived = 0.15;  // max distance of a hand at the object [m]
   static bool reaches(const World& w, const std::string& person) {
     return w.facts && std::any_of(w.facts->facts.begin(), w.facts->facts.end(), [&](const Fact& f) {
              return f.kind == FactKind::reaching && f.subject == person &&
@@ -254,7 +252,7 @@ class ReachWatch {
            });
   }
 
-  double near_, hold_;
+  double near_, arrived_, hold_;
   std::string person_;
   TimePoint since_{};
   bool held_{};
@@ -333,7 +331,7 @@ class Exchange : public Schema {
       *shift_ *= motor_.shift_limit / shift_->norm();
     const double closing =
         distance_ > 1e-6 ? hand.velocity.dot((p - hand.position) / distance_) : 0.0;
-    return urgency(distance_, closing);
+    return urgency(distance_, closing, motor_.urgent_speed);
   }
   bool released(const World& w) const override {
     const bool holds = kind_ == Behaviour::give;
