@@ -67,6 +67,8 @@ struct CartesianSettings {
   int elbows{24};               ///< elbow angles tried at a waypoint without elbow angle
   ApproximationTolerance tolerance{2e-4, 1e-2};  ///< of TR_app to the sampled joints [rad], [rad/s]
   JoinError max_apart{1e-3, 3.5e-3};  ///< max error of the joined tips; a larger one is refused
+  /// Weight of elbow motion against joints near their limits in the choice of elbow angles [1/rad].
+  double elbow_weight{0.3};
 };
 
 /// TR: the smoothed trajectory of the active axes, and its poses. Own method: the rotation vector

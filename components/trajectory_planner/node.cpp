@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/settings/trajectory_planner.hpp"
 #include "common/cost/cost_settings.hpp"
 #include "common/messages/attention.hpp"
 #include "common/model/platform.hpp"
+#include "components/trajectory_planner/load.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
@@ -35,22 +35,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       cost_(*context.robot, weights_) {
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
   const auto file = read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
-  settings_.blend_step = file.corner_step;
-  settings_.speed = {file.cost_step,
-                     {file.min_speed_factor, file.min_acceleration_factor, file.min_jerk_factor},
-                     file.concern_radius,
-                     file.approach_speed,
-                     file.approach_factor,
-                     file.unseen_angle,
-                     file.unseen_factor};
-  settings_.tool.allowed_excess = file.allowed_excess;
-  const auto sped = [](RateBounds& bounds, double velocity) {
-    const double factor = velocity / bounds.velocity;
-    bounds = {velocity, factor * bounds.acceleration, factor * bounds.jerk};
-  };
-  sped(settings_.tool.translation, file.tool_speed);
-  sped(settings_.tool.rotation, file.tool_turn_speed);
-  sped(settings_.tool.elbow, file.tool_turn_speed);
+  settings_ = core_settings(file);
   max_scene_age_ = from_seconds(file.max_scene_age);
   check_time_ = from_seconds(file.check_time);
   bus.subscribe<Scene>(

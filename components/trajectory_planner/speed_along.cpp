@@ -6,8 +6,6 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kUnseenTransition = 0.35;  // angle of the transition from seen to unseen [rad]
-
 double in_steps(double factor) {
   constexpr double kStep = SpeedAlong::kStep;
   return std::max(kStep, kStep * std::floor(factor / kStep + 1e-9));
@@ -50,7 +48,8 @@ double SpeedAlong::behaviour_factor(const Vector& q) const {
       const Vector3 sight = tool - someone.sight->eyes;
       const double angle = std::acos(std::clamp(
           sight.dot(someone.sight->direction) / std::max(sight.norm(), 1e-9), -1.0, 1.0));
-      unseen = std::clamp(1 + (angle - settings_.unseen_angle) / kUnseenTransition, 0.0, 1.0);
+      unseen =
+          std::clamp(1 + (angle - settings_.unseen_angle) / settings_.unseen_transition, 0.0, 1.0);
     }
     min_factor =
         std::min(min_factor, (1 - (1 - settings_.approach_factor) * near *

@@ -33,6 +33,8 @@ struct SpeedSettings {
   /// Angle between gaze and tool from which the tool counts as unseen [rad].
   double unseen_angle{1.2};
   double unseen_factor{0.8};  ///< factor for an unseen tool, (0, 1]
+  /// Angle of the transition from seen to unseen, below unseen_angle [rad].
+  double unseen_transition{0.35};
 };
 
 class SpeedAlong {

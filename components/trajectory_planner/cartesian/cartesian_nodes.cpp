@@ -8,11 +8,10 @@
 namespace handsel::trajectory_planner {
 namespace {
 
-constexpr double kMinFromPi = 0.02;   // min distance from pi of the angle of a segment [rad]
-constexpr double kSame = 1e-9;        // max distance of equal waypoints
-constexpr double kProbe = 0.05;       // step of the tested motion between elbow angles [rad]
-constexpr double kMetre = 3.0;        // weight of the tool's translation in this step [rad/m]
-constexpr double kElbowMotion = 0.3;  // weight of elbow motion against near_limits() [1/rad]
+constexpr double kMinFromPi = 0.02;  // min distance from pi of the angle of a segment [rad]
+constexpr double kSame = 1e-9;       // max distance of equal waypoints
+constexpr double kProbe = 0.05;      // step of the tested motion between elbow angles [rad]
+constexpr double kMetre = 3.0;       // weight of the tool's translation in this step [rad/m]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Vector3 displacement(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
@@ -118,7 +117,8 @@ void CartesianPlanning::choose_elbows() {
       std::vector<std::pair<double, int>> order;
       for (std::size_t j = 0; j < from.size(); ++j)
         order.emplace_back(
-            from[j].cost + kElbowMotion * std::abs(std::remainder(angle - from[j].elbow, 2 * M_PI)),
+            from[j].cost +
+                settings_.elbow_weight * std::abs(std::remainder(angle - from[j].elbow, 2 * M_PI)),
             static_cast<int>(j));
       std::sort(order.begin(), order.end());
       for (std::size_t j = 0; j < std::min<std::size_t>(3, order.size()); ++j) {
