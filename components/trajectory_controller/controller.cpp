@@ -27,7 +27,8 @@ ComplianceSettings compliance_settings(const ControllerSettings& s) {
 }
 
 LookaheadSettings lookahead_settings(const ControllerSettings& s) {
-  return {s.guard, s.walls, s.look_ahead, s.look_far_ahead, s.rise, s.ahead_min_factor};
+  return {s.guard,          s.walls, s.look_ahead, s.look_far_ahead, s.rise, s.ahead_min_factor,
+          s.back_min_factor};
 }
 
 OutputCheckSettings output_settings(const ControllerSettings& s) {
@@ -74,7 +75,8 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       stop_space_(settings.view, proof_, *robot_),
       finger_limit_(proof_, *robot_, settings.guard),
-      arm_({settings.period, settings.start_tolerance, settings.switch_reach, settings.join_time},
+      arm_({settings.period, settings.start_tolerance, settings.switch_reach, settings.join_time,
+            settings.rejoin_time},
            *robot_, groups_.arm()),
       compliance_(compliance_settings(settings), *robot_, groups_.arm_joints().size(), arm_),
       follower_({settings.dry_run, settings.hand_rejoin, settings.timeouts.robot_state}, groups_),

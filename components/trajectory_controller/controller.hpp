@@ -49,6 +49,7 @@ struct ControllerSettings {
   /// In motion, a trajectory is joined at most this far from the switch point [rad].
   double switch_reach{0.3};
   double join_time{0.5};    ///< in motion, one that begins as the arm moves: joined within this [s]
+  double rejoin_time{0.4};  ///< a path is rejoined within this after a stop beside it [s]
   double yield_speed{0.2};  ///< largest speed of complying with a push at rest [rad/s]
   double yield_reach{0.3};  ///< largest travel of each axis while complying [rad]
   double yield_lead{0.5};   ///< of motion that the target of an axis lies ahead then [s]
@@ -77,6 +78,7 @@ struct ControllerSettings {
   double look_ahead{0.15};       ///< the guard also checks the path this much later [s]
   double look_far_ahead{0.45};   ///< and this much later: about the time of a stop [s]
   double ahead_min_factor{0.6};  ///< min speed factor assumed until then
+  double back_min_factor{0.02};  ///< min one back along the path for which it looks back
   SpeedRiseSettings rise;        ///< of the speed factor after people have slowed the arm
   int late_limit{5};             ///< late cycles in a row: Hold
   std::vector<Wall> walls;       ///< never passed: virtual walls and the sides of the workspace

@@ -124,6 +124,7 @@ void read_hand(const settings::TrajectoryControllerSettings& in, ControllerSetti
   s.hand.touch_time = h.touch_time;
   s.hand.seek_speed = h.seek_speed;
   s.hand.seek_travel = h.seek_travel;
+  s.hand.seek_min_effort = h.seek_min_effort;
   s.hand.grip_fraction = h.grip_fraction;
   s.hand.grip_effort = h.grip_effort;
   s.hand.grip_rise_time = h.grip_rise_time;
@@ -145,6 +146,8 @@ void read_hand(const settings::TrajectoryControllerSettings& in, ControllerSetti
   s.hand.pull.commit_time = h.pull_commit;
   s.hand.pull.slack_fraction = h.slack_fraction;
   s.hand.pull.slack_time = h.slack_time;
+  s.hand.pull.min_load = h.slack_min_load;
+  s.hand.pull.lasts_fraction = h.pull_lasts;
   s.hand.pull.lost_time = h.load_back;
   s.hand.pull.timeout = h.release_timeout;
   s.hand.pull.direction_cosine = h.pull_cosine;
@@ -198,6 +201,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.dry_run = in.dry_run;
   s.switch_reach = in.switch_reach;
   s.join_time = in.join_time;
+  s.rejoin_time = in.rejoin_time;
   s.tracking_tolerance = in.tracking_tolerance;
   s.tracking_time = in.tracking_time;
   s.forecast_hold = in.forecast_hold;
@@ -208,6 +212,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.look_ahead = in.look_ahead;
   s.look_far_ahead = in.look_far_ahead;
   s.ahead_min_factor = in.ahead_min_factor;
+  s.back_min_factor = in.back_min_factor;
   s.rise = {in.period, in.rise_rate, in.stop_proof.unproven_ratio, in.stop_proof.unproven_rate};
   s.hand_rejoin = in.hand_rejoin;
   s.late_limit = in.late_limit;

@@ -49,7 +49,7 @@ ArmMotion::ArmMotion(const ArmSettings& settings, const RobotModel& robot,
     : settings_(settings),
       robot_(robot),
       movers_(robot, axes),
-      runner_(settings.period, settings.join_time) {}
+      runner_(settings.period, settings.join_time, settings.rejoin_time) {}
 
 bool ArmMotion::joins(const TrajectoryCommand& command) const noexcept {
   const bool on_path = running() && !runner_.finished();

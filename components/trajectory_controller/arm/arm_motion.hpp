@@ -41,6 +41,7 @@ struct ArmSettings {
   double start_tolerance{0.05};  ///< from rest [rad]
   double switch_reach{0.3};      ///< in motion, from the switch point [rad]
   double join_time{0.5};         ///< in motion, one that begins nearly as the arm moves [s]
+  double rejoin_time{0.4};       ///< of a path that is rejoined after a stop beside it [s]
 };
 
 class ArmMotion {

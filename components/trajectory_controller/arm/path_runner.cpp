@@ -51,12 +51,11 @@ const Trajectory& PathRunner::path() const {
 }
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
-  constexpr double kWithin = 0.4;  // window of switch points [s]: later ones cut corners
-  constexpr int kTries = 10;       // in this short window, limited by the time of a cycle
+  constexpr int kTries = 10;  // in this short window, limited by the time of a cycle
   if (finished_) return false;
   SwitchSettings settings;
   settings.first = std::max(0.0, scaling_.time());
-  settings.last = settings.first + kWithin;
+  settings.last = settings.first + rejoin_time_;
   settings.tries = kTries;
   if (scaling_.start_from(state, scaling_.path(), settings) != SwitchOutcome::ok) return false;
   shift_ = this->offset();

@@ -18,7 +18,9 @@ struct PathLimits {
 class PathRunner {
  public:
   /// `join_time`: a trajectory that begins nearly as the axes move is joined within this time [s].
-  explicit PathRunner(double period, double join_time = 0.5) : dt_(period), join_time_(join_time) {}
+  /// `rejoin_time`: rejoin() joins the path within this time: later switch points cut corners [s].
+  explicit PathRunner(double period, double join_time = 0.5, double rejoin_time = 0.4)
+      : dt_(period), join_time_(join_time), rejoin_time_(rejoin_time) {}
 
   /// From rest at its beginning, at once with factor 1. Empty, or why it cannot be run. May
   /// allocate.
@@ -72,7 +74,7 @@ class PathRunner {
                         bool from_rest, Switch&& go);
   std::string why_out_of_bounds() const;
 
-  double dt_, join_time_;
+  double dt_, join_time_, rejoin_time_;
   PathLimits limits_;
   TimeScaling scaling_;
   mutable Trajectory path_;  // as law_ has it, unless stale

@@ -6,7 +6,6 @@
 namespace handsel::trajectory_controller {
 
 namespace {
-constexpr double kMinor = 0.2;  // fraction of the max effort; axes with less only hold
 constexpr double kSameSpeed =
     0.1;  // min change of the speed limit, as a fraction, that alters a motion under way
 
@@ -77,7 +76,7 @@ void HandExecutor::reset(const Vector& robot_position, const Vector& robot_effor
     }
   closed_ = max_effort_ > 0.0;
   level_ = closed_ ? 1.0 : 0.0;
-  if (closed_) fingers_.hold_object(kMinor * max_effort_);
+  if (closed_) fingers_.hold_object(settings_.seek_min_effort * max_effort_);
   release_.disarm();
 }
 
@@ -226,7 +225,9 @@ bool HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   bool done = true;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
-    if (f.contact || f.effort == 0.0 || std::abs(f.effort) < kMinor * max_effort_) continue;
+    if (f.contact || f.effort == 0.0 ||
+        std::abs(f.effort) < settings_.seek_min_effort * max_effort_)
+      continue;
     const double met = std::copysign(1.0, f.effort) * fingers_.pressed(robot, i);
     f.pressed_for = met > settings_.touch_effort / f.lever ? f.pressed_for + dt : 0.0;
     const double max_travel = settings_.seek_travel * f.lever * std::abs(f.effort) / max_effort_;
@@ -244,7 +245,7 @@ void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
   level_ = std::min(1.0, level_ + dt / settings_.grip_rise_time);
   settled_for_ = sought && level_ >= 1.0 ? settled_for_ + dt : 0.0;
   if (settled_for_ < settings_.settle_time) return;
-  fingers_.hold_object(kMinor * max_effort_);
+  fingers_.hold_object(settings_.seek_min_effort * max_effort_);
   // If an obstacle keeps a finger from its contact, the other fingers are unbalanced: only a person
   // who also holds the object keeps it in place.
   const bool holds = holds_alone(fingers_, settings_, robot, person_near_);

@@ -15,12 +15,13 @@ namespace handsel::trajectory_controller {
 /// Angles, speeds and efforts are those of turning axes; of a sliding one they count at the lever
 /// of a finger.
 struct HandSettings {
-  double grasp_speed{0.5};    ///< fraction of the comfort velocity while closing
-  double min_closing{0.05};   ///< smallest travel of an axis that closes [rad]
-  double touch_effort{0.08};  ///< effort on the world from which an axis is in contact [Nm]
-  double touch_time{0.02};    ///< for this long, while it closes [s]
-  double seek_speed{0.2};     ///< of the search for contact beyond the command [rad/s]
-  double seek_travel{0.25};   ///< largest travel of that search [rad]
+  double grasp_speed{0.5};      ///< fraction of the comfort velocity while closing
+  double min_closing{0.05};     ///< smallest travel of an axis that closes [rad]
+  double touch_effort{0.08};    ///< effort on the world from which an axis is in contact [Nm]
+  double touch_time{0.02};      ///< for this long, while it closes [s]
+  double seek_speed{0.2};       ///< of the search for contact beyond the command [rad/s]
+  double seek_travel{0.25};     ///< largest travel of that search [rad]
+  double seek_min_effort{0.2};  ///< fraction of the max effort; axes with less only hold
   /// Fraction of the grip force on axes in contact from which on the force grows although others
   /// still search.
   double grip_fraction{0.8};

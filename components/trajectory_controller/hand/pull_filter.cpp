@@ -35,7 +35,7 @@ void PullFilter::update(const Vector3& force, double dt) noexcept {
   filtered_ += (force - baseline_ - filtered_) * (dt / (settings_.filter_time + dt));
   quick_ += (force - baseline_ - quick_) * (dt / (settings_.quick_time + dt));
   pull_ = filtered_.norm();
-  load_ratio_ = load() > kMinLoad ? (quick_ + baseline_).norm() / load() : 1.0;
+  load_ratio_ = load() > settings_.min_load ? (quick_ + baseline_).norm() / load() : 1.0;
 }
 
 }  // namespace handsel::trajectory_controller

@@ -6,18 +6,16 @@
 
 namespace handsel::trajectory_controller {
 
-/// Time constants of PullFilter.
+/// Time constants and limits of PullFilter.
 struct PullFilterSettings {
   double baseline_time{0.25};  ///< averaging of the load's own force [s]
   double filter_time{0.03};    ///< time constant of the force filter [s]
   double quick_time{0.005};    ///< of the filter that notices the end of a pull or bump [s]
+  double min_load{0.4};        ///< below this load the ratio of what is still felt says nothing [N]
 };
 
 class PullFilter {
  public:
-  /// Below this load the ratio of what is still felt says nothing [N].
-  static constexpr double kMinLoad = 0.4;
-
   explicit PullFilter(const PullFilterSettings& settings) : settings_(settings) {}
 
   /// Takes a sample of the load's own force while no person's hand is near.

@@ -4,10 +4,6 @@
 
 namespace handsel::trajectory_controller {
 
-namespace {
-constexpr double kStillThere = 0.5;  // fraction of the threshold, or of the load if that is smaller
-}  // namespace
-
 void ReleaseWatch::arm(double threshold) noexcept {
   armed_ = true;
   started_ = above_ = false;
@@ -25,7 +21,7 @@ bool ReleaseWatch::strong(const Vector3& toward, TimePoint now) noexcept {
   const Vector3 direction =
       pull > 1e-9 ? Vector3(filter_.filtered() / pull) : Vector3(Vector3::Zero());
   // The fast filter must agree: after a bump the slow one stays high for a while.
-  const bool lasts = filter_.quick().dot(direction) >= kStillThere * threshold_;
+  const bool lasts = filter_.quick().dot(direction) >= settings_.lasts_fraction * threshold_;
   const bool toward_person = direction.dot(toward) >= settings_.away_cosine;
   const bool beyond = pull >= threshold_ && lasts && toward_person;
   if (!beyond || (above_ && direction.dot(mean_.normalized()) < settings_.direction_cosine)) {
@@ -75,8 +71,8 @@ Grip ReleaseWatch::update(const Felt& felt, TimePoint now) noexcept {
   }
   // The load hangs on the hand as before, without a pull.
   const double load = filter_.load();
-  const double reference = load > PullFilter::kMinLoad ? std::min(threshold_, load) : threshold_;
-  const bool back = filter_.quick().norm() < kStillThere * reference;
+  const double reference = load > settings_.min_load ? std::min(threshold_, load) : threshold_;
+  const bool back = filter_.quick().norm() < settings_.lasts_fraction * reference;
   lost_for_ = back ? lost_for_ + dt : 0.0;
   if (lost_for_ >= settings_.lost_time && (grip_ == Grip::loosen || felt.pressing)) {
     ++regrips_;

@@ -26,6 +26,9 @@ struct PullSettings {
   double slack_time{0.15};       ///< and for this long: the hand opens [s]
   double lost_time{0.02};        ///< the load back on the hand for this long: close again [s]
   double timeout{1.0};           ///< timeout when loosened with neither: close again [s]
+  /// Fraction of the threshold, or of the load if that is smaller, below which there is no pull.
+  double lasts_fraction{0.5};
+  double min_load{0.4};  ///< below this load nobody is taken to bear part of it [N]
 };
 
 /// What the hand is to do. Ordered: later ones are nearer to a release.
@@ -43,7 +46,8 @@ class ReleaseWatch {
  public:
   explicit ReleaseWatch(const PullSettings& settings)
       : settings_(settings),
-        filter_({settings.baseline_time, settings.filter_time, settings.quick_time}) {}
+        filter_({settings.baseline_time, settings.filter_time, settings.quick_time,
+                 settings.min_load}) {}
 
   /// Starts over: the load's own force is measured from the samples that follow. threshold: min
   /// pull that counts [N].

@@ -9,9 +9,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kBackward = 0.02;  // min backward speed factor at which the path runs back
-constexpr int kEvery = 50;          // cycles between two evaluations at rest
-constexpr int kEveryRetreat = 10;   // cycles between two evaluations in a retreat
+constexpr int kEvery = 50;         // cycles between two evaluations at rest
+constexpr int kEveryRetreat = 10;  // cycles between two evaluations in a retreat
 
 }  // namespace
 
@@ -124,7 +123,8 @@ void Lookahead::set_motion(double ahead, const LookaheadInputs& in) noexcept {
   motion_.acceleration.setZero();
   const double factor = in.arm.path().factor(),
                speed = std::max(std::abs(factor), settings_.min_factor);
-  const double time = in.arm.path().time() + ahead * (factor < -kBackward ? -speed : speed);
+  const double time =
+      in.arm.path().time() + ahead * (factor < -settings_.back_min_factor ? -speed : speed);
   const MotionState3& at = in.arm.path_at(time);
   for (std::size_t i = 0; i < in.arm.path_axes().size(); ++i) {
     const auto axis = static_cast<Eigen::Index>(in.arm.path_axes()[i]);

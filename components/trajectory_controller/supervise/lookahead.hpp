@@ -17,12 +17,13 @@ namespace handsel::trajectory_controller {
 
 /// Limits of the evaluation, and how far ahead it is made.
 struct LookaheadSettings {
-  GuardSettings guard;          ///< speed and separation
-  std::vector<Wall> walls;      ///< never passed
-  double look_ahead{0.15};      ///< the path is also evaluated this much later [s]
-  double look_far_ahead{0.45};  ///< and this much later: about the time of a stop [s]
-  SpeedRiseSettings rise;       ///< of the speed factor
-  double min_factor{0.6};       ///< min speed factor assumed until then
+  GuardSettings guard;           ///< speed and separation
+  std::vector<Wall> walls;       ///< never passed
+  double look_ahead{0.15};       ///< the path is also evaluated this much later [s]
+  double look_far_ahead{0.45};   ///< and this much later: about the time of a stop [s]
+  SpeedRiseSettings rise;        ///< of the speed factor
+  double min_factor{0.6};        ///< min speed factor assumed until then
+  double back_min_factor{0.02};  ///< min backward speed factor at which the path runs back
 };
 
 /// Inputs of one evaluation.
