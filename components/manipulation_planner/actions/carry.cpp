@@ -51,8 +51,9 @@ Routine<CarryPlan> plan_carry(Parts& parts, const ActionGoal& goal) {
 Routine<Outcome> grip(Parts& parts, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
   const double timeout = 2 * parts.settings.hand_timeout;
-  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout,
-                                              &grasp.hand_effort, parts.settings.two_hand_share);
+  HandResult closed =
+      co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort,
+                              parts.settings.two_hand_mass_fraction);
   if (!closed.outcome.good) co_return closed.outcome;
   if (closed.state != HandState::grasped)
     co_return Outcome::failure("the hand " + parts.arm.fingers().name + " closed on nothing",
