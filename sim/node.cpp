@@ -128,7 +128,7 @@ void Node::tick(TimePoint now) {
     since_start_ = 0;
     factor_.restart(now, world_->time());
   }
-  const auto due = static_cast<std::uint64_t>(to_seconds(now - start_) / settings_.step + 0.5) + 1;
+  const std::uint64_t due = 1 + std::llround(to_seconds(now - start_) / settings_.step);
   if (due > since_start_ + kMaxStepsPerTick) {  // the delay is not made up for
     start_ = now - from_seconds(static_cast<double>(since_start_) * settings_.step);
     return;

@@ -463,8 +463,8 @@ Pose BatchWorld::link_pose(int link, int slot) const {
   Pose T = Pose::Identity();
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 4; ++k)
-      T.matrix()(i, k) = pose_[static_cast<std::size_t>((body * 12 * kStates) +
-                                                        (4 * i + k) * width + slot % width)];
+      T.matrix()(i, k) = pose_[static_cast<std::size_t>(body) * 12 * kStates +
+                               static_cast<std::size_t>((4 * i + k) * width + slot % width)];
   return T * chain_.T_body_link[static_cast<std::size_t>(link)];
 }
 

@@ -28,6 +28,7 @@ CollisionShapePtr SceneBodies::shape_of(const SceneObject& object, double margin
 std::vector<Vector3> corners_of(const SceneObject& object) {
   const Eigen::AlignedBox3d box = object_extent(nullptr, object.primitive);
   std::vector<Vector3> out;
+  out.reserve(8);
   for (int i = 0; i < 8; ++i)
     out.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
   return out;

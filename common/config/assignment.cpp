@@ -92,6 +92,7 @@ class Assignment {
 
   static std::vector<std::string> keys_of(const Descriptor& type) {
     std::vector<std::string> out;
+    out.reserve(static_cast<std::size_t>(type.field_count()));
     for (int i = 0; i < type.field_count(); ++i) out.push_back(type.field(i)->name());
     return out;
   }
@@ -117,6 +118,7 @@ class Assignment {
         const EnumDescriptor& type = *field.enum_type();
         if (type.FindValueByName(value) != nullptr) return value;
         std::vector<std::string> all;
+        all.reserve(static_cast<std::size_t>(type.value_count()));
         for (int i = 0; i < type.value_count(); ++i) all.push_back(type.value(i)->name());
         refuse(is + "one of " + joined(all));
       }

@@ -238,6 +238,7 @@ std::string setting_path(const std::string& outer, const FieldDescriptor& field,
 std::vector<std::string> settings_components() {
   const Descriptor& all = *config::SettingsOverlay::descriptor();
   std::vector<std::string> out;
+  out.reserve(static_cast<std::size_t>(all.field_count()));
   for (int i = 0; i < all.field_count(); ++i) out.push_back(all.field(i)->name());
   return out;
 }

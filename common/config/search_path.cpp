@@ -101,7 +101,7 @@ bool is_of_another_kind(FileKind kind, const fs::path& file) {
 /// Returns the folder of a kind below a folder of the search path. In the source tree, scenarios
 /// and stories lie beside the folder with the descriptions.
 fs::path kind_folder(const fs::path& folder, const Layout& layout) {
-  const fs::path direct = folder / layout.folder;
+  fs::path direct = folder / layout.folder;
   std::error_code error;
   if (folder != resource_root() || fs::is_directory(direct, error)) return direct;
   return folder.parent_path() / (layout.nested || layout.extension == std::string(kText)

@@ -54,11 +54,11 @@ class Document {
   }
 
   void leave_out() {
-    static const char* const kRead[] = {"asset", "library_geometries", "library_nodes",
-                                        "library_visual_scenes", "scene"};
+    static const char* const handled[] = {"asset", "library_geometries", "library_nodes",
+                                          "library_visual_scenes", "scene"};
     for (XMLElement *e = root_->FirstChildElement(), *next = nullptr; e != nullptr; e = next) {
       next = e->NextSiblingElement();
-      if (std::none_of(std::begin(kRead), std::end(kRead),
+      if (std::none_of(std::begin(handled), std::end(handled),
                        [&](const char* name) { return std::string_view(name) == e->Name(); }))
         root_->DeleteChild(e);
     }

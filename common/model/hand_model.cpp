@@ -61,7 +61,7 @@ class HandModelBuilder {
   }
 
   Pad read_pad(const config::FingerDescription& finger) const {
-    const Pad pad{to_pose(finger.pad().pose()), finger.pad().width(), finger.pad().height()};
+    Pad pad{to_pose(finger.pad().pose()), finger.pad().width(), finger.pad().height()};
     if (!(pad.width > 0) || !(pad.height > 0))
       throw ConfigError(where(finger.name()) + "the pad of finger " + finger.name() +
                         " needs width and height > 0");

@@ -148,18 +148,18 @@ SrsArm::Candidate SrsArm::at(const Problem& problem, double circle) const {
 
 /// Refines by golden-section search between the samples beside `centre`.
 SrsArm::Candidate SrsArm::refine(const Problem& problem, double centre) const {
-  constexpr double golden = 0.6180339887498949;
+  constexpr double kGolden = 0.6180339887498949;
   double low = centre - 2 * M_PI / kCircleSamples, high = centre + 2 * M_PI / kCircleSamples;
-  double x = high - golden * (high - low), y = low + golden * (high - low);
+  double x = high - kGolden * (high - low), y = low + kGolden * (high - low);
   Candidate at_x = at(problem, x), at_y = at(problem, y), best = at(problem, centre);
   for (int i = 0; i < kRefinements; ++i) {
     if (at_x.cost < at_y.cost) {
       high = y, y = x, at_y = at_x;
-      x = high - golden * (high - low);
+      x = high - kGolden * (high - low);
       at_x = at(problem, x);
     } else {
       low = x, x = y, at_x = at_y;
-      y = low + golden * (high - low);
+      y = low + kGolden * (high - low);
       at_y = at(problem, y);
     }
   }

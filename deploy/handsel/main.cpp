@@ -43,6 +43,7 @@ void require_known(const CLI::App& app, int argc, char** argv) {
         [&](const CLI::App* candidate) { return candidate->get_name() == word; });
     if (found.empty()) {
       std::vector<std::string> names;
+      names.reserve(all.size());
       for (const CLI::App* candidate : all) names.push_back(candidate->get_name());
       throw handsel::ConfigError("there is no command \"" + word + "\" here" +
                                  nearest_text(word, names) + "; --help names those there are");

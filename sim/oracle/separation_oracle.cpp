@@ -107,6 +107,7 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot,
     const std::vector<BodyCapsule> body = body_capsules(*volume.person);
     // Skips parts whose bounding sphere is farther away than the best distance so far.
     std::vector<std::pair<Vector3, double>> spheres;
+    spheres.reserve(body.size());
     for (const BodyCapsule& part : body)
       spheres.emplace_back((part.a + part.b) / 2, (part.b - part.a).norm() / 2 + part.radius);
     for (const LinkVolume& link : volumes_) {

@@ -45,7 +45,7 @@ double MovingOffer::draw_uniform(double low, double high) {
 Vector3 MovingOffer::draw(const Vector3& low, const Vector3& high, const Vector3& otherwise) {
   for (int i = 0; i < kMaxDraws; ++i) {
     const double x = draw_uniform(low.x(), high.x()), y = draw_uniform(low.y(), high.y());
-    const Vector3 p(x, y, draw_uniform(low.z(), high.z()));
+    Vector3 p(x, y, draw_uniform(low.z(), high.z()));
     if (reach_.contains(p)) return p;
   }
   return otherwise;

@@ -50,7 +50,7 @@ int default_domain() {
 std::string system_name() {
   constexpr std::size_t kMaxLength = 32;
   const char* text = std::getenv("HANDSEL_NAME");
-  const std::string name = text != nullptr ? text : "";
+  std::string name = text != nullptr ? text : "";
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   if (name.size() > kMaxLength || !std::all_of(name.begin(), name.end(), allowed))
     throw ConfigError("HANDSEL_NAME is \"" + name +

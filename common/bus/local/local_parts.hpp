@@ -151,6 +151,7 @@ class LocalBus final : public Bus {
   void publish_health(TimePoint now);  ///< as DdsBus does
   void resume();                       ///< handles what waited while the component was paused
 
+  // NOLINTBEGIN(readability-identifier-naming): private to all but the network
   LocalNetwork::Impl& net_;  ///< the network that this bus is part of
   std::string component_;    ///< name of the component
   bool metered_;             ///< CPU time of its callbacks is counted
@@ -166,6 +167,7 @@ class LocalBus final : public Bus {
   std::vector<std::unique_ptr<Timer>> timers_;                ///< in the order they were made
   std::vector<Event> held_;                                   ///< other events while paused
   std::unique_ptr<Publisher<ComponentHealth>> health_;        ///< of the component
+  // NOLINTEND(readability-identifier-naming)
 };
 
 }  // namespace handsel

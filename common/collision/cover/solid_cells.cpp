@@ -74,22 +74,23 @@ CoverSolid cylinder_cells(double radius, double length) {
   solid.volume = true;
   const double cell = cell_size({2 * radius, 2 * radius, length});
   const int sectors = std::clamp(static_cast<int>(std::ceil(2 * M_PI * radius / cell)), 12, 32);
-  constexpr std::array<double, 4> ring = {0, 0.5, 0.85, 1};
-  constexpr int rings = 3;
+  constexpr std::array<double, 4> kRing = {0, 0.5, 0.85, 1};
+  constexpr int kRings = 3;
   const int slices = std::clamp(static_cast<int>(std::ceil(length / cell)), 1, 24);
   const double outer = radius / std::cos(M_PI / sectors);
   const auto index = [&](int r, int sector, int slice) {
-    return (slice * (rings + 1) + r) * sectors + sector % sectors;
+    return (slice * (kRings + 1) + r) * sectors + sector % sectors;
   };
   for (int k = 0; k <= slices; ++k)
-    for (int r = 0; r <= rings; ++r)
+    for (int r = 0; r <= kRings; ++r)
       for (int s = 0; s < sectors; ++s) {
-        const double angle = 2 * M_PI * s / sectors, at = outer * ring[static_cast<std::size_t>(r)];
+        const double angle = 2 * M_PI * s / sectors,
+                     at = outer * kRing[static_cast<std::size_t>(r)];
         solid.points.emplace_back(at * std::cos(angle), at * std::sin(angle),
                                   length * (static_cast<double>(k) / slices - 0.5));
       }
   for (int k = 0; k < slices; ++k)
-    for (int r = 0; r < rings; ++r)
+    for (int r = 0; r < kRings; ++r)
       for (int s = 0; s < sectors; ++s)
         solid.cells.push_back({index(r, s, k), index(r + 1, s, k), index(r, s + 1, k),
                                index(r + 1, s + 1, k), index(r, s, k + 1), index(r + 1, s, k + 1),

@@ -268,8 +268,9 @@ class Structs {
 
   static std::string assignment(const FieldDescriptor& field) {
     const std::string part = part_of(field);
+    const std::string& get = field.lowercase_name();
     const std::string member = "out." + (part.empty() ? "" : part + ".") + field.name(),
-                      get = field.lowercase_name(), value = "in." + get + "()";
+                      value = "in." + get + "()";
     const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
     if (field.is_map())
       return "for (const auto& [key, value] : " + value + ") " + member + "[key] = value;";

@@ -110,7 +110,7 @@ std::vector<int> cavity_of(const VoxelGrid& grid) {
   while (!open.empty()) {
     const auto [from_level, from] = open.top();
     open.pop();
-    each_neighbour(grid, from, [&](int to) {
+    each_neighbour(grid, from, [&, from_level = from_level](int to) {
       if (level[static_cast<std::size_t>(to)] >= 0 || is_solid(to)) return;
       const int to_level = std::max(from_level, grid.cell_at(to)[2]);
       level[static_cast<std::size_t>(to)] = to_level;

@@ -7,6 +7,7 @@
 
 namespace handsel::body {
 
+// NOLINTBEGIN(readability-identifier-naming): the names of the joints as on the wire
 enum Index {
   head,
   neck,
@@ -27,6 +28,7 @@ enum Index {
   r_knee,
   r_ankle
 };
+// NOLINTEND(readability-identifier-naming)
 
 using Points = std::array<Vector3, kBodyJoints.size()>;
 

@@ -145,10 +145,10 @@ std::vector<BodyJoint> sitting_body(const Vector3& floor_point, double yaw, doub
   std::vector<BodyJoint> joints = standing_body(floor_point, yaw, stature);
   const Vector3 forward = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Vector3::UnitX();
   for (BodyJoint& joint : joints) joint.position.z() -= (kHip - kSeat) * stature;
-  for (const int leg : {0, r_hip - l_hip}) {
-    Vector3& knee = joints[static_cast<std::size_t>(l_knee + leg)].position;
-    Vector3& ankle = joints[static_cast<std::size_t>(l_ankle + leg)].position;
-    const Vector3& hip = joints[static_cast<std::size_t>(l_hip + leg)].position;
+  for (const std::size_t leg : {std::size_t{0}, static_cast<std::size_t>(r_hip) - l_hip}) {
+    Vector3& knee = joints[static_cast<std::size_t>(l_knee) + leg].position;
+    Vector3& ankle = joints[static_cast<std::size_t>(l_ankle) + leg].position;
+    const Vector3& hip = joints[static_cast<std::size_t>(l_hip) + leg].position;
     knee = hip + (kHip - kKnee) * stature * forward;
     ankle = Vector3(knee.x(), knee.y(), floor_point.z() + kAnkle * stature);
   }

@@ -298,9 +298,10 @@ std::uint32_t prepare(const AxisBatchInput& in, int first, int axes, AxisBatch& 
     l.J = all(in.max_jerk, 1);
     l.over_J = 1 / l.J;
     l.over_JA = l.over_J / l.A;
-    const V over_2J = 0.5 * l.over_J, max_v = l.velocity * (1 + kBorder),
+    const V half_over_J = 0.5 * l.over_J, max_v = l.velocity * (1 + kBorder),
             max_a = l.A * (1 + kBorder);
-    const V ahead = x.v0 + x.a0 * abs(x.a0) * over_2J, behind = x.vf - x.af * abs(x.af) * over_2J;
+    const V ahead = x.v0 + x.a0 * abs(x.a0) * half_over_J,
+            behind = x.vf - x.af * abs(x.af) * half_over_J;
     const V lowest = min(min(l.velocity, l.A), l.J), highest = max(max(l.velocity, l.A), l.J);
     const M usual = x.scale < 1e30 && lowest > 1e-30 && highest < 1e30 && abs(x.v0) <= max_v &&
                     abs(x.vf) <= max_v && abs(x.a0) <= max_a && abs(x.af) <= max_a &&

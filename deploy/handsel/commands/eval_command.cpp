@@ -189,6 +189,7 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
   const Shard shard = parse_shard(options.shard);
   for (const std::string& scenario : options.scenarios) {
     std::vector<Contexts> contexts;
+    contexts.reserve(conditions.size());
     for (const Condition& condition : conditions)
       contexts.emplace_back(scenario, options.robot, condition.settings->folder());
     for (int i = 0; i < count; ++i) {

@@ -52,7 +52,7 @@ std::filesystem::path with_recording(const std::string& name, const std::string&
   sim::load_recording(
       sim::resolve_recording(own, sim::data_root()));  // an invalid recording starts nothing
   scenario.mutable_people(0)->set_recording(own.string());
-  const std::filesystem::path file =
+  std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("handsel-" + std::to_string(getpid()) + ".txtpb");
   std::string text;
   google::protobuf::TextFormat::PrintToString(scenario, &text);

@@ -203,7 +203,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
   });
   bool counts = false;
   std::set<std::string> received;
-  const auto watch = [&]<class M>(const Lenient& type, std::string topic,
+  const auto watch = [&]<class M>(const Lenient& type, const std::string& topic,
                                   M*) -> const SubscriptionStatus& {
     return bus.subscribe_any(type,
                              [&, topic](const void* message, const Receipt& receipt) {

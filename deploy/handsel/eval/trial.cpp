@@ -240,6 +240,7 @@ bool run_trials(const std::vector<Trial>& trials, int jobs,
     while (next < trials.size() && running.size() < static_cast<std::size_t>(jobs))
       running.push_back(start_worker(trials, next++));
     std::vector<pollfd> fds;
+    fds.reserve(running.size());
     for (const Worker& worker : running) fds.push_back({worker.fd, POLLIN, 0});
     poll(fds.data(), fds.size(), -1);
     for (std::size_t i = running.size(); i-- > 0;) {

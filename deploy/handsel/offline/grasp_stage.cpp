@@ -64,6 +64,7 @@ Pose Stage::standing(double x, double y, double yaw) const {
 std::vector<Pose> Stage::resting(double x, double y) const {
   constexpr int kTurns = 8;
   std::vector<Pose> out;
+  out.reserve(kTurns);
   for (int k = 0; k < kTurns; ++k) out.push_back(standing(x, y, 2 * std::numbers::pi * k / kTurns));
   for (const Placement& placement : stable_placements(object.mesh, object.com)) {
     if ((placement.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999) continue;

@@ -114,7 +114,8 @@ std::string cost_picture(const Person& person, const CostSettings& settings, dou
       all_wide, all_high, all_wide, all_high);
   out += text("<text x=\"%.0f\" y=\"24\" font-size=\"15\">%s</text>\n", kMargin, title.c_str());
   for (int i = 0; i < 4; ++i) {
-    const double left = kMargin + (i % 2) * (width + kGap), top = 60 + (i / 2) * (height + kGap);
+    const int column = i % 2, row = i / 2;
+    const double left = kMargin + column * (width + kGap), top = 60 + row * (height + kGap);
     out += text("<text x=\"%.0f\" y=\"%.0f\">%s</text>\n<g shape-rendering=\"crispEdges\">\n", left,
                 top - 7, panels[i].name);
     const auto cost_at = [&](const Vector3& p) {

@@ -56,8 +56,9 @@ Replay::Replay(Bus& bus, const Settings& settings) : reader_(settings.file), fro
     wanted.push_back(row);
   }
   for (const auto& [id, channel] : reader_.channels()) {
-    const auto row = std::find_if(wanted.begin(), wanted.end(),
-                                  [&](const TopicRow* r) { return channel.topic == r->topic; });
+    const auto row =
+        std::find_if(wanted.begin(), wanted.end(),
+                     [&topic = channel.topic](const TopicRow* r) { return topic == r->topic; });
     if (row == wanted.end()) continue;
     if (channel.encoding != "cdr" || channel.schema != idl_schema(**row))
       throw ConfigError(settings.file.string() + ": " + channel.topic +

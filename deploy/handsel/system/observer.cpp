@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kMaxTimeline = 20000;
 constexpr std::size_t kMaxTasks = 4096, kMaxComponents = 64;
 
-std::string with_reason(std::string text, const std::string& reason) {
+std::string with_reason(const std::string& text, const std::string& reason) {
   return reason.empty() ? text : text + ": " + reason;
 }
 
@@ -23,7 +23,7 @@ void keep_newest(Seen<M>& seen, const M& sample, TimePoint at) {
 
 std::string cause_names(std::uint32_t causes) {
   std::string names;
-  for (std::uint8_t value = 1; value < std::size(kCauseNames); ++value) {
+  for (std::size_t value = 1; value < std::size(kCauseNames); ++value) {
     if (causes & (1u << value))
       names += (names.empty() ? "" : ", ") + std::string(name(static_cast<Cause>(value)));
   }
