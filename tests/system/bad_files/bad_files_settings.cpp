@@ -58,6 +58,7 @@ void add_components(BadFiles& table) {
       .key("publish_period", "nan", "is nan, must be a number in (0, 10]")
       .key("human_period", "0", "is 0, must be")
       .key("joint_noise", "-1", "is -1, must be")
+      .key("danger_zone", "0.05", "contact_zone: the zones must grow")
       .key("lost_speed", "1e400", "is inf, must be")
       .text("unknown_key", "speed: 1\n", "spark.txtpb:1")
       .text("binary", std::string("\0\377\1", 3), "spark.txtpb:1")
@@ -85,6 +86,7 @@ void add_components(BadFiles& table) {
       .key("grip_friction", "1.1", "is 1.1, must be")
       .key("cone_edges", "3", "is 3, must be");
   Settings(table, "manipulation_planner", "manipulation_planner.txtpb")
+      .key("otp_max_ahead", "0.3", "otp_max_ahead: must be at least otp_min_ahead")
       .key("planning_time", "nan", "is nan, must be")
       .key("carry_speed", "7", "is 7, must be")
       .key("hand_timeout", "-1", "is -1, must be");
