@@ -188,12 +188,13 @@ void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction)
   }
 }
 
-/// Moves the hand from `start` against `direction` to the object; of a person who gives the pose
-/// there is a candidate, and some with the palm off the object: givers use precision grips, which
-/// leave the receiver more of the object.
+/// Moves the hand from `start` against `direction` to the object and keeps the pose. For a person
+/// who gives, adds poses with the palm off the object and square to it: givers use precision grips,
+/// which leave the receiver more of the object.
 void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const Vector3& fingers,
                           double tilt) {
-  constexpr double kFar = 0.4;  // max length of the motion [m]
+  constexpr double kFar = 0.4;   // max length of the motion [m]
+  constexpr double kRoom = 0.2;  // distance from a point to leave free that costs nothing [m]
   double moved = 0, beyond = distance(start) - kPalmDistance;
   for (int i = 0; i < 40 && moved < kFar && beyond > 5e-4; ++i) {
     moved += beyond;
@@ -204,26 +205,26 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
   T.linear() << -direction, fingers.cross(-direction), fingers;
   T.linear() = T.linear() * Eigen::AngleAxisd(tilt, Vector3::UnitY()).toRotationMatrix();
   T.translation() = start - moved * direction;
-  add_candidate(T, direction);
-  if (!query_.p_left || settings_.max_palm_gap <= 0) return;
+  const double near_left =
+      query_.p_left ? std::max(0.0, 1 - (T.translation() - *query_.p_left).norm() / kRoom) : 0.0;
+  add_candidate(T, direction, near_left);
+  if (!query_.p_left || settings_.max_palm_gap <= 0 || tilt != 0) return;
   for (int i = 1; i <= kPalmGaps; ++i) {
     T.translation() += settings_.max_palm_gap / kPalmGaps * direction;
-    add_candidate(T, direction);
+    add_candidate(T, direction, near_left);
   }
 }
 
 /// Keeps a pose of the hand, with the palm's normal against `direction`, if the arm reaches it.
-void FreeGraspSearch::add_candidate(const Pose& T, const Vector3& direction) {
-  constexpr double kRoom = 0.2;  // distance from a point to leave free that costs nothing [m]
+/// `near_left`: how near the held part is to the point that is left to a receiver, [0, 1].
+void FreeGraspSearch::add_candidate(const Pose& T, const Vector3& direction, double near_left) {
   Pose T_wrist = T;
   T_wrist.translation() -= query_.wrist * T.linear().col(2);
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);
   if (!posture || posture->strain > settings_.max_strain) return;
   const double beside = (1 - direction.dot(query_.preferred)) / 2;
-  double cost = posture->strain + settings_.side_preference * beside;
-  if (query_.p_left)
-    cost += settings_.room_preference *
-            std::max(0.0, 1 - (T.translation() - *query_.p_left).norm() / kRoom);
+  const double cost =
+      posture->strain + settings_.side_preference * beside + settings_.room_preference * near_left;
   candidates_.push_back({T, cost, posture->strain});
 }
 
