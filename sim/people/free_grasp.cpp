@@ -207,25 +207,27 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
   T.translation() = start - moved * direction;
   const double near_left =
       query_.p_left ? std::max(0.0, 1 - (T.translation() - *query_.p_left).norm() / kRoom) : 0.0;
-  add_candidate(T, direction, near_left);
+  add_candidate({T, 0, 0, true}, direction, near_left);
   if (!query_.p_left || settings_.max_palm_gap <= 0 || tilt != 0) return;
   for (int i = 1; i <= kPalmGaps; ++i) {
     T.translation() += settings_.max_palm_gap / kPalmGaps * direction;
-    add_candidate(T, direction, near_left);
+    add_candidate({T, 0, 0, false}, direction, near_left);
   }
 }
 
 /// Keeps a pose of the hand, with the palm's normal against `direction`, if the arm reaches it.
 /// `near_left`: how near the held part is to the point that is left to a receiver, [0, 1].
-void FreeGraspSearch::add_candidate(const Pose& T, const Vector3& direction, double near_left) {
-  Pose T_wrist = T;
-  T_wrist.translation() -= query_.wrist * T.linear().col(2);
+void FreeGraspSearch::add_candidate(Candidate candidate, const Vector3& direction,
+                                    double near_left) {
+  Pose T_wrist = candidate.T_world_hand;
+  T_wrist.translation() -= query_.wrist * T_wrist.linear().col(2);
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);
   if (!posture || posture->strain > settings_.max_strain) return;
   const double beside = (1 - direction.dot(query_.preferred)) / 2;
-  const double cost =
+  candidate.strain = posture->strain;
+  candidate.cost =
       posture->strain + settings_.side_preference * beside + settings_.room_preference * near_left;
-  candidates_.push_back({T, cost, posture->strain});
+  candidates_.push_back(candidate);
 }
 
 /// Returns the arm of the person who leans as far as the wrist's position needs.
@@ -266,8 +268,9 @@ std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const
     if (closure > 0 && can_close(T, d, closure)) grasp.closures[d] = closure;
   }
   const Vector3 palm = T.linear().col(0), fingers = of_fingers.stableNormalized();
-  const bool is_enclosed = of_thumb.dot(fingers) < -settings_.min_opposition ||
-                           fingers.dot(palm) < -settings_.min_opposition;
+  const bool is_enclosed =
+      of_thumb.dot(fingers) < -settings_.min_opposition ||
+      (candidate.palm_touches && fingers.dot(palm) < -settings_.min_opposition);
   if (grasp.digits_in_contact < settings_.min_digits || !is_enclosed || !can_come(T))
     return std::nullopt;
   return grasp;

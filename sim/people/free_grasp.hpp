@@ -69,13 +69,14 @@ class FreeGraspSearch {
   struct Candidate {
     Pose T_world_hand{Pose::Identity()};
     double cost{}, strain{};
+    bool palm_touches{true};  // false: the digits alone hold
   };
   double distance(const Vector3& p_world) const;
   Vector3 inward(const Vector3& p_world) const;
   bool is_clear(const HandPart& part) const;
   void add_about(const Vector3& anchor, const Vector3& direction);
   void add(const Vector3& start, const Vector3& direction, const Vector3& fingers, double tilt);
-  void add_candidate(const Pose& T_world_hand, const Vector3& direction, double near_left);
+  void add_candidate(Candidate candidate, const Vector3& direction, double near_left);
   HumanArm leaning_to(const Vector3& p_wrist) const;
   void consider(const Candidate& candidate);
   std::optional<FreeGrasp> test(const Candidate& candidate) const;

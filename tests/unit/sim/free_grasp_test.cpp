@@ -17,6 +17,8 @@ double distance(const HandPart& a, const HandPart& b) {
   return std::sqrt(nearest_points(a.a, a.b, b.a, b.b, on_a, on_b)) - a.radius - b.radius;
 }
 
+Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
+
 /// A person at the origin who faces +x, and an object before the right shoulder.
 class FreeGraspTest : public testing::Test {
  protected:
@@ -129,6 +131,14 @@ TEST_F(FreeGraspTest, a_hand_that_gives_may_hold_by_the_digits_alone) {
   const auto by_digits = find_free_grasp(query_, shape_);
   ASSERT_TRUE(with_palm && by_digits);
   EXPECT_GE(by_digits->digits_in_contact, 3);
+  // The tip of the thumb is on the other side of the object's axis than that of a finger.
+  const auto tip = [&](int digit) {
+    const auto parts = shape_.digit(digit, by_digits->closures[static_cast<std::size_t>(digit)]);
+    return Vector3(by_digits->T_object_hand * std::prev(parts.end())->b);
+  };
+  bool is_opposed = false;
+  for (int d = 1; d < kDigits; ++d) is_opposed = is_opposed || level(tip(0)).dot(level(tip(d))) < 0;
+  EXPECT_TRUE(is_opposed);
   EXPECT_GT(surface_distance(object_, by_digits->T_object_hand.translation()),
             kPalmDistance + 0.01);
   std::printf("free of the hand: %.2f by the digits, %.2f with the palm\n",
