@@ -190,8 +190,11 @@ Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs,
         found.all.push_back({T, cost + *attitude});
     }
   };
+  // Symmetric, and straight ahead among them, whatever the step.
+  const double max_aside =
+      std::floor(settings.otp_max_aside / settings.otp_aside_step + 1e-6) * settings.otp_aside_step;
   const std::vector<double> to_side =
-      values_between(-settings.otp_max_aside, settings.otp_max_aside, settings.otp_aside_step);
+      values_between(-max_aside, max_aside, settings.otp_aside_step);
   const std::vector<double> below_shoulder =
       values_between(settings.otp_min_below, settings.otp_max_below, settings.otp_below_step);
   for (const double ahead :
