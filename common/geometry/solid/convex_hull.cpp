@@ -75,6 +75,7 @@ TriangleMesh reduced_hull(const std::vector<Vector3>& points, int max_points) {
     chosen.insert(best);
   }
   std::vector<Vector3> few;
+  few.reserve(chosen.size());
   for (const std::size_t i : chosen) few.push_back(whole.vertices[i]);
   TriangleMesh reduced = convex_hull(few);
   return reduced.triangles.empty() ? whole : reduced;
