@@ -138,13 +138,7 @@ void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   inputs_.advice.set(advice, sampled);
   if (!inputs_.robot.ready() || !head_.has_new_target(advice)) return;
   const Vector& here = set_points_.sent().position;
-  Vector path_end = here;
-  if (arm_.running()) {
-    const MotionState3& end = arm_.path_at(arm_.path().duration());
-    for (std::size_t i = 0; i < arm_.path_axes().size(); ++i)
-      path_end[arm_.path_axes()[i]] = end.position[static_cast<Eigen::Index>(i)];
-  }
-  head_.aim_at(advice, inputs_.robot.state().T_world_base, here, path_end);
+  head_.aim_at(advice, inputs_.robot.state().T_world_base, here, arm_.positions_ahead(here));
 }
 
 CommandConditions Controller::conditions() const {

@@ -102,18 +102,29 @@ double HeadRoom::clearance(const Vector& q) {
   return min_clearance;
 }
 
-bool HeadRoom::lets_turn(const Vector& q, const std::vector<double>& target) {
+double HeadRoom::min_clearance(const Vector& q) {
   constexpr double kMargin = 0.02, kSame = 1e-3;  // [m]
+  return std::min(kMargin, clearance(q) - kSame);
+}
+
+bool HeadRoom::lets_turn(const Vector& q, const std::vector<double>& target) {
   constexpr int kSamples = 4;
   if (pairs_.empty()) return true;
-  const double min_clearance = std::min(kMargin, clearance(q) - kSame);
+  const double min_kept = min_clearance(q);
   Vector x = q;
   for (int k = 1; k <= kSamples; ++k) {
     for (std::size_t i = 0; i < head_->axes.size(); ++i)
       x[head_->axes[i]] += (target[i] - q[head_->axes[i]]) / kSamples;
-    if (clearance(x) < min_clearance) return false;
+    if (clearance(x) < min_kept) return false;
   }
   return true;
+}
+
+bool HeadRoom::lets_be(const Vector& q, const std::vector<double>& target) {
+  if (pairs_.empty()) return true;
+  Vector x = q;
+  for (std::size_t i = 0; i < head_->axes.size(); ++i) x[head_->axes[i]] = target[i];
+  return clearance(x) >= min_clearance(q);
 }
 
 }  // namespace handsel::trajectory_controller

@@ -25,8 +25,12 @@ class HeadRoom {
   /// Returns whether the head keeps a distance of 2 cm, or the one it has if smaller, while its
   /// axes move from q to `target`.
   bool lets_turn(const Vector& q, const std::vector<double>& target);
+  /// Returns whether the head at `target` keeps this distance with the other axes at `q`.
+  bool lets_be(const Vector& q, const std::vector<double>& target);
 
  private:
+  double min_clearance(const Vector& q);
+
   const RobotModel& robot_;
   const Group* head_;
   std::vector<LinkCapsule> capsules_;

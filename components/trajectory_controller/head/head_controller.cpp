@@ -17,11 +17,13 @@ bool HeadController::has_new_target(const AttentionAdvice& advice) const noexcep
 }
 
 void HeadController::aim_at(const AttentionAdvice& advice, const Pose& T_world_base,
-                            const Vector& here, const Vector& path_end) {
+                            const Vector& here, const std::vector<Vector>& ahead) {
   if (!has_new_target(advice)) return;
   const Vector3 p_root = T_world_base.inverse() * advice.gaze_target;
   std::vector<double> target = aim(robot_, *robot_.group("head"), here, p_root);
-  if (!room_.lets_turn(here, target) || !room_.lets_turn(path_end, target)) return;
+  if (!room_.lets_turn(here, target)) return;
+  for (const Vector& q : ahead)
+    if (!room_.lets_be(q, target)) return;
   aimed_at_ = advice.gaze_target;
   target_ = std::move(target);
 }

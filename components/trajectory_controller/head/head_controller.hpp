@@ -18,10 +18,10 @@ class HeadController {
                  double period);
 
   /// Turns to the gaze target of the advice if the target is new and the head collides with nothing
-  /// there, with the other axes at `here` (present) and at `path_end` (where the arm comes to
-  /// rest); else keeps the target before.
+  /// there, with the other axes at `here` (present) and at each of `ahead` (along the path that the
+  /// arm follows, to where the arm comes to rest); else keeps the target before.
   void aim_at(const AttentionAdvice& advice, const Pose& T_world_base, const Vector& here,
-              const Vector& path_end);
+              const std::vector<Vector>& ahead);
   /// Starts at rest at `position` (all axes), with no gaze target.
   void reset(const Vector& position) noexcept;
   /// Writes the axes of the head of the next set-point. `may_move`: false: the head stops.

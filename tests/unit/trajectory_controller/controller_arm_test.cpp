@@ -214,7 +214,7 @@ TEST_F(PartsTest, the_head_turns_to_its_target_and_stops_in_hold) {
   advice.gaze_target = Vector3(1.0, 1.0, 1.3);
   const Vector here = Vector::Zero(robot_->dof());
   ASSERT_TRUE(head.has_new_target(advice));
-  head.aim_at(advice, Pose::Identity(), here, here);
+  head.aim_at(advice, Pose::Identity(), here, {});
   EXPECT_FALSE(head.has_new_target(advice));
   MotionState3 next = rest_state(here);
   for (int k = 0; k < 100; ++k) head.step(true, none_on_path_, next);

@@ -62,5 +62,37 @@ TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
   EXPECT_TRUE(room.lets_turn(away, {-1.0, -0.7})) << "nothing is there";
 }
 
+/// The arm is still beside the head, and its path passes in front of the camera before it ends
+/// where it began: the head must not turn into the passage.
+TEST(HeadController, the_head_does_not_turn_to_where_the_arm_will_pass) {
+  const RobotModel robot =
+      RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
+  const std::vector<int>& axes = robot.require_group("head").axes;
+  Vector here = robot.rest_configuration();
+  here[axes[0]] = 0.001;
+  here[axes[1]] = 0.127;
+  Vector passing = here;
+  passing.head(7) << -0.286, 1.673, -0.285, -1.170, -1.204, 1.639, -1.292;
+  std::vector<Pose> T_root_link;
+  robot.forward(here, T_root_link);
+  AttentionAdvice advice;
+  advice.has_gaze_target = true;
+  for (const double down : {0.2, 0.4, 0.6, 0.8, 1.0, 1.2}) {
+    advice.gaze_target =
+        T_root_link[static_cast<std::size_t>(robot.gaze_link())] * Vector3(1.0, 0.1, -down);
+    const std::vector<double> target =
+        aim(robot, robot.require_group("head"), here, advice.gaze_target);
+    HeadRoom room(robot);
+    if (room.lets_turn(passing, target)) continue;
+    HeadController head(robot, axes, 0.03, 0.001);
+    head.aim_at(advice, Pose::Identity(), here, {passing, here});
+    EXPECT_TRUE(head.has_new_target(advice)) << "refused, to be tried again";
+    head.aim_at(advice, Pose::Identity(), here, {here});
+    EXPECT_FALSE(head.has_new_target(advice)) << "accepted once the arm has passed";
+    return;
+  }
+  FAIL() << "no gaze of this test collides with the arm";
+}
+
 }  // namespace
 }  // namespace handsel::trajectory_controller::gaze_test
