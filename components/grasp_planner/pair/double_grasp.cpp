@@ -73,9 +73,10 @@ class Side {
         });
     if (direction == directions_.end()) return;
     p.direction = *direction;
-    for (double s = 0; s < settings_.stand_off + kSweepStep; s += 2 * kSweepStep) {
+    const int poses = static_cast<int>(std::ceil(settings_.stand_off / (2 * kSweepStep) + 0.5));
+    for (int k = 0; k < poses; ++k) {
       Pose T = grasp(i).T_object_hand;
-      T.translate(Vector3(s * *direction));
+      T.translate(Vector3(2 * k * kSweepStep * *direction));
       p.retreating.push_back(side_.hand_geometry->shape.placed(p.T_open, T));
     }
   }

@@ -22,9 +22,10 @@ std::vector<Vector3> retreat_directions(const HandModel& hand) {
 bool retreat_free(const HandGeometry& hand_geometry,
                   const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
                   const Pose& T_object_hand, const RetreatPath& path, std::uint64_t* tests) {
-  for (double s = path.length; s > 0; s -= 2 * kSweepStep) {
+  const int poses = static_cast<int>(std::ceil(path.length / (2 * kSweepStep)));
+  for (int k = 0; k < poses; ++k) {
     Pose T = T_object_hand;
-    T.translate(Vector3(s * path.direction));
+    T.translate(Vector3((path.length - 2 * k * kSweepStep) * path.direction));
     if (tests != nullptr) ++*tests;
     if (hand_geometry.shape.touches(T_hand_step, object, T, path.clearance)) return false;
   }

@@ -9,6 +9,7 @@
 #include "components/manipulation_planner/handover/otp_choice.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
 #include "components/manipulation_planner/parts.hpp"
+#include "components/manipulation_planner/placing/top_grid.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -48,20 +49,14 @@ Routine<DrivePlaces> places_for_object(Parts& parts, const std::string& object) 
 StandingTarget target_on(const Parts& parts, const SceneBox& box) {
   const settings::ManipulationPlannerSettings& settings = parts.settings;
   StandingTarget target;
-  const Vector3 half = 0.5 * box.size;
-  const double x_end = std::max(0.0, half.x() - settings.surface_edge),
-               y_end = std::max(0.0, half.y() - settings.surface_edge);
-  for (double x = -x_end; x <= x_end + 1e-9; x += settings.surface_spacing)
-    for (double y = -y_end; y <= y_end + 1e-9; y += settings.surface_spacing) {
-      const Vector3 p = box.T_world_box * Vector3(x, y, half.z());
-      const bool taken = std::any_of(parts.now.scene().objects.begin(),
-                                     parts.now.scene().objects.end(), [&](const SceneObject& o) {
-                                       return o.id != parts.held.id() &&
-                                              (o.T_world_object.translation() - p).norm() <
-                                                  settings.surface_clearance;
-                                     });
-      if (!taken) target.points.push_back(p);
-    }
+  const std::vector<SceneObject>& objects = parts.now.scene().objects;
+  for (const Vector3& p : top_grid(box, settings.surface_edge, settings.surface_spacing)) {
+    const bool taken = std::any_of(objects.begin(), objects.end(), [&](const SceneObject& o) {
+      return o.id != parts.held.id() &&
+             (o.T_world_object.translation() - p).norm() < settings.surface_clearance;
+    });
+    if (!taken) target.points.push_back(p);
+  }
   return target;
 }
 

@@ -6,6 +6,7 @@
 #include "common/model/object_extent.hpp"
 #include "components/manipulation_planner/actions/grasping.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
+#include "components/manipulation_planner/placing/top_grid.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -130,22 +131,17 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
     double off;
   };
   std::vector<Place> all;
-  const double x_end = std::max(0.0, box->size.x() / 2 - settings.two_hand_edge),
-               y_end = std::max(0.0, box->size.y() / 2 - settings.two_hand_edge);
   const bool both = goal.kind == ActionKind::carry;
-  for (double x = -x_end; x <= x_end + 1e-9; x += settings.two_hand_grid) {
-    for (double y = -y_end; y <= y_end + 1e-9; y += settings.two_hand_grid) {
-      const Vector3 at = box->T_world_box * Vector3(x, y, box->size.z() / 2);
-      if (!surface.is_free(at)) continue;
-      // Neither folded nor stretched does an arm move well.
-      double nearest = 1e9, farthest = 0;
-      for (const Vector3& shoulder : shoulders) {
-        const double off = std::abs((at - shoulder).norm() - settings.two_hand_reach);
-        nearest = std::min(nearest, off);
-        farthest = std::max(farthest, off);
-      }
-      all.push_back({at, both ? farthest : nearest});
+  for (const Vector3& at : top_grid(*box, settings.two_hand_edge, settings.two_hand_grid)) {
+    if (!surface.is_free(at)) continue;
+    // Neither folded nor stretched does an arm move well.
+    double nearest = 1e9, farthest = 0;
+    for (const Vector3& shoulder : shoulders) {
+      const double off = std::abs((at - shoulder).norm() - settings.two_hand_reach);
+      nearest = std::min(nearest, off);
+      farthest = std::max(farthest, off);
     }
+    all.push_back({at, both ? farthest : nearest});
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Place& a, const Place& b) { return a.off < b.off; });

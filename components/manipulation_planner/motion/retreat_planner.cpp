@@ -10,8 +10,9 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kDamping = 1e-3;  // of the least-squares solution
-constexpr double kMaxTurn = 0.1;   // of one axis for a step [rad, m]
+constexpr double kDamping = 1e-3;   // of the least-squares solution
+constexpr double kRounding = 1e-9;  // of the number of steps
+constexpr double kMaxTurn = 0.1;    // of one axis for a step [rad, m]
 
 struct Placed {
   Vector3 a, b;
@@ -98,7 +99,8 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
   std::vector<Vector> out;
   const auto n = static_cast<Eigen::Index>(arm_.axes.size());
   Vector q = from;
-  for (double gone = 0.0; gone < max_distance; gone += settings_.retreat_step) {
+  const int steps = static_cast<int>(std::ceil(max_distance / settings_.retreat_step - kRounding));
+  for (int step = 0; step < steps; ++step) {
     const std::vector<Pose> T_root_link = links(q);
     std::vector<Near> near;
     for (const Person& person : people.people) {

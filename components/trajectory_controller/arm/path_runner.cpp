@@ -69,9 +69,10 @@ std::string PathRunner::why_out_of_bounds() const {
   const SegmentTable& path = scaling_.path();
   MotionState3 at = rest_state(Eigen::VectorXd::Zero(axes()));
   const double joins = offset() + scaling_.joined_at();
-  for (int k = path.find(scaling_.switched_at(), 0), cursor = k;
-       k < path.segments() && path.knot(k) < joins; ++k) {
-    path.evaluate(path.knot(k), cursor = k, at);
+  for (int k = path.find(scaling_.switched_at(), 0); k < path.segments() && path.knot(k) < joins;
+       ++k) {
+    int cursor = k;
+    path.evaluate(path.knot(k), cursor, at);
     for (Eigen::Index i = 0; i < axes(); ++i) {
       if (!(limits_.lower[i] < limits_.upper[i])) continue;
       const Segment piece{path.knot(k + 1) - path.knot(k), path.jerks(cursor)[i]};

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -77,8 +78,10 @@ void draw(const std::string& file, int size, const RobotModel& robot, const json
   std::vector<Vector3> smooth;
   Eigen::AlignedBox3d box;
   constexpr double kStep = 0.01;
-  for (double t = 0; t < motion.path.duration() + kStep; t += kStep) {
-    smooth.push_back(motion.path.pose(std::min(t, motion.path.duration())).translation());
+  const int steps = static_cast<int>(std::ceil(motion.path.duration() / kStep));
+  for (int k = 0; k <= steps; ++k) {
+    const double t = std::min(k * kStep, motion.path.duration());
+    smooth.push_back(motion.path.pose(t).translation());
     box.extend(smooth.back());
   }
   for (const CartesianTrajectory::Node& node : motion.path.nodes())
