@@ -138,7 +138,7 @@ void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   inputs_.advice.set(advice, sampled);
   if (!inputs_.robot.ready() || !head_.has_new_target(advice)) return;
   const Vector& here = set_points_.sent().position;
-  head_.aim_at(advice, inputs_.robot.state().T_world_base, here, arm_.positions_ahead(here));
+  head_.aim_at(advice, inputs_.robot.state().T_world_base, here, positions_ahead(arm_, here));
 }
 
 CommandConditions Controller::conditions() const {

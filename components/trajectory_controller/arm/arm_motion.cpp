@@ -233,16 +233,16 @@ const MotionState3& ArmMotion::path_at(double time) noexcept {
   return sample_;
 }
 
-std::vector<Vector> ArmMotion::positions_ahead(const Vector& q) {
+std::vector<Vector> positions_ahead(ArmMotion& arm, const Vector& q) {
   constexpr int kSamples = 8;
-  if (!running()) return {};
+  if (!arm.running()) return {};
   std::vector<Vector> ahead(kSamples, q);
-  const double now = runner_.time(), rest = runner_.duration() - now;
+  const std::vector<std::uint32_t>& axes = arm.path_axes();
+  const double now = arm.path().time(), rest = arm.path().duration() - now;
   for (int k = 0; k < kSamples; ++k) {
-    const MotionState3& state = path_at(now + rest * (k + 1) / kSamples);
-    for (std::size_t i = 0; i < path_axes_.size(); ++i)
-      ahead[static_cast<std::size_t>(k)][path_axes_[i]] =
-          state.position[static_cast<Eigen::Index>(i)];
+    const MotionState3& state = arm.path_at(now + rest * (k + 1) / kSamples);
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      ahead[static_cast<std::size_t>(k)][axes[i]] = state.position[static_cast<Eigen::Index>(i)];
   }
   return ahead;
 }

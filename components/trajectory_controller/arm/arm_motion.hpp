@@ -98,9 +98,6 @@ class ArmMotion {
   /// Returns the state of the axes of the path at `time` [s] at full speed, valid until the next
   /// call.
   const MotionState3& path_at(double time) noexcept;
-  /// Returns positions of all axes along the rest of the path, evenly in time and up to its end,
-  /// the axes beside it as in `q`; nothing when no path runs. Uses heap.
-  std::vector<Vector> positions_ahead(const Vector& q);
 
  private:
   std::string start(const TrajectoryCommand& command, const MotionState3& sent);
@@ -119,5 +116,9 @@ class ArmMotion {
   MotionState motion_{MotionState::idle};
   MotionState3 sample_;  // of the axes of the path
 };
+
+/// Returns positions of all axes along the rest of the path, evenly in time and up to its end, the
+/// axes beside it as in `q`; nothing when no path runs. Uses heap.
+std::vector<Vector> positions_ahead(ArmMotion& arm, const Vector& q);
 
 }  // namespace handsel::trajectory_controller
