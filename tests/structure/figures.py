@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The figures that measure.py prints."""
 
 import os
@@ -12,6 +13,7 @@ from text import comment_passages, name_passages, past_brackets, string_passages
 MAX_CLASS_FUNCTIONS = 25
 MAX_CLASS_MEMBERS = 20
 MAX_FUNCTION_LINES = 80
+LICENCE = "SPDX-License-Identifier: Apache-2.0"
 MAX_FILE_LINES = 500
 MAX_FOLDER_FILES = 30
 MAX_PARAMETERS = 6
@@ -58,7 +60,16 @@ def long_functions(tree: Tree) -> Iterator[Finding]:
 
 
 def count_lines(tree: Tree, path: str) -> int:
-    return len(tree.source(path).text.splitlines())
+    """Returns the number of lines without the one that names the licence."""
+    lines = tree.source(path).text.splitlines()
+    return len(lines) - (1 if any(LICENCE in line for line in lines[:2]) else 0)
+
+
+def unlicensed_files(tree: Tree) -> Iterator[Finding]:
+    for path in tree.paths:
+        if path.endswith((*SOURCES, "CMakeLists.txt", ".cmake")):
+            if not any(LICENCE in line for line in tree.source(path).text.splitlines()[:5]):
+                yield Finding(path, 1, f"no line {LICENCE}")
 
 
 def long_files(tree: Tree) -> Iterator[Finding]:
@@ -235,6 +246,7 @@ FIGURES = (
         class_members,
     ),
     Figure("long_functions", f"functions over {MAX_FUNCTION_LINES} lines", long_functions),
+    Figure("unlicensed_files", "source files without a licence line", unlicensed_files),
     Figure("long_files", f"product files over {MAX_FILE_LINES} lines", long_files),
     Figure("full_folders", f"folders with over {MAX_FOLDER_FILES} source files", full_folders),
     Figure(

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures the structure of the source tree and compares each figure with its limit.
 
 Prints one table: figure, today, limit, target, verdict. Exit status: 0 all figures are within their
@@ -17,6 +18,10 @@ What is counted:
                        settings.hpp or schema.hpp.
   long_functions       From the first line of the declaration (template line, return type) to the
                        closing brace; C++ functions, TypeScript functions and methods.
+  long_files, long_nodes
+                       The line that names the licence does not count.
+  unlicensed_files     The same files as for full_folders, CMakeLists.txt and .cmake: one of the first
+                       five lines has to be "SPDX-License-Identifier: Apache-2.0" in a comment.
   full_folders         Files .cpp .hpp .c .h .ts .mjs .py .sh .idl .proto directly in one folder, in
                        the whole tree.
   documented_functions Share of public functions in product headers with a "///" comment before or a

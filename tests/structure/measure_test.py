@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Feeds measure.py small made-up trees: what each figure finds, and what it does not."""
 
 import re
@@ -15,6 +16,7 @@ HERE = Path(__file__).resolve().parent
 FIGURES = {
     "class_functions": "0 0",
     "class_members": "0 0",
+    "unlicensed_files": "0 0",
     "long_functions": "0 0",
     "long_files": "0 0",
     "full_folders": "0 0",
@@ -194,6 +196,20 @@ class Files(TreeTest):
         for folder in ("build/release", "components/w/node_modules/x", ".cache"):
             self.write(f"{folder}/a.md", "x" * 101)
         self.assertEqual(self.offenders("long_lines"), [])
+
+    def test_source_without_a_licence_line_is_found(self):
+        licence = "SPDX-License-Identifier: Apache-2.0"
+        self.write("components/a/a.cpp", f"// {licence}\nint a;\n")
+        self.write("components/a/b.py", f"#!/usr/bin/env python3\n# {licence}\n")
+        self.write("components/a/CMakeLists.txt", f"# {licence}\n")
+        self.write("components/a/c.hpp", "int c();\n")
+        self.write("components/a/notes.txt", "c\n")
+        self.assertEqual(self.offenders("unlicensed_files"), ["components/a/c.hpp:1"])
+
+    def test_the_licence_line_does_not_count(self):
+        licence = "// SPDX-License-Identifier: Apache-2.0\n"
+        self.write("components/a/node.cpp", licence + "\n" * 150)
+        self.assertEqual(self.offenders("long_nodes"), [])
 
     def test_node_over_150_lines_is_found(self):
         self.write("components/a/node.cpp", "\n" * 151)
@@ -390,7 +406,8 @@ class Limits(TreeTest):
 
     def test_a_share_below_its_limit_fails(self):
         self.write_limits(documented_fields="50.1 95.0")
-        self.write("common/a/a.hpp", "struct A {\n  int a;  ///< Doc.\n  int b;\n};\n")
+        text = "struct A {\n  int a;  ///< Doc.\n  int b;\n};\n"
+        self.write("common/a/a.hpp", "// SPDX-License-Identifier: Apache-2.0\n" + text)
         self.assertEqual(self.run_measure().returncode, 1)
         self.write_limits(documented_fields="50.0 95.0")
         self.assertEqual(self.run_measure().returncode, 0)
