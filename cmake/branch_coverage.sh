@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # branch_coverage.sh <test> <object> <source>: runs the test, then fails unless every line and every branch of the source was taken.
 # To be run in the folder the source was compiled in; the object is compiled with --coverage, -O0 and -fno-exceptions, so that only written
 # branches count.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Bullet in double precision: at a millisecond a step, single precision loses the small velocities of a held pose.
 find_path(BULLET64_INCLUDE btBulletDynamicsCommon.h PATH_SUFFIXES bullet REQUIRED)
 foreach(part BulletDynamics BulletCollision LinearMath)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DOUT=x.cpp -DFILES="a;b" -DFUNCTION=space::name [-DPREFIX=/] -P embed.cmake: writes
 # std::map<std::string, std::string_view> space::name(): the files' names after PREFIX, and their bytes.
 string(REGEX REPLACE "^(.*)::([^:]*)$" "\\1" namespace "${FUNCTION}")

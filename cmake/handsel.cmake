@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # How every library, component and test of the project is made.
 
 add_library(handsel_options INTERFACE)

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # build.sh [target...]: sets up, configures build/release when needed, builds the targets ("all" when none is named) and the page.
 # "all" also sets up what the tests need.
 set -eu

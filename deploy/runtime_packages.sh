@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # runtime_packages.sh <folder>...: the Debian packages that hold the shared libraries which the programs in the folders name, one a line.
 set -eu
 for folder in "$@"; do

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # setup.sh [--test]: installs the Debian 12 packages Handsel is built from and runs on, with --test also what only its tests need.
 # Does nothing when they are all there.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells which processes of this machine that take part in simulated time are running.
 #pragma once
 

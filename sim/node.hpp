@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binds the emulated world to a bus. The node publishes and receives the messages of real hardware,
 // so no component depends on the simulation.
 #pragma once

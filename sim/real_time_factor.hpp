@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the ratio of simulated time to real time.
 #pragma once
 

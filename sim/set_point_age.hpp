@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Age of set-points at arrival in simulated time.
 #pragma once
 

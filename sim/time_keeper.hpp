@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paces the system with simulated time: decides when the next step of the world may be made, and up
 // to which time the components may advance. Pure: the machine's time ("wall") is an argument.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The emulated world: robot, objects, people, sensors, and oracles. Pure: time advances only by
 // step(), random numbers come from the seed; the same seed and inputs give the same bits.
 #pragma once

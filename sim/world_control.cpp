@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Disturbances of the emulated world from outside.
 #include <limits>
 

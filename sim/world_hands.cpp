@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's hands in the emulated world: grasps, and the reports of hands and robot.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evaluation of the emulated world: collisions, separation, the handover, ground truth.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Publishes the observations of the emulated world's sensors and the ground truth.
 #pragma once
 

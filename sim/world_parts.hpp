@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For the sources of SimWorld: the members of a world.
 #pragma once
 

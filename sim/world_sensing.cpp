@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The observations of people and objects by sensors in the emulated world.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The peer of the trajectory library, built from its sources wherever they are: -DHANDSEL_RUCKIG=<path>. The project does without.
 set(HANDSEL_RUCKIG "" CACHE PATH "Sources of Ruckig, for benchmarks and tests beside it")
 if(HANDSEL_RUCKIG)

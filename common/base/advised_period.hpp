@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Period of a piece of work: as attention advises, within its own limits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A value that another component advises: it holds for a moment, then the receiver is on its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors by the action they require. Run-time outcomes are values, not exceptions; see Refusal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests of several clients and the answers to them: a repeated request is harmless, a client may
 // cancel, and all lists are bounded. No I/O, no clock, no locks.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time as the cores see it: instants of a monotonic clock that is handed in, never read.
 #pragma once
 

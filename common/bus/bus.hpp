@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Communication of a component: typed publishers and subscribers, timers and jobs. Two
 // implementations: DdsBus (the product) and LocalBus (one process, virtual time, deterministic
 // order). Everything a component registers is called on one executor thread of its node; everything

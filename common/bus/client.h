@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* For programs outside Handsel's build, in C: the topics, their QoS and a participant of the
  * domain. After `cmake --install`:
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one thread a component's callbacks run on: timers, wake-ups from other threads, jobs on a
 // worker thread. Its time is the monotonic clock, or what the simulator grants (paced_clock.hpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Topics outside the table may be used on a bus too, with a row and a MessageType of their own that
 // live as long as the bus runs.
 #pragma once

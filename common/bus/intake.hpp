@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One subscription's intake, the same on every bus: validation, ages, deadline watch, rate.
 #pragma once
 

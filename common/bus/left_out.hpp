@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What quotas have left out, by cause, for ComponentHealth.
 #pragma once
 

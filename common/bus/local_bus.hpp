@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole system in one process and virtual time: same seed, same order, bit for bit. Every sample
 // passes the wire conversions, travels for a seeded delay and meets the same depths (set-points: 1
 // instead of 32), ownership and late-join rules as over DDS.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A component's time when the simulator gives the pace. Pure.
 #pragma once
 

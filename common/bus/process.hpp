@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One component as one operating-system process on DdsBus.
 #pragma once
 

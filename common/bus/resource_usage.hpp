@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What this process uses of the machine, as the kernel counts.
 #pragma once
 

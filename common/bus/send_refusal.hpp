@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why a component last refused to send a message, for its health. Pure: the caller brings the time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/bus/writer_gate.hpp"
 
 #include "common/base/errors.hpp"

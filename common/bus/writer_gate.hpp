@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the samples of a second writer out of a DDS reader's cache, where they would replace those
 // of the accepted writer.
 #pragma once

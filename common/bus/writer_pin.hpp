@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which writer of a topic with one writer is accepted: the rule every bus applies. Pure.
 #pragma once
 

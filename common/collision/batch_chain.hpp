@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joints of a robot that move, for the SIMD kernels: what the others join is one rigid body.
 #pragma once
 

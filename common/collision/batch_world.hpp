@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many states of a robot checked at once by spheres around its links: "clear" is true of the exact
 // shapes, "unclear" is for the exact check to decide. States lie side by side in the registers. Own
 // method: covers make "clear" certain; the idea of several states of one motion at once is VAMP's

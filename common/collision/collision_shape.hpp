@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One shape prepared for collision tests: bounds for the quick rejection, FCL geometry for the
 // exact answer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collision and distance on the 3D models: robot against itself, scene, people. Exact (FCL); after
 // set_moving_axes(), spheres around the links clear most states first, many at a time (SIMD check),
 // and FCL checks the rest: the verdicts are the same. Not thread safe; one per thread.

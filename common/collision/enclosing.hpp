@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simpler or larger things around others.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance of convex shapes: GJK on their cores (point, segment, triangle, box, cylinder), the
 // rounding radius taken off afterwards. Double precision, closes to 1e-9 m; never the signed
 // distance.

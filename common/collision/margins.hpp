@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clearance of an arm in motion to obstacles. It covers the tracking error and the turning of the
 // head meanwhile. Own method: narrow places get smaller margins instead of no motion.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a robot's platform may stand to reach something. Own method.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Capsules side by side for the SIMD distance kernel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sixteen states of a robot side by side: forward kinematics, then the spheres around its links
 // against solids and against each other. Plain data, lengths in metres: spheres in the frame of
 // their body, solids in that of the root. Single precision: the caller adds its rounding to the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/collision/simd_kernel_body.hpp"
 
 namespace handsel::detail {

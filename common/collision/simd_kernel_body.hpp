@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SIMD kernels of collision and distance. Included only by the source file of each register width,
 // which sets kWidth by simd_math.hpp.
 #pragma once

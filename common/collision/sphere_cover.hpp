@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A solid as a tree of spheres that cover it: what the SIMD collision check knows of a robot's link
 // or of an object. Own method: the cover holds by construction.
 #pragma once

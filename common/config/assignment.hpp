@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One setting as a command line gives it: "component.key=value".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Default values of settings that a file leaves out.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paths and names as descriptions and scenarios write them.
 #pragma once
 

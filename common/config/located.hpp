@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Protobuf text whose values are checked after it was read, with the position of each value in the
 // file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which names a mistyped one may have meant.
 #pragma once
 

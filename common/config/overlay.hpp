@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings that go over the shipped ones: files on the search path, files of --config, values of
 // --set. Later ones win, in this order.
 #pragma once

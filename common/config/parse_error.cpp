@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/config/parse_error.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is wrong with a Protobuf text, as a person can correct it.
 #pragma once
 

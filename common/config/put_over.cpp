@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/config/put_over.hpp"
 
 #include "common/base/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One scenario over another: how a variant changes the scenario that it belongs to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finding and reading the files under deploy/ (or share/handsel once installed).
 #pragma once
 

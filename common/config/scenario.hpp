@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenario files: what one says once a seed has drawn what varies. Own method: each draw has random
 // numbers of its own, from the seed and its name.
 #pragma once

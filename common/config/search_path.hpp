@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the files of a user are searched: robots, hands, objects, scenarios, stories, behaviours,
 // tasks and settings by name.
 #pragma once

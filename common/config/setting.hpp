@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the schema states about a setting: the options of schema/options.proto.
 #pragma once
 

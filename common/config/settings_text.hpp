@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A settings file that has been read: where each value stands.
 #pragma once
 

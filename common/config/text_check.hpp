@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of every value in a Protobuf text, whatever message the text holds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Safety and visibility of up to sixteen states of a robot at once, for HumanCost where the moving
 // axes are known. Own method: batches in single precision.
 #pragma once

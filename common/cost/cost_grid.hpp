@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One layer of a cost map, ready to be asked anywhere: trilinear, with its gradient. Pure.
 #pragma once
 

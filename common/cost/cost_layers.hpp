@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The layers of the cost map that count now, as their writers send them. Pure.
 #pragma once
 

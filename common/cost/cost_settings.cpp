@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/cost/cost_settings.hpp"
 
 #include "common/config/settings_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of the human-aware cost from their file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The human-aware costs (chapter section 4.1.2, eq. 1): safety, visibility, arm comfort, each
 // in [0, 1], and their weighted sum.
 #pragma once

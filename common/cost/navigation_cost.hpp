@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a platform that drives past people costs them (chapter section 4.1, after Sisbot): safety,
 // visibility from behind, the path ahead of a person that walks, and the space between two people
 // who talk (own method). In the plane. Pure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Front and gaze of a person.
 #pragma once
 

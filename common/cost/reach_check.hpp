@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where furniture keeps a person's hands from: the comfort of the arm is validated against the
 // environment (chapter section 4.1.2). Own method: the tests, which the chapter leaves open. Pure.
 #pragma once

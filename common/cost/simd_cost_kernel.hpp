@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Safety and visibility of sixteen states of a robot side by side, and where points of it are.
 // Plain data in single precision, in a frame along the world's axes with its origin at the robot's
 // base. The same source for every register width, chosen when the program runs; every width gives

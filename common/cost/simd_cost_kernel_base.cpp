@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/cost/simd_cost_kernel_body.hpp"
 
 namespace handsel::detail {

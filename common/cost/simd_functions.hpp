@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The functions of the costs for single numbers and for registers of them, in single precision.
 // Local to the unit that includes them: see common/collision/simd_math.hpp.
 #pragma once

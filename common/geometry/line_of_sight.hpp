@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What hides what: straight lines of sight past capsules and boxes.
 #pragma once
 

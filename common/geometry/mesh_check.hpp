@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of a mesh file before the import library sees it: counts against the size of the file,
 // indices, finite numbers, depth.
 #pragma once

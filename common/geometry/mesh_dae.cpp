@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // COLLADA: only geometry and nodes are passed to the import library; materials, animations, skins
 // and all other elements are removed.
 #include <tinyxml2.h>

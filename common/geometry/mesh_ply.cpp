@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PLY (Stanford): reads the header, then checks every value of the body once.
 #include <algorithm>
 #include <bit>

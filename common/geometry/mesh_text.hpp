@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines, words and numbers of a mesh file in text, and the refusals that name the line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an object stays where it is put down, and how its mass is spread. Own method.
 #pragma once
 

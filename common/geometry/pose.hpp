@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rigid transforms. T_a_b maps coordinates in frame b to frame a. SI units, right-handed, z up
 // (REP-103).
 #pragma once

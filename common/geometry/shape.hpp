@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes that can collide. Boxes by full extents; cylinders and capsules along z, length of the
 // straight part.
 #pragma once

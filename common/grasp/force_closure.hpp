@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts to wrenches, and the strict force-closure test (formulas: section 3).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The internal grip forces of a grasp: forces of the fingers that cancel out and leave the largest
 // margin inside the friction cones for the object's load. Own method: a linear program, because the
 // load may pull in any direction.

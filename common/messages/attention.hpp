@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The attentional system's state and advice (chapter abstract, sections 1 and 2.1; the behaviour
 // model is this project's own).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Between the manipulation planner and the trajectory controller: what to run, what runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only names of the enumerators, each table in the order of its enum. The wire, the page,
 // reports and settings use them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measurements of sensors: external perception connects here. All poses and points in frame
 // "world".
 #pragma once

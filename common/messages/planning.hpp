@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests between the planners and their replies. A reply carries the id of its request; a
 // repeated request is harmless.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot on the wire: what its driver reports, what it is commanded. Axis order = actuated
 // joints of the robot description.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of ROS 2 that ros2_lane exchanges, as values. SI units; names as received.
 #pragma once
 

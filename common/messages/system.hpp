@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Health of the processes, control of the simulator, and the ground truth for tests.
 #pragma once
 

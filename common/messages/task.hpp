@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Goals and their progress: person -> supervisor -> manipulation planner.
 #pragma once
 

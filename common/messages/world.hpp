@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world as SPARK represents it: scene, people, facts.
 #pragma once
 

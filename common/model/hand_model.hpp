@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hand as data: fingers in order (thumb first), their joints, fingertips, grasp frame
 // (common/config/hand.proto).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The chain of joints that moves one group's tip, prepared for inverse kinematics: everything that
 // does not turn is folded in.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed form for shoulder-elbow-wrist chains (srs_arm.hpp); otherwise damped least squares
 // (Levenberg-Marquardt, damping by the remaining error) on the chain of one group: joints at a
 // limit are frozen and the others solved again; the null space pulls toward the rest configuration;

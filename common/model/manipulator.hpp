@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arms of a robot with their hands: the one of the groups "arm" and "hand", and further ones
 // its description names.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How large an object is, described or not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An object that can be handed over: mesh for planning, simple convex parts for physics, mass
 // (common/config/object.proto).
 #pragma once

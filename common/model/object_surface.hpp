@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance from a point to the surface of an object's convex parts, in closed form.
 #pragma once
 

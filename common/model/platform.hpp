@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot that drives: place and heading of its platform as axes. A robot whose description says
 // that it drives has them always; others get them for planning only.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot as a few capsules (one a shape, more for flat boxes), covering its collision shapes:
 // the fast form for separation and costs.
 #pragma once

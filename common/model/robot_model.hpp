@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot: its tree of links from a URDF, groups and disabled pairs from an SRDF, limits and roles
 // from its description.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume of a robot in motion, as reported to other robots. Own method: the capsules around
 // the links, with the velocities of their ends.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed-form inverse kinematics of seven-joint arms with a spherical shoulder, an elbow and a
 // spherical wrist (KUKA LWR and iiwa). Own method: searches the whole circle of elbow positions
 // inside the limits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings in the MCAP container, version 0 (mcap.dev/spec): messages in chunks with their
 // indexes, so that Lichtblick, Foxglove and the `mcap` tools open them. Uncompressed. The container
 // only: what a message means is defined by its channel's schema.

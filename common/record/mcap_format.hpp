@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and layout of MCAP that writer and reader share.
 #pragma once
 

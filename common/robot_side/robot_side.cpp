@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/robot_side/robot_side.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's side of the set-points: drive modes, the check of every set-point, the watch over
 // their timing, the jerk-limited stop. In the simulator it is the robot's own controller; in front
 // of a real robot (deploy/drivers) it stands between the wire and the maker's controller. Pure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every topic of the system, in one table: code, documentation, permissions, bridge channels and
 // tests are made from it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cutting, joining and comparing trajectories.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact extremes of a trajectory and whether it keeps its limits: at segment ends and zeros of the
 // acceleration, nothing sampled.
 #pragma once

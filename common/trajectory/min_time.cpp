@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/trajectory/min_time.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One axis from any state to any state (chapter sections 4.3.1 to 4.3.3). Nothing here allocates,
 // locks or throws.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motions of max displacement of one axis; the class is declared in min_time.hpp.
 #include <algorithm>
 #include <cmath>

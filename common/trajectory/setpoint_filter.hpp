@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smooths an input inside the limits, each tick (chapter section 4.3.4): toward a velocity and
 // acceleration by the critical movement, toward a moving target by the minimum-time motion ("track
 // and catch an object held by the human"). One axis; no allocation.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot side's own check of every set-point of any sender: bounds, and finite differences
 // against the set-point followed before. Pure, no heap after construction.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several axes from state to state, ending together (chapter section 4.3.2; blocked durations and
 // the blend: min_time.hpp).
 #pragma once

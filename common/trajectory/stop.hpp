@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Minimum-time stop of one axis: velocity and acceleration to zero, position free (the critical
 // movement, chapter section 4.3.4).
 #pragma once

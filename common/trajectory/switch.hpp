@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a state in motion onto another trajectory (chapter sections 2 and 4.3: trajectories modified
 // on-line). Own method: a search over where to join, so that the end of the new trajectory is
 // reached first.

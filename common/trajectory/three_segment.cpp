@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/trajectory/three_segment.hpp"
 
 #include <algorithm>

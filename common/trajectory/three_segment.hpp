@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three-segment method (chapter section 4.3.3): a motion of imposed duration between any two
 // states. It bounds nothing: look at excess.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The time scaling of a running trajectory: d(tau)/dt = alpha, alpha in [-1, 1] (chapter section
 // 2). Own method: the bounds of alpha'', so that every limit holds at every instant.
 //

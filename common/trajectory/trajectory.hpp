@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trajectory model (chapter section 4.2.1): n axes, each a series of cubic segments (duration,
 // jerk) from an initial state.
 #pragma once

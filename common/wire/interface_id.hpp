@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Do two processes understand each other's messages?
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the bus knows about a message type: its topic, its IDL type and the validated conversions
 // between domain and wire.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Descriptions of the parts that messages of several subjects share, and what turns a description
 // into a MessageType.
 #pragma once

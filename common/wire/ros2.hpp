@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conversion of messages of ROS 2 to and from the IDL structs of idl/ros2, validated like those of
 // the table. Their strings and lists have no bounds on the wire; here they have.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The IDL as text, for viewers and recordings: what a reader of the raw samples needs to know.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points, directions, poses and wrenches of WireIo.
 #include <cmath>
 

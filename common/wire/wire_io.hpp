@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The visitor every message describes itself to, once: the same description converts to and from
 // the IDL struct, validates, prints JSON and lists the leaves of a sample or fills one for tests. A
 // description is `void describe(WireIo&, Domain&, Idl&)` naming each pair of fields with its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text of messages: numbers, valid UTF-8 and strings of JSON. Private to common/wire.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The adaptive clock of a behaviour, whose period falls with urgency (formulas: section 4). Own
 // method: the chapter has no section on attention.
 #pragma once

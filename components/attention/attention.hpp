@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The attentional system: behaviours with adaptive clocks; the min speed factor applies, and the
 // most active behaviour controls the gaze. Chapter abstract, sections 1 and 2.1. Own method: the
 // chapter has no section on attention (formulas: section 4). Pure: no clock, no I/O.

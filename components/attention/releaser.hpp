@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditions of a behaviour's releaser as data, all of which must hold.
 #pragma once
 

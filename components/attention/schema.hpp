@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A behaviour as a schema: perception on its own clock, a releaser, a motor part (speed, gaze).
 // Chapter abstract and section 2.1. Own method: the chapter has no section on attention (formulas:
 // section 4).

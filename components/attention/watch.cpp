@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/attention/watch.hpp"
 
 #include "common/model/human/body_index.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A behaviour defined by settings: one input, a speed factor that falls with the input, a gaze
 // target.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance zones around the robot with hysteresis in space and time (formulas: section 4). Own
 // method: the chapter has no section on attention.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the bridge offers: the channels from the table of topics, and what the page must know that
 // is not on DDS. Pure.
 #pragma once

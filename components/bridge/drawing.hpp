@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robot, people and objects as the well-known types that any 3-D panel draws, published beside the
 // raw samples. Pure.
 #pragma once

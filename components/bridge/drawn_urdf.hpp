@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A URDF made from the model, for robots whose own files a viewer cannot have: put together from
 // several, or kept elsewhere.
 #pragma once

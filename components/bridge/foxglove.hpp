@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Foxglove WebSocket protocol, server side, without a socket: what is announced, what a viewer
 // asks, what it is sent. Pure. Source: the public description of the protocol (subprotocols
 // foxglove.websocket.v1 and foxglove.sdk.v1).

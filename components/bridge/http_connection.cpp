@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/bridge/http_connection.hpp"
 
 #include <boost/beast/websocket.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One HTTP connection of the server: answers GET and HEAD, and upgrades to a WebSocketClient.
 #pragma once
 

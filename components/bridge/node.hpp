@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binds the bridge to a bus: passes the samples of every topic unchanged to all viewers and serves
 // the page on 127.0.0.1. No other component depends on the bridge.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What waits to be sent to one viewer: bounded, and of what a viewer only wants the newest of, only
 // the newest. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One port, on 127.0.0.1 unless set otherwise: HTTP for the page, and a Foxglove WebSocket on "/".
 // Runs on a thread of its own; what it is given may come from any one other thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State that the connections of the server share. Belongs to the server's thread, except what is
 // published for the thread that gives samples.
 #pragma once

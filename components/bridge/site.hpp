@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What may be had over HTTP and as an asset: files of the page, of robots, hands and objects, and
 // nothing else.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which components are alive, and which topics those write and read. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One WebSocket client of the server: reads its messages and sends it what waits in its outbox.
 #pragma once
 

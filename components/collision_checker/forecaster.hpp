@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forecasts contact, clearance and cost of the running trajectory with the newest scene and people.
 // Pure.
 #pragma once

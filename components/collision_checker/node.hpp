@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The collision checker on a Bus.
 #pragma once
 

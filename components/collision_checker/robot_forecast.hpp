@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where other robots are expected to be, and how near the arm comes to them. Pure. Own method.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reachable volume of one arm with its comfort cost, computed once per body size and moved with
 // the person (chapter section 4.1.2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/costmap/layer_kernel.hpp"
 
 namespace handsel::costmap::detail {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes one row of the cost map's layers with SIMD. Single precision without Eigen: one source
 // for every register width, selected at run time. Does not allocate or throw.
 #pragma once

@@ -1,2 +1,3 @@
+// SPDX-License-Identifier: Apache-2.0
 #define HANDSEL_FILL_ROW fill_row_base
 #include "components/costmap/layer_kernel_body.hpp"

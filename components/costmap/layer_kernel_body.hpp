@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Included once for each register width, with HANDSEL_FILL_ROW naming the function.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the cost map of one person: safety, visibility, arm comfort with regard to furniture,
 // and their weighted sum over one grid (chapter section 4.1.2). Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/costmap/node.hpp"
 
 #include "common/config/settings/costmap.hpp"

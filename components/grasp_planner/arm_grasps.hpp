@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arm of the robot with the grasps of its hand.
 #pragma once
 

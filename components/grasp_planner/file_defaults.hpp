@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defaults of the settings file, for parts that are used without one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the grasp lists of the objects in the scene before anybody asks for them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the grasp planner reads when it starts: settings, hands and the grasp lists of each.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/grasp_planner/node.hpp"
 
 #include "components/grasp_planner/choice/grasp_answer.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The grasp planner on a Bus.
 #pragma once
 

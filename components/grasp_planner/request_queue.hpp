@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests that wait for an answer, and the latest replies: asking twice is harmless. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm in use and its hand: which axes they are, where they are, what the arm reaches. Pure.
 #pragma once
 

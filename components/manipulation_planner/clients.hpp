@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests to the other planners: their ids, retries, timeouts and cancellation.
 #pragma once
 

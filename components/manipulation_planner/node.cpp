@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/manipulation_planner/node.hpp"
 
 #include "common/config/people.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the manipulation planner sends: the parts fill it, the node empties it after each step.
 #pragma once
 

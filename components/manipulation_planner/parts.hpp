@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of the manipulation planner, with which actions are written.
 #pragma once
 

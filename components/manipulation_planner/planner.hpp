@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The human-aware manipulation planner (MHP, chapter section 2.1): brings grasp, path and
 // trajectory planner together to execute one action. Pure: messages come in, time comes in,
 // messages are sent through the Outbox.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Routines that wait: an action is written top to bottom as a C++20 coroutine and resumed by
 // step(); destroying it cancels it. No threads.
 #pragma once

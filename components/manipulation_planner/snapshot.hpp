@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The newest state of the world, as the messages that came in report it. Pure.
 #pragma once
 

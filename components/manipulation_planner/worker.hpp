@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Long computations beside the actions. A job gets values and shared data that no one else writes
 // while it runs; jobs run one after the other.
 #pragma once

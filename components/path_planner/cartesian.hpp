@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans paths in Cartesian space (chapter section 4.6.1). Active variables: position and
 // orientation of the tool, the angle of the elbow about the line from shoulder to wrist (the
 // redundancy of an arm of seven axes), and further axes on request (hand, head). Passive variables:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The space of the active variables of one arm: tool pose, elbow angle and further axes; and the
 // path segments in this space.
 #pragma once

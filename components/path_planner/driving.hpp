@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Planning for a mobile robot: the platform alone, or platform and arm as one robot. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clearance to people's heads: near heads the arm is slow, so that a path with clearance is faster.
 // Pure. Own method.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The digits of people who hold objects, as obstacles of paths. They are not observed but assumed
 // from hand, palm and object. Own method.
 #pragma once

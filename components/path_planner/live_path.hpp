@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Online replanning (chapter section 4.1.1, path perturbation on a running path): reduces the
 // present cost of the running path, repairs blocked parts, and plans a new path if the repair
 // fails. Pure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the settings and models of the path planner at its start.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans a path for a problem: straight line, random search, smoothing, final fine check. Pure: no
 // clock, no files, no global state; the same problem in the same world gives the same result.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Goals as tool poses: one pose, the poses of a set of grasps, or regions around poses. Pure.
 #pragma once
 

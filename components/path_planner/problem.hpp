@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Problems, settings and results of the path planner. Plain data.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts requests on the bus to problems, and results to replies. Pure.
 #pragma once
 

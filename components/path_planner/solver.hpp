@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans the requests of the node: selects models, sets up the world, and selects between online
 // replanning, planning in Cartesian space and planning between configurations. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames from outside that have the name of a link which this process sends itself. Pure.
 #pragma once
 

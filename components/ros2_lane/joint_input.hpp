@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's state from a driver on ROS. Pure.
 #pragma once
 

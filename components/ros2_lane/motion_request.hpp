@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a JointTrajectory asks for, as requests of the system. Pure.
 #pragma once
 

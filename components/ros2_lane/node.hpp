@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The link to ROS 2 on a Bus: topics of ROS beside those of the system.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From TF to what sensors say: people by their joints' frames, objects by their own. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sentence for the health that is shown for a while. Pure.
 #pragma once
 

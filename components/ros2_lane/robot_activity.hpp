@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Latest reports of what the robot does, and whether it may take a motion now. Pure.
 #pragma once
 

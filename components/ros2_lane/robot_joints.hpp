@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Between joints by name, as ROS has them, and axes in order, as the robot model has them. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's joints and frames, and the objects' frames, as ROS has them. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Topics of ROS on a Bus.
 #pragma once
 

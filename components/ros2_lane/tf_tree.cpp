@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/ros2_lane/tf_tree.hpp"
 
 #include <algorithm>

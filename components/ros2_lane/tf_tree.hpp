@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of TF as they were received last. Pure.
 #pragma once
 

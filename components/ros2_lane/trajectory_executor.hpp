@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion asked for from ROS passes the same checks as every motion: its configurations are
 // checked by the collision checker, its line is timed by the trajectory planner, the controller's
 // guard decides while it runs. Or it is refused with the reason. Pure.

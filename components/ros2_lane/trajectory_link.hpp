@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The executor of trajectories on a Bus.
 #pragma once
 

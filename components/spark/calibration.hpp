@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of sources and robots in the world (deploy/config/calibration.txtpb). Pure except for
 // reading the file.
 #pragma once

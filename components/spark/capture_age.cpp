@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/spark/capture_age.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the age of a sample from its capture stamp and the system clock. Pure.
 #pragma once
 

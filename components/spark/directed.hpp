@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joints by name, and directed speeds.
 #pragma once
 

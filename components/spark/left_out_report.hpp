@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports the elements left out by quotas: counts on the bus, and a sentence about people in reach.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/spark/place.hpp"
 
 #include "common/geometry/pose.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads fixed boxes and viewpoints of the sources from a scenario. Pure.
 #pragma once
 

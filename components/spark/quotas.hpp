@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quotas of people, objects, boxes and facts; beyond a quota the nearest and most relevant are
 // kept. Pure.
 #pragma once

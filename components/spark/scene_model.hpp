@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Models objects, their poses and holders, from observations, fixed boxes and the robot's
 // configuration. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources of people: coverage, newest observation and visibility. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bounded queue of task goals for the next cycle of the supervisor, each id once. Pure.
 #pragma once
 

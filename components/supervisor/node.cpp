@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/supervisor/node.hpp"
 
 #include "common/config/resources.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects tasks of which only the running action remains after a restart of the supervisor. Pure.
 #pragma once
 

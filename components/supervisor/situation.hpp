@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The present knowledge of the supervisor: facts, scene, the running action. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Task planning and supervision (chapter section 2.1): executes goals as successive actions, and
 // monitors and reports their outcome. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Holds the one running task and reports task statuses. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The symbolic world of the task planner: names and the atoms that hold for them. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/trajectory_controller/axis_groups.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Executes jerk-limited trajectories, hand commands and gaze; slows, holds and stops by the guard.
 // The order of a step: inputs (robot side, people, permission, forecast, advice) -> supervise
 // (lookahead, mode, deadline of a stop) -> arm (reference, compliance, path) | hand | head ->

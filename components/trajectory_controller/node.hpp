@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binds the trajectory controller to a bus.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads trajectory_controller.txtpb.
 #pragma once
 

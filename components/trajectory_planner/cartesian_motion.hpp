@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans a jerk-limited trajectory of a redundant arm from waypoints in Cartesian space (chapter
 // section 4.6). Active axes: position and rotation vector of the tool, the angle of the elbow, hand
 // and head; they have the smoothed trajectory TR. Passive axes: the joints of the arm, by inverse

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematics of a second arm whose tip is rigidly joined to the first arm's tip: two hands on one
 // object. Own method. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks a trajectory for contacts continuously, not only at steps. Own method.
 #pragma once
 

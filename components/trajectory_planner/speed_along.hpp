@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes factors of the velocity, acceleration and jerk limits along a path because of people
 // (chapter section 2.1). Own method: from the human-aware cost (chapter section 4.1.2), the
 // approach of people and their gaze. Pure.

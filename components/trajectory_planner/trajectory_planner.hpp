@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans a jerk-limited trajectory along a path of joints or of the tool (chapter sections 4.4
 // to 4.6): smoothing at the comfort limits, reduced along the path by human-aware cost and people's
 // behaviour. Pure.

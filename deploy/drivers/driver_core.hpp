@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every driver does between the wire and its maker's controller: checks the set-points,
 // refuses those the arm cannot follow, converts them from the wire's clock to the maker's, makes a
 // jerk-limited stop when they fail, resumes following without a jump, waits for a person after a

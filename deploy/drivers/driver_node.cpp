@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/drivers/driver_node.hpp"
 
 #include "common/bus/executor.hpp"

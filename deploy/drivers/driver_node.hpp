@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binds a driver to a bus: set-points and permissions in; the robot's state out. The arm's cycles
 // run on a thread of their own.
 #pragma once

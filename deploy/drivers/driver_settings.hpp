@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings of the two example drivers; values and meanings as in common/config/schema/driver.proto.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages between the drivers and the fakes of their makers' controllers: one datagram in each
 // direction a cycle, on this machine. A real arm has its maker's library in this place. Own
 // protocol: the fakes run without a maker's library.

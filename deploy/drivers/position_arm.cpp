@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/drivers/position_arm.hpp"
 
 namespace handsel::drivers {

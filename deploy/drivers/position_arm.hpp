@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Driver of a position-controlled arm whose controller sends its state every cycle and must be
 // answered within it by a joint position (as in KUKA's fast research interface). Own method: the
 // maker's library, which goes behind CyclicLink, is not part of this code. Pure.

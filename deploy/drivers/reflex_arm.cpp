@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/drivers/reflex_arm.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Driver of an arm at 1 kHz that reacts to contact and to violated limits by a reflex and must then
 // be recovered, whose velocity limits shrink toward the ends of its joints, and which carries a
 // parallel gripper commanded by width and force (as Franka's arms do). Own method: the maker's

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the meshes and descriptions of the objects in this folder from the sizes below. Standard library only. Metres, kg.
 
 Origin: middle of the body, z up. Every mesh is closed and its triangles are about 8 mm wide, so that contacts and curvature are resolved.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the URDFs of our own hands and robots from the numbers below. Run it after changing a number; standard library only.
 
 Shapes are primitives that enclose the real parts; inertias are those of the shapes filled evenly with the link's mass. Metres, kg, radians.

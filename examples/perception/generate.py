@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes person.csv: somebody who walks up to the robot, looks, holds out both hands, brings what was taken to the chest, again and again.
 
 Columns as Handsel's recordings have them: time [s], then <joint>.x .y .z [m] in frame "world" (z up, the robot's base at the origin) for

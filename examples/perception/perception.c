@@ -1,5 +1,7 @@
-/* Publishes a recorded person, and objects, as a perception process of your own would: HumanObservation and ObjectObservation at the rate
- * of a sensor, with the time of each measurement. Replace body_at() and read_objects() with your tracker. See README.md. */
+// SPDX-License-Identifier: Apache-2.0
+/* Publishes a recorded person, and objects, as a perception process of your own would:
+ * HumanObservation and ObjectObservation at the rate of a sensor, with the time of each
+ * measurement. Replace body_at() and read_objects() with your tracker. See README.md. */
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -15,18 +17,20 @@ enum { MAX_JOINTS = 64, MAX_OBJECTS = 16, MAX_LINE = 8192 };
 struct recording {
   size_t joints, rows;
   char names[MAX_JOINTS][33];
-  double* values; /* rows of 1 + 3 x joints: time [s], then x y z [m] of each joint, frame "world" */
+  double* values; /* rows of 1 + 3 x joints: time [s], then x y z [m] of each joint, in "world" */
 };
 
 struct options {
   double rate;   /* [Hz] */
-  double repeat; /* from this time of the recording on it is played again and again [s]; < 0: it is played once */
+  double repeat; /* from this time of the recording on it is played again and again [s]; < 0: it is
+                    played once */
   const char *source, *body, *person_file, *object_file;
 };
 
 static volatile sig_atomic_t stopped = 0;
 
-static const char usage[] = "perception [--rate HZ] [--repeat S] [--source NAME] [--body ID] PERSON.csv [OBJECTS.csv]";
+static const char usage[] =
+    "perception [--rate HZ] [--repeat S] [--source NAME] [--body ID] PERSON.csv [OBJECTS.csv]";
 
 static void on_signal(int number) {
   (void)number;
@@ -38,7 +42,8 @@ static void give_up(const char* what, const char* detail) {
   exit(2);
 }
 
-/* A CSV: `time,<joint>.x,<joint>.y,<joint>.z,...`, then numbers; the joints have their names of REP-155. */
+/* A CSV: `time,<joint>.x,<joint>.y,<joint>.z,...`, then numbers; the joints have their names of
+ * REP-155. */
 static struct recording read_person(const char* file) {
   static char line[MAX_LINE];
   struct recording r = {0};
@@ -48,7 +53,8 @@ static struct recording read_person(const char* file) {
   strtok(line, ",\r\n");
   for (char* name = strtok(NULL, ",\r\n"); name; name = strtok(NULL, ",\r\n")) {
     char* dot = strrchr(name, '.');
-    if (!dot || r.joints == MAX_JOINTS || dot - name > 32) give_up(file, "the columns must be time, <joint>.x, <joint>.y, <joint>.z, ...");
+    if (!dot || r.joints == MAX_JOINTS || dot - name > 32)
+      give_up(file, "the columns must be time, <joint>.x, <joint>.y, <joint>.z, ...");
     if (strcmp(dot, ".z") != 0) continue;
     *dot = '\0';
     strcpy(r.names[r.joints++], name);
@@ -74,7 +80,8 @@ static struct recording read_person(const char* file) {
   return r;
 }
 
-/* A CSV: `id,model,x,y,z,qx,qy,qz,qw`, one resting object a line; `model` names a description the robot's side has. */
+/* A CSV: `id,model,x,y,z,qx,qy,qz,qw`, one resting object a line; `model` names a description the
+ * robot's side has. */
 static void read_objects(const char* file, handsel_ObjectObservation* out) {
   char line[512];
   FILE* in = fopen(file, "r");
@@ -83,8 +90,8 @@ static void read_objects(const char* file, handsel_ObjectObservation* out) {
     handsel_ObservedObject* o = &out->objects._buffer[out->objects._length++];
     handsel_Vector3* p = &o->T_world_object.position;
     handsel_Quaternion* q = &o->T_world_object.orientation;
-    const int found =
-        sscanf(line, "%64[^,],%64[^,],%lf,%lf,%lf,%lf,%lf,%lf,%lf", o->id, o->model, &p->x, &p->y, &p->z, &q->x, &q->y, &q->z, &q->w);
+    const int found = sscanf(line, "%64[^,],%64[^,],%lf,%lf,%lf,%lf,%lf,%lf,%lf", o->id, o->model,
+                             &p->x, &p->y, &p->z, &q->x, &q->y, &q->z, &q->w);
     if (found != 9) give_up(file, "a line must be id,model,x,y,z,qx,qy,qz,qw");
     o->confidence = 1;
   }
@@ -112,16 +119,20 @@ static void body_at(const struct recording* r, double t, handsel_ObservedPerson*
 
 static const handsel_Vector3* joint_of(const handsel_ObservedPerson* person, const char* name) {
   for (uint32_t i = 0; i < person->joints._length; ++i)
-    if (strcmp(person->joints._buffer[i].name, name) == 0) return &person->joints._buffer[i].position;
+    if (strcmp(person->joints._buffer[i].name, name) == 0)
+      return &person->joints._buffer[i].position;
   return NULL;
 }
 
-/* No eye tracker here: who faces somewhere is taken to look there, a little down. A tracker without gaze leaves has_gaze false. */
+/* No eye tracker here: who faces somewhere is taken to look there, a little down. A tracker without
+ * gaze leaves has_gaze false. */
 static void guess_gaze(handsel_ObservedPerson* person) {
-  const handsel_Vector3 *left = joint_of(person, "l_shoulder"), *right = joint_of(person, "r_shoulder"), *head = joint_of(person, "head");
+  const handsel_Vector3 *left = joint_of(person, "l_shoulder"),
+                        *right = joint_of(person, "r_shoulder"), *head = joint_of(person, "head");
   person->has_gaze = left && right && head;
   if (!person->has_gaze) return;
-  const handsel_Vector3 ahead = {left->y - right->y, right->x - left->x, -0.35 * hypot(left->x - right->x, left->y - right->y)};
+  const handsel_Vector3 ahead = {left->y - right->y, right->x - left->x,
+                                 -0.35 * hypot(left->x - right->x, left->y - right->y)};
   const double norm = sqrt(ahead.x * ahead.x + ahead.y * ahead.y + ahead.z * ahead.z);
   person->has_gaze = norm > 0.05;
   if (!person->has_gaze) return;
@@ -149,7 +160,9 @@ static struct options parse(int argc, char** argv) {
       give_up(argv[i], usage);
     ++i;
   }
-  if (!o.person_file || !(o.rate > 0 && o.rate <= 1000) || strlen(o.source) > 64 || strlen(o.body) > 64) give_up("usage", usage);
+  if (!o.person_file || !(o.rate > 0 && o.rate <= 1000) || strlen(o.source) > 64 ||
+      strlen(o.body) > 64)
+    give_up("usage", usage);
   return o;
 }
 
@@ -159,13 +172,16 @@ int main(int argc, char** argv) {
   signal(SIGINT, on_signal);
   signal(SIGTERM, on_signal);
 
-  /* The domain is HANDSEL_DOMAIN's; topics, types and QoS are those of the system (docs: handsel/handsel.h). */
+  /* The domain is HANDSEL_DOMAIN's; topics, types and QoS are those of the system (docs:
+   * handsel/handsel.h). */
   const dds_entity_t participant = handsel_participant("perception");
   const dds_entity_t humans = handsel_writer(participant, "human_observation");
-  const dds_entity_t objects = o.object_file ? handsel_writer(participant, "object_observation") : 0;
+  const dds_entity_t objects =
+      o.object_file ? handsel_writer(participant, "object_observation") : 0;
   if (participant < 0 || humans < 0 || objects < 0) return 3;
 
-  /* What this sensor looks at: only inside it does "nobody there" mean anything. It must hold the robot's reach. */
+  /* What this sensor looks at: only inside it does "nobody there" mean anything. It must hold the
+   * robot's reach. */
   handsel_HumanObservation seen = {.coverage = {{-4, -4, -0.1}, {4, 4, 2.5}}};
   handsel_ObservedJoint joints[MAX_JOINTS];
   handsel_ObservedPerson body = {.joints = {MAX_JOINTS, 0, joints, false}};
@@ -192,7 +208,8 @@ int main(int argc, char** argv) {
   while (!stopped && t <= end) {
     body_at(&person, t, &body);
     guess_gaze(&body);
-    seen.stamp = things.stamp = dds_time(); /* when it was measured: a camera's time of exposure, not the time of sending */
+    seen.stamp = things.stamp =
+        dds_time(); /* when it was measured: a camera's time of exposure, not the time of sending */
     dds_write(humans, &seen);
     if (objects) dds_write(objects, &things);
 

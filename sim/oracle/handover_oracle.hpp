@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides which party carries the object and whether a handover has happened. Own method: no
 // standard defines when a handover is complete.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the stream of set-points exactly against the guard limits. Own method: independent of how
 // the set-points are computed.
 #pragma once

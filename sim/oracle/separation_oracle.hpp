@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the ground-truth separation of robot and people, and checks speed and separation
 // monitoring (SSM, ISO 10218-2:2025; formulas: section 2) independently of the guard. Own method:
 // the power of contacts decides whether the robot presses against a person.

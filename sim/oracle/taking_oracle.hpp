@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the comfort of a receiver's arm and wrist at the release by the robot's hand. Own
 // method: the arm model of common/model/human/human_wrist (ranges of joints, configuration of min
 // strain) with hand poses computed from the contact of hand and object, without any planner's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads BVH motion files: hierarchy, channels and frames. Pure: text in, positions out. Format
 // after Meredith and Maddock, "Motion capture file formats explained".
 #pragma once

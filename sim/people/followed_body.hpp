@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A body that follows observations from outside. Pure: time is an argument.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a person can hold an object: palm and digits fit around the object and keep clearance to a
 // robot that holds the object, or leave room to a robot that takes the object. Own method: hand
 // poses about the object, ordered by the strain of the person's arm, are tested with the digits

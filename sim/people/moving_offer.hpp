@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the motion of an offer by a moving giver, as in the set t0 of GenH2R (Wang et al., CVPR
 // 2024): curves from point to point with a superposed rotation, for a limited time. Own method: the
 // points are within reach of an arm, and the rotation stays within the range of a wrist. Pure.

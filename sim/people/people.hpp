@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People as bodies of the physics world: kinematic capsules, free hands on springs, and a grip on
 // the object of the handover.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emulates a person: computes body, gaze and the commanded poses of the hands from what the person
 // observes; forces may deflect the hands. Pure: time advances by step(). Own method: behaviour
 // profiles vary the conditions of a handover.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Individual behaviour of people: offers, hesitation, withdrawal, averted gaze, sidesteps.
 #include <limits>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions of a person's body, arms and gaze, and grasp points of a hand on an object.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person whose body follows observations from outside; only the handover is simulated. Own
 // method: a hand near an offered object is guided to the object. A hand whose reported position
 // moves away while the robot holds the object pulls with limited force. A guided hand returns to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person's hand as a free rigid body: a spring and damper of limited force pull the hand toward
 // its commanded pose. A hand that takes an object has a palm and digits, any other hand is a fist.
 // Own method: the limit bounds the forces between hand and robot.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For the sources of PersonModel: indices of joints, and constants common to all behaviours.
 #pragma once
 

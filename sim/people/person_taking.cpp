@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a person takes an object from a robot's hand: a place on the object, the configuration of the
 // hand.
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads recorded motions of a person: a folder of the KTH handover set, a CSV file of body points,
 // or a BVH file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts BVH skeletons to recordings.
 #include <algorithm>
 #include <cctype>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads body points over time from CSV.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For the sources of Recording: joints of the legs, and functions common to the readers of all
 // formats.
 #pragma once

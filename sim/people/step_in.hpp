@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The walk of a person who approaches the robot without regard to its motion. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/people/taking_hand.hpp"
 
 #include "sim/people/person_parts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hand of a person on an object: the choice of a place, the approach with an open hand, the
 // digits that close. Own method.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts types and shapes to and from Bullet's (double precision).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts between bodies, read from Bullet after a step.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A grip: a compliant connection of limited force that can break, between an object and a hand of
 // robot or person. Own method: a six-dimensional spring and damper scaled by the object's inertia
 // is stable at the physics step.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An object as a rigid body of the physics world.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the robot side's measurements at a hand: wrist wrench, joint torques and payload,
 // low-pass filtered as by a sensor; and the max force on a person.
 #pragma once

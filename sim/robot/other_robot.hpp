@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another robot of the scenario, moved along a fixed motion: an obstacle that reports itself.
 // Nobody feels its contact; the oracle measures its distance.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulates odometry and localisation of a mobile robot: the odometry has errors that accumulate;
 // the localisation estimates the pose of the odometry frame at its own rate. Own method: errors in
 // proportion to the square root of the distance.

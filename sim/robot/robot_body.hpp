@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot as a Featherstone multibody with joint servos, for any RobotModel; links connected by
 // fixed joints become one body.
 #pragma once

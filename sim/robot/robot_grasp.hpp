@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides when the robot's hand holds an object: its contacts have force closure for a time. Own
 // method: the physics engine has contacts, but no grasps.
 #pragma once

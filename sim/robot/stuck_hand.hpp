@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An injected fault: a hand that does not open.
 #pragma once
 

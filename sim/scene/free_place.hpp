@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws free places on a surface for objects with `free_place` in a scenario.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other robots of a scenario.
 #pragma once
 

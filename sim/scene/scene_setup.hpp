@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a scenario file to the start of the world: poses, people, sensors; the seed determines
 // the random variations.
 #pragma once

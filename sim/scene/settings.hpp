@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings of the emulated world; values and meanings as in common/config/schema/sim.proto.
 #pragma once
 

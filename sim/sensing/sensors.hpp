@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emulates perception: sources of people and objects, each with rate, latency, jitter, noise,
 // drop-outs, field of view and faults. Pure, seeded. Random numbers of a disabled effect are not
 // drawn, so disabled effects do not change a source by a bit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of one step of the attentional system in which every behaviour is active: the shipped
 // settings, two people near, an arm in motion. Usage: bench_attention [rounds]
 #include <algorithm>

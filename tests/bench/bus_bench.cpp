@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost of the bus on this machine: `bench_bus trip` measures DDS round trips between two
 // processes, `bench_bus load` replays the traffic of the table of topics with one process per
 // component and prints the processor load of each.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // States per second of the SIMD check against FCL's broad-phase manager, and capsule distances
 // against FCL's, in one run. Medians of rounds that alternate between the two. Needs the reference
 // data (HANDSEL_DATA). Usage: bench_collision [rounds]

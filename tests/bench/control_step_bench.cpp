@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of one control step of Jido (22 axes) beside a person: p50, p99, p99.9 and the part of each
 // phase of the scenario; time to accept a trajectory, which happens between two steps; and time to
 // check the whole remaining path against a newly observed person. Prints times, without limits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of the human-aware cost of a robot state, against its distance term computed with FCL, and
 // of an update of the cost map. One run; medians and minima of alternating rounds. Usage:
 // bench_cost [rounds]

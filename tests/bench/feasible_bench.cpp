@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Path planning among obstacles without people, against OMPL's RRT-Connect with FCL, on the Panda
 // problems of the reference data. One run, the planners alternate per problem. Usage:
 // bench_feasible [problems]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 find_package(benchmark QUIET)
 find_package(Qhull REQUIRED CONFIG)
 if(benchmark_FOUND)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The grasp planner: stability against Qhull, lists of the Schunk hand on a mug of 10 000
 // triangles, the order of the tests, lists from disk.
 #include <benchmark/benchmark.h>

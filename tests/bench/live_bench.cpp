@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Online replanning after a person has moved, against new planning from the present configuration:
 // time until the running path avoids the person, or until its cost falls. Jido beside its table;
 // the person blocks part of the path (repair) or raises its cost (improve). One process,

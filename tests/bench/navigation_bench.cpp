@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paths of a platform past two people in a furnished room, planned with the path planner's shipped
 // settings, against OMPL's BiTRRT on the same problems; then one person steps into the path during
 // the base motion. One process, alternating; thread time. Usage:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times of double grasps of two lists of 200, and of the choice of a grasp for a person from cached
 // lists. Medians and minima of repeated runs; there is no peer to compare with. Usage: bench_pairs
 // [rounds]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paths beside a person: bidirectional T-RRT against OMPL's BiT-RRT with FCL on the same costs;
 // both searches alone, then the own search with smoothing and the final check. One run, the
 // planners alternate per query. Usage: bench_planner [queries]

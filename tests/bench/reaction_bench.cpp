@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time from the publication of a person sample to the changed set-point, over DDS, with the
 // controller as its own process; for comparison the lower bound of the machine: a UDP round trip of
 // the same size and the wait for the next control tick. Usage: bench_reaction [reactions] [domain].

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 add_executable(bench_retarget ${CMAKE_CURRENT_LIST_DIR}/retarget_bench.cpp)
 target_link_libraries(bench_retarget PRIVATE handsel_manipulation_planner_core handsel_path_planner_core handsel_trajectory_planner_core)
 add_executable(bench_standing ${CMAKE_CURRENT_LIST_DIR}/standing_bench.cpp)

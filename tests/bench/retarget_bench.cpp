@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The receiver steps aside while the object is carried to them: time until a trajectory leads from
 // the running motion to the new exchange point (search of the point, path, jerk-limited trajectory
 // and the junction), against a stop and new planning. Jido; one process, alternating; thread time.

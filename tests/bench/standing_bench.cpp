@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Search of the platform places from which the arm hands a mug to a person in a furnished room, as
 // in the action drive, and the part spent on the check that the handover is reachable. One process;
 // thread time. Usage: bench_standing [rooms]

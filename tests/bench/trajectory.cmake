@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 find_package(benchmark QUIET)
 if(benchmark_FOUND)
   add_executable(bench_trajectory ${CMAKE_CURRENT_LIST_DIR}/trajectory_bench.cpp)

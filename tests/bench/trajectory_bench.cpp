@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Jerk-limited trajectories: time of a solution, evaluation, smoothing, control tick, switch. The
 // 7-axis problems are those of Ruckig's own benchmark: its generator, seeds and validity test.
 // With -DHANDSEL_RUCKIG=<path> Ruckig solves the same problems in alternation: counters ours_ns and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 add_executable(bench_control_step ${CMAKE_CURRENT_LIST_DIR}/control_step_bench.cpp)
 target_link_libraries(bench_control_step PRIVATE handsel_trajectory_controller_core handsel_collision_checker_core handsel_config)
 add_executable(bench_reaction ${CMAKE_CURRENT_LIST_DIR}/reaction_bench.cpp)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time from ten waypoints of Jido's arm among boxes to a smoothed trajectory, with and without the
 // collision checks of blends; and of tool motions approximated as TR_app, per 5 s of motion. The
 // peer of the first is MoveIt's TOTG: 2.8 ms for ten waypoints of seven axes on such a machine.

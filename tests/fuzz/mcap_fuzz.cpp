@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fuzzes MCAP recordings, which other programs also write. For libFuzzer: clang++
 // -fsanitize=fuzzer,address with the sources of common/record; here a corpus and its seeded
 // mutations are replayed.

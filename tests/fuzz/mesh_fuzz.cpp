@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fuzzes mesh files of users. For libFuzzer: clang++ -fsanitize=fuzzer,address with the
 // sources of common/geometry; here a corpus and its seeded mutations are replayed.
 #include <cmath>

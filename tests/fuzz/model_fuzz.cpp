@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fuzzes URDF and SRDF of users. For libFuzzer: clang++ -fsanitize=fuzzer,address with the
 // sources of common/model; here corpora and their seeded mutations are replayed.
 #include <cmath>

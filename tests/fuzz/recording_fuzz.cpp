@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fuzzes motion recordings of users. For libFuzzer: clang++ -fsanitize=fuzzer,address with
 // the sources of sim/recording and sim/bvh; here a corpus and its seeded mutations are replayed:
 // every input is read or refused in one sentence, without a crash.

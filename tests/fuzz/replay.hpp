@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the entry point of a parser on a corpus of files and on their seeded mutations. Files whose
 // names begin with good_ must be read, all others refused; a mutation may be either.
 // HANDSEL_FUZZ_MUTATIONS sets the number of mutations per file.

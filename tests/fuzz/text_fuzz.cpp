@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fuzzes settings, scenarios and stories, which people write. For libFuzzer: clang++
 // -fsanitize=fuzzer,address with the sources of common/config and deploy/handsel/story/story.cpp;
 // here corpora and their seeded mutations are replayed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A minimal component for the tests of run_process: answers every task goal with a status.
 #include "common/bus/process.hpp"
 #include "common/messages/task.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 add_executable(test_probe ${CMAKE_CURRENT_LIST_DIR}/probe.cpp)
 target_link_libraries(test_probe PRIVATE handsel_bus)
 handsel_test(process GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/process_test.cpp LINK handsel_bus LABEL system)

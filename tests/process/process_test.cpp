@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A component as a process: ready line, clean end, refusals with exit codes, one instance of a kind
 // per domain.
 #include <gtest/gtest.h>

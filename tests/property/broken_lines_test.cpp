@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random polylines of Jido's arm among random boxes: never slower than with a stop at each
 // waypoint, inside the limits, and free of contact at every millimetre. Spheres around the links
 // prove most states free, FCL checks the rest; FCL alone checks every kAlone-th line. HANDSEL_RUNS:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cartesian motions of Jido's arm and of the iiwa of the reference data: pose of the tool, motion
 // of the joints. HANDSEL_RUNS: number of motions per robot (12).
 #include <algorithm>

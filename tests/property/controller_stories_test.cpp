@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random event sequences: for any commands, lost or malformed messages, every set-point keeps the
 // guard limits and continues the preceding one.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cost map against the analytic costs that it samples, on random people, furniture and points;
 // the bounds are those of docs/costs.md.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each example driver in virtual time with the real controller and an emulated robot controller:
 // lost messages, jitter, jumps, reflexes, limits near the joint ends, the gripper, the load; and
 // hostile datagrams.

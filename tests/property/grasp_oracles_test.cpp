@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random contact sets: the strict test of force closure against an independent linear program
 // (GLPK), and epsilon against an independent hull (Qhull). HANDSEL_RUNS: number of sets (400).
 #include <gtest/gtest.h>

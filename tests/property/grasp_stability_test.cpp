@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Force closure and epsilon against an independent hull (Qhull) on random contact sets, and against
 // closed-form solutions.
 #include <gtest/gtest.h>

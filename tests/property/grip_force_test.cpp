@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grip forces of random grasps against independent oracles: balance, friction cones, force limits,
 // the margin by sampled loads, and optimality.
 #include "common/grasp/grip_force.hpp"

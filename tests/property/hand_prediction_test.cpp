@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hand predictions of SPARK against the true motion: recorded motions, observed at 30 Hz with
 // noise. Baselines: a hand at rest, and a hand with the constant velocity that SPARK reports.
 #include <gtest/gtest.h>

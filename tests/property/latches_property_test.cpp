@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Supervisor core and controller core over random events and restarts of either: no motion while a
 // person's latch is set, and motion is permitted again after all latches are cleared.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(offer_detection GROUP manipulation_planner
   SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/offer_detection_test.cpp

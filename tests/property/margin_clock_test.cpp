@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The adaptive clock by margin: between two activations no person within the assumed speeds uses up
 // the margin. The oracle integrates the true distance in steps of 1 ms and computes its own bounds.
 #include <gtest/gtest.h>

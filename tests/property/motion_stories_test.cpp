@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random event sequences of a running motion: switch, slow down, stop, recoil, resume, at random
 // times. Every sample is within the limits and continues the preceding one. HANDSEL_RUNS=1000000
 // for the long run.

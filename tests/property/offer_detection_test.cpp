@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The offer detector against ground truth: labelled sequences of people with an object, observed by
 // emulated sensors and tracked by SPARK on a LocalBus.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Panda problems of the reference data: the number solved in five seconds, and FCL's check of
 // every path at every millimetre and half degree. HANDSEL_RUNS: number of problems (14, spread over
 // the scenes; 0: all).

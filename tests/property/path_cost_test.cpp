@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Benefit of the transition test: with a person beside the table, bidirectional T-RRT against
 // RRT-Connect, all smoothed for the same time. In each random query the straight line comes nearer
 // to the person than its ends. HANDSEL_RUNS: number of queries (60).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People observed by faulty sources. The oracle knows only the true bodies and the raw
 // observations: SPARK must hold every present person's volume occupied, and every place where a
 // source observed a person until it is ruled out. Seeds are printed.

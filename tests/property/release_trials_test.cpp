@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two hundred handovers: pulls of 2 to 20 N, bumps, tremor, false starts, and people who lift
 // without pulling. The object never falls, and the hand opens only while a person's hand carries
 // the object.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For any set-points, the reference of the robot side's servos stays within the limits, evaluated
 // by finite differences of the positions alone.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person runs in from any side at up to 2.2 m/s while the arm moves: the arm is at rest or moves
 // away before contact.
 #include <gtest/gtest.h>

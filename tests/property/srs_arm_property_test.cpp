@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed-form inverse kinematics of the LWR and the iiwa: every branch reaches the requested pose.
 // HANDSEL_POSES sets the number of random poses; the label full runs 100 000.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People move at random within their bounds: a person who touches the arm during a stop that passed
 // the proof touches a link at rest or slow enough for the contact limits. The oracle samples both
 // stops and the people finely, independent of the bounds of the proof.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random worlds: a plan reaches its goal, has the min cost of all sequences of actions, and a
 // supervised task ends after any event. HANDSEL_RUNS worlds of each kind.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Seven axes from any state to any state, synchronised: every motion is checked at its exact
 // extremes, a fraction of them against the slow solver of the tests. HANDSEL_CASES sets the number
 // of problems, HANDSEL_SLOW at which interval the slow solver checks one.

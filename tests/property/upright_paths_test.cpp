@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The held object stays upright and every axis within its limits at every sample of every path:
 // random queries with and without a person. HANDSEL_RUNS: number of queries (10).
 #include <cmath>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of a tree and the declarations in them, as Universal Ctags finds them."""
 
 import json

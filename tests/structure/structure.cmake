@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The structure of the tree: its figures against their limits, and what measures them. Any Python from
 # 3.9 on runs them; without one they are not there, without Universal Ctags they are skipped.
 find_package(Python3 3.9 COMPONENTS Interpreter)

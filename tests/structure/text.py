@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of one source file: code without comments and strings, comments, string literals."""
 
 import bisect

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts heap allocations (operator new and malloc). Link allocation_counter.cpp into the test
 // binary.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Jido, a table and a person beside it: random queries obstructed by the person, for tests and
 // benchmarks.
 #pragma once

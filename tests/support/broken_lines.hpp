@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random polylines of Jido's arm among random boxes; their segments are free.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Preloaded library: the wall clock of every forked process jumps ahead by one second 0.5 s after
 // its fork; the monotonic clock does not.
 #include <dlfcn.h>

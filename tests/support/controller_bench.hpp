@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A controller in virtual time with an ideal or faulty robot, people, and all other senders.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Common expectations of the controller's tests.
 #pragma once
 

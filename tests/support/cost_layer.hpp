@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A layer that an external process adds to the cost map.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot with two arms before a table, and the grasp lists of both hands on an object.
 #pragma once
 

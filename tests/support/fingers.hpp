@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The controller's hand executor for the hand of a robot.
 #pragma once
 

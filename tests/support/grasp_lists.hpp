@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasp lists for tests: hands and objects of the project by name, made once per process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // HANDSEL_LANES=avx512|avx2|base selects the SIMD width of the linked tests. A width that the
 // processor lacks is skipped by exit code 77.
 #include <cstdio>

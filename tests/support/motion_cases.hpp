@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random problems of one axis, of every family that has broken a solver, and the check of a
 // solution.
 #pragma once

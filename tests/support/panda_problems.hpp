@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Panda and its planning problems of the reference data (environment HANDSEL_DATA), for tests
 // and benchmarks.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small robot for tests: a fixed post and three 0.4 m links turning about z, written as a URDF.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Third-party robots, recordings and problems in the folder of the environment's HANDSEL_DATA.
 #pragma once
 

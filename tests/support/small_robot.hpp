@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small robot for tests: arm of three axes, hand of two, pan-tilt head; written to a temporary
 // folder and loaded like any other.
 #pragma once

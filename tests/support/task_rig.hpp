@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A supervisor in a symbolic world of facts that emulates the rest of the system.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A symbolic world of facts with the nominal effects of actions: objects on surfaces, in the
 // robot's hand or in people's hands.
 #pragma once

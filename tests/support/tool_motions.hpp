@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random tool motions of an arm with shoulder, elbow and wrist, near a configuration.
 #pragma once
 

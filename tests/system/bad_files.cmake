@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Each row runs the command; HANDSEL_BIN names another folder of binaries, e.g. that of the preset asan.
 set(bad_files_folder ${CMAKE_CURRENT_LIST_DIR}/bad_files)
 handsel_test(bad_files GROUP live

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No arm moves blind, over real processes: while the arm carries a mug beside a person, the sources
 // of people fall silent, freeze, repeat an empty sample, are late or observe another space. The arm
 // comes to rest in time, the cause is named, the arm rests during the disturbance and completes its

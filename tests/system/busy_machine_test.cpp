@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two systems on one processor are slower but work. HANDSEL_RUNS: number of runs (1).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table with six objects is cleared while a person comes and takes one of them; the final places
 // are those of the emulated sensors.
 #include <gtest/gtest.h>

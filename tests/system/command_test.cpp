@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command from the user's side: exit codes, one sentence for each mistake, no remaining
 // process.
 #include <arpa/inet.h>

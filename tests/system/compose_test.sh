@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # compose_test.sh: the deployment with a container engine, as docs/deploy.md describes it: the image is built, the compose file brought up on
 # a bridge network, a mug handed over, a process killed and back, everything taken down. Prints size and times. Exit 77: no engine here.
 #   HANDSEL_TEST_IMAGE     an image that is there already: nothing is built

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(install GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/install_test.cpp LINK handsel_bus LABEL system)
 target_compile_definitions(tests_live PRIVATE HANDSEL_BUILD_DIR="${CMAKE_BINARY_DIR}" HANDSEL_CMAKE="${CMAKE_COMMAND}")
 target_compile_options(tests_live PRIVATE -Wno-missing-field-initializers)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 add_library(handsel_clock_jump MODULE ${CMAKE_CURRENT_LIST_DIR}/../support/clock_jump.cpp)
 target_link_libraries(handsel_clock_jump PRIVATE handsel_options)
 handsel_test(doctor GROUP live FILTER "-*beside*:*port*" SOURCES ${CMAKE_CURRENT_LIST_DIR}/doctor_test.cpp LINK handsel_bus nlohmann_json::nlohmann_json LABEL system)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel doctor` against injected faults: broken DDS settings, occupied ports and indices,
 // namespaces without a network, clock offsets, descriptions with missing files. It must name each
 // fault and report nothing on a correct system.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel eval` from the user's side: several conditions with the same seeds, merged shards, and
 // the same trial on another machine.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The receiver steps aside while the arm carries the object to them: the running path is redirected
 // to another exchange point without a stop. The whole system in lock-step.
 #include <gtest/gtest.h>

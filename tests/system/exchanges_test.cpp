@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Handovers in both directions with varied people, over real processes in real time. If a process
 // dies, the task is completed or given up in order. HANDSEL_RUNS: trials of each;
 // HANDSEL_FIRST_SEED: of the first trial.

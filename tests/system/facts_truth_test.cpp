@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The facts of simulated handovers against the simulator's ground truth, in lock-step.
 // HANDSEL_RUNS: number of seeds (3).
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commissioning on hardware with both example drivers as processes: dry run, walls, override,
 // emergency stop, user stop, brake; and the specifics of each kind. A scripted emulation of the
 // maker's controller is behind each driver; the trajectory controller is the real one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flood of objects, people, goals and requests under ever-new names against SPARK, the supervisor
 // and two planners in one process: the nearest are kept, the rest is counted, memory is constant,
 // and a person's goal is still carried out.

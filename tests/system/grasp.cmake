@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 if(TARGET handsel_sim_core AND TARGET handsel_trajectory_controller_core)
   handsel_test(grasp_holds GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasps/grasp_holds_test.cpp
     LINK handsel_grasp_planner handsel_grasp_planner_core handsel_trajectory_controller_core handsel_sim_core LABEL system)

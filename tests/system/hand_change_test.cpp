@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The receiver waits with a raised hand and changes to the other hand while the arm carries the
 // object: exchange point and wrist follow the new hand, which takes the object. The whole system in
 // lock-step.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The handover, checked by the simulator's oracle: over DDS and in lock-step, with people who take,
 // people who never move, recorded people, and a robot that never releases.
 #include <gtest/gtest.h>

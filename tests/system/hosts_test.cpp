@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The deployment of docker-compose.yml without a container engine: every service in a network
 // namespace with its own address; and perception on another host, with an interrupted link.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tree of `cmake --install` is complete: the command works from there, and a program outside
 // the build takes part.
 #include <gmock/gmock.h>

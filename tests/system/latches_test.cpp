@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Latches survive the death of any process, over real processes: the arm is latched in the middle
 // of a motion, a process is killed and restarts, and nothing moves before a person permits motion;
 // then the arm moves. Without HANDSEL_RUNS: one death for each latch and the processes that keep

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(live_runs GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/live_runs_test.cpp LINK handsel_lockstep handsel_path_planner_core LABEL system)
 set_tests_properties(live_runs PROPERTIES PROCESSORS 2 TIMEOUT 300)
 handsel_test_again(live_runs_500 OF live_runs)

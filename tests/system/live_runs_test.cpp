@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Online replanning in lock-step: the arm moves when a person walks up and reaches into its path.
 // The whole system, checked on the simulator's ground truth by an independent exact collision
 // check. HANDSEL_RUNS: number of runs (seeds 1 ...), HANDSEL_FIRST: the first seed,

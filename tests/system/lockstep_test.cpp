@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole system in virtual time: the same seed gives the same bits, another seed another run; a
 // crash is one failed trial.
 #include <gtest/gtest.h>

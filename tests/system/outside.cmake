@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(outside_tree GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/outside/outside_tree_test.cpp LINK handsel_command LABEL system)
 target_compile_definitions(tests_live PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(tests_live product)

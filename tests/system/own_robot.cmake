@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(own_robot GROUP lockstep FILTER "Robots/OwnRobot.lacks*:OwnRobotFolder.*" SOURCES ${CMAKE_CURRENT_LIST_DIR}/own_robot_test.cpp LINK handsel_lockstep LABEL system)
 target_compile_definitions(tests_lockstep PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(tests_lockstep handsel)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Third-party robots by description alone: a Panda with its hand, an iiwa with a parallel gripper.
 // Their URDFs are reference data.
 #include <gtest/gtest.h>

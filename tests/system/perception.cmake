@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The example is built against what an install has for programs outside.
 if(TARGET handsel_client)
   handsel_test(perception GROUP live FILTER "-PerceptionMore.*" SOURCES ${CMAKE_CURRENT_LIST_DIR}/perception_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)

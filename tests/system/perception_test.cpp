@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The perception example from its author's side: built from an installed tree in an empty folder,
 // its person receives the mug from the robot. With one injected fault each, `handsel doctor
 // --perception` names the fault.

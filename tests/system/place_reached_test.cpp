@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person who reaches for an object that the robot is putting down receives the object; a person
 // who only passes does not (HANDSEL_RUNS: trials of each).
 #include <gtest/gtest.h>

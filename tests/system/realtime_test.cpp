@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The controller's thread: real-time scheduling and locked memory where permitted, else a clear
 // message.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A study's run is recorded completely, with its marks; its replay into a system without a robot
 // shows the same person.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A publisher and readers with the names and types of ROS 2, made with Cyclone alone, beside a
 // whole system with its ROS 2 bridge.
 #include <dds/dds.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The give task with realistic sensors and with temporarily wrong data; checked by the simulator's
 // oracle, in lock-step.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(second_writer GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/second_writer_test.cpp LINK handsel_command LABEL system)
 add_dependencies(tests_live product)
 set_tests_properties(second_writer PROPERTIES TIMEOUT 180)

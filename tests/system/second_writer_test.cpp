@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A second writer on each topic with a pinned writer, in a running system over DDS, at rest and in
 // motion: no axis moves because of that writer, the writer is named within a second, and no limit
 // is exceeded. HANDSEL_RUNS: runs of each topic and kind (default: a selection, once).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Latency from an observation on the wire to the Scene and HumanState that contain it, over DDS,
 // with SPARK as its own process. Prints the figures; the assertions also hold on a busy machine.
 // HANDSEL_RUNS: number of observations (100).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processes of a running system hang or die: each is replaced and works again within 5 s, the task
 // continues or ends with its reason, and the speed stays within SSM. By default three faults;
 // HANDSEL_PHASES: number of random phases of SIGSTOP and kill -9 for each of HANDSEL_PROCESSES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Stories and command-line tests over real processes, each on a DDS domain of its own. Several run at a time: simulated time halts while
 # a process waits for a processor.
 set(story_domain 40)

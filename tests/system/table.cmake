@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 set(every_node)
 foreach(box sim spark costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner attention
             trajectory_controller supervisor)

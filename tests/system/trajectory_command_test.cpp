@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel trajectory solve | smooth | sample` from the user's side: real process, exit codes,
 // exact sentences.
 #include <gtest/gtest.h>

@@ -1,2 +1,3 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(attention GROUP attention SOURCES ${CMAKE_CURRENT_LIST_DIR}/attention_test.cpp LINK handsel_attention LABEL unit)
 handsel_test(margin_clock GROUP attention SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/margin_clock_test.cpp LINK handsel_attention_core LABEL unit)

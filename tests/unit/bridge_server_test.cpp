@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The server with hostile or faulty clients, over real sockets.
 #include "components/bridge/server.hpp"
 

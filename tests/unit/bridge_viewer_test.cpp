@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The protocol without a socket: messages to a viewer, its requests, its queue.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(collision GROUP common SOURCES ${CMAKE_CURRENT_LIST_DIR}/collision/collision_test.cpp ${CMAKE_CURRENT_LIST_DIR}/collision/collision_world_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/held_object_test.cpp LINK handsel_collision
              LABEL unit)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(launcher GROUP deploy SOURCES ${CMAKE_CURRENT_LIST_DIR}/deploy/launcher_test.cpp LINK handsel_command LABEL unit)
 handsel_test(kept_state GROUP deploy SOURCES ${CMAKE_CURRENT_LIST_DIR}/supervisor/kept_state_test.cpp LINK handsel_command LABEL unit)
 handsel_test(liveness GROUP deploy SOURCES ${CMAKE_CURRENT_LIST_DIR}/deploy/liveness_test.cpp LINK handsel_command LABEL unit)

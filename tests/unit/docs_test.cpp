@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that the documents name exists.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

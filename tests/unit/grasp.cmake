@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 find_package(Qhull REQUIRED CONFIG)
 handsel_test(grasp GROUP grasp_planner SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasp_planner/grasp_test.cpp LINK handsel_grasp_planner_core LABEL unit)
 handsel_test(grasp_list GROUP grasp_planner SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasp_planner/grasp_list_test.cpp LINK handsel_grasp_planner_core LABEL unit)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dependencies are acyclic, and only wire and bus use DDS: checked on the #include lines of the
 // whole tree.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 set(manipulation_planner_tests ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner)
 handsel_test(manipulation_planner GROUP manipulation_planner
   SOURCES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(model GROUP common SOURCES ${CMAKE_CURRENT_LIST_DIR}/model/model_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/model_input_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/arm_reach_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/model/human_body_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/robot_capsules_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/model/driving_robot_test.cpp ${CMAKE_CURRENT_LIST_DIR}/model/holding_hand_test.cpp

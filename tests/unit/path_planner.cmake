@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(path_planner GROUP planning SOURCES ${CMAKE_CURRENT_LIST_DIR}/path_planner/path_planner_test.cpp LINK handsel_path_planner_core LABEL unit)
 target_include_directories(tests_planning SYSTEM PRIVATE ${OMPL_INCLUDE_DIRS})
 handsel_test(path_planner_property GROUP planning SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/path_planner_property_test.cpp LINK handsel_path_planner_core

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ROS 2 bridge in virtual time: ROS 2 topics on one side, system topics on the other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

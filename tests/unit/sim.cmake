@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(sim GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sim/time_keeper_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(scene_setup GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/scene_setup_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(sim_oracle GROUP sim SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim/sim_oracle_test.cpp LINK handsel_sim_core LABEL unit)

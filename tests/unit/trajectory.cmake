@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(trajectory SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory/min_time_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory/trajectory_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory/time_scaling_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory/smooth_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory/approximate_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/lane_level.cpp
   LINK handsel_trajectory LABEL unit)
 handsel_test(trajectory_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/trajectory_property_test.cpp

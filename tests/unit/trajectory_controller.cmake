@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(guard GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/guard_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(controller GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_queue_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_whole_robot_test.cpp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 handsel_test(trajectory_planner GROUP planning SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_planner_test.cpp LINK handsel_trajectory_planner LABEL unit)
 handsel_test(cartesian_motion GROUP planning SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory/cartesian_motion_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../property/cartesian_motion_test.cpp LINK handsel_trajectory_planner_core
              LABEL property)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Raw CDR and IDL text as a viewer decodes them, live and from a recording. The npm packages are fetched once for each package-lock.json.
 add_executable(samples ${CMAKE_CURRENT_LIST_DIR}/samples.cpp)
 target_link_libraries(samples PRIVATE handsel_bus nlohmann_json::nlohmann_json)

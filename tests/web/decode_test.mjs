@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the bridge sends is what was written: a viewer's own libraries decode one random sample of every message type, compared field by
 // field with what the writer printed. node decode_test.mjs SAMPLES BRIDGE [DOMAIN [SEED...]]
 import { strict as assert } from "node:assert";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // node late_cycles.mjs [runs=5] [domain=37]: does a page that is open make control cycles late? Handovers in turn without and with a headless
 // browser (niced) on the page; prints the share of late cycles and the longest gap between set-points of each. Exit 1 if the page made it worse:
 // more late cycles in sum than without it, beyond what chance explains (two standard deviations of the difference of two counts).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tests of decoded samples share.
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";

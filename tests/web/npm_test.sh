@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # npm_test.sh SCRIPT ARGUMENTS...: fetches the tests' npm packages when package-lock.json has changed, then runs the script.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page over a running system, in a headless browser: what it draws, that its numbers are those on DDS, what it says when something is missing.
 import assert from "node:assert/strict";
 import { mkdir } from "node:fs/promises";

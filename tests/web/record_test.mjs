@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `handsel record` writes is what was said: the MCAP project's own reader and a viewer's decoder find one random sample of every message
 // type in it, compared field by field with what the writer printed; and nearly all of it when the recorder was killed.
 // node record_test.mjs SAMPLES HANDSEL [DOMAIN [SEED]]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // samples DOMAIN SEED: publishes one random valid sample of every message type over DDS repeatedly
 // until its input ends. Prints one line of JSON per type before: {"topic", "type", "leaves":
 // {"path": value}}, integers of 64 bits as text.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page's tests share: a running system, a headless browser, DDS samples, pictures.
 import { spawn } from "node:child_process";
 import { createRequire } from "node:module";

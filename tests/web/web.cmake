@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The page: its types, and what it shows of a running system in a headless browser. build.sh all installs what they need.
 find_program(HANDSEL_NODE node)
 if(HANDSEL_NODE)

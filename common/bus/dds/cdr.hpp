@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples to and from the bytes they have on the wire, without a network: for recordings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The product's bus: one Cyclone DDS participant and one executor thread.
 #pragma once
 

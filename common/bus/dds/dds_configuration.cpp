@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/bus/dds/dds_configuration.hpp"
 
 #include <dlfcn.h>

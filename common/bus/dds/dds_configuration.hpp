@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The DDS configuration in use, as far as Handsel depends on it: read from CYCLONEDDS_URI as
 // Cyclone DDS reads it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a process enters a DDS domain when nothing else is said: which domain, which hosts.
 // Environment in, environment out.
 #pragma once

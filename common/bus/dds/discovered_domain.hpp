@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For common/bus only: the domain view of one participant.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Participants and endpoints of a DDS domain as the transport reports them, foreign processes
 // included.
 #pragma once

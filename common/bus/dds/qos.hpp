@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each QoS profile of the table of topics means to Cyclone DDS. Nowhere else is a QoS set.
 // Ownership is shared everywhere: under exclusive ownership a stronger writer hides the rightful
 // one, and anybody may be stronger. Which writer counts is decided by common/bus/writer_pin.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples as they are on the wire, not decoded: for the bridge and for recordings, which pass on
 // what was sent.
 #pragma once

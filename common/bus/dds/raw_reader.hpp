@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes samples of a reader without decoding them.
 #pragma once
 

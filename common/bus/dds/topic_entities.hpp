@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Topic entities of a participant, made when they are first needed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Follows, by the transport's discovery, the writers of topics with one writer, also those that no
 // reader is matched with.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events, writers and subscriptions of the network, and its interface.
 #include <algorithm>
 #include <cstring>

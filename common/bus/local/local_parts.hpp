@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For the sources of LocalNetwork: what the network and the bus of one component consist of.
 #pragma once
 

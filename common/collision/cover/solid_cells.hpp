@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solids cut into small convex cells: what a cover of spheres has to hold.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances of the robot to people and to the scene.
 #include <algorithm>
 #include <cstdint>

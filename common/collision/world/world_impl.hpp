@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a collision world holds, and the exact and the SIMD check of one state or line. Functions
 // are in the class: they are inner loops.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generates plain structs of settings from the schema:
 //   handsel_settings_generator SCHEMA_SET FOLDER NAME...
 // SCHEMA_SET is the output of `protoc --descriptor_set_out`. For each NAME, FOLDER/NAME.hpp

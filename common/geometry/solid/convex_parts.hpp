@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh as few convex parts, for physics and collision. Own method after V-HACD (Mamou 2016):
 // cells of a grid are cut by planes along the axes where the hulls of the pieces fill least that is
 // empty.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh as cells of a grid: what is solid, and what stays in it when it is filled from above. Own
 // method: the surface as dense samples, the inside as what a flood from outside does not reach.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors and poses as descriptions write them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a RobotModel is put together: URDF tree, SRDF, axes and limits. Used by the loaders of this
 // folder only.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <console_bridge/console.h>
 #include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>

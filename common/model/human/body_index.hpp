@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joints of a complete body by number, in the order of kBodyJoints.
 #pragma once
 

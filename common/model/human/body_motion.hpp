@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a part of a fitted body moves in a given direction: the measured v_h of speed and
 // separation monitoring (SSM, ISO 10218-2:2025; formulas: section 2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/model/human/hand_closure.hpp"
 
 #include <algorithm>

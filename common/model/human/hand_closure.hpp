@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the digits of a person's hand close on an object. Own method: the closure of a digit grows
 // in equal steps until a segment touches the object; the step of the contact is halved.
 #pragma once

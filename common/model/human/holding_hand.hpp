@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hand of a person that holds something.
 #pragma once
 

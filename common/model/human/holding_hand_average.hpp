@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the hands of people are on the objects that they hold, averaged.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The human body: REP-155 joints, capsules for distance, cylinder and sphere for the safety cost
 // (chapter Fig. 12a).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shape of a person's hand: a palm and five digits that close. Own method: capsules with the mean
 // lengths of grown people's hands (Greiner 1991), scaled by the stature; one closure a digit, since
 // the joints of a finger flex together.

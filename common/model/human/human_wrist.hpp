@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How comfortable a person's wrist and arm are with the hand in a place (chapter section 3.2.9).
 // Own method: the measure.
 #pragma once

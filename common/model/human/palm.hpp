@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a hand is turned about its fingers, from its knuckles. Own method.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A limb of two bones between two known ends.
 #pragma once
 

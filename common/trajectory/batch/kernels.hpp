@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Eight axes side by side in one register: minimum time, and motions of imposed duration, of the
 // usual problems. What is not usual (starts outside the limits, borders decided by rounding,
 // isolated short durations, humps of the displacement, bad numbers) is marked odd and left to

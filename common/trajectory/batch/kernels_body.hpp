@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one source of the batch kernels, compiled once per register width.
 #pragma once
 

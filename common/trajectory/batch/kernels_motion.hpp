@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batch kernels: evaluation, time scaling, blends at waypoints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batch kernels: minimum time and imposed duration.
 #pragma once
 

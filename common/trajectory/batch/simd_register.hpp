@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One register of doubles, as wide as the unit that includes this is compiled for. Everything is
 // local to that unit: a function of a unit for wide registers must never be the one the linker
 // keeps for the others.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compact approximation of a sampled trajectory by three-segment pieces (chapter section 4.6.2,
 // TR_app), and the time function alpha that slows samples down where axes exceed their limits.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A path as the nodes of a broken line.
 #pragma once
 

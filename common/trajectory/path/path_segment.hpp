@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A straight path segment between two nodes: one rest-to-rest profile for all axes.
 #pragma once
 

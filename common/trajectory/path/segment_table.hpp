@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trajectory laid out for evaluation: all axes split at the same instants, states at the start of
 // each segment precomputed.
 #pragma once

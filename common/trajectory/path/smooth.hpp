@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a broken line to soft motion (chapter section 4.4): point-to-point with a stop at each node,
 // then the stops smoothed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/trajectory/path/waypoint_blend.hpp"
 
 #include <algorithm>

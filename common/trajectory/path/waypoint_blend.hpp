@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A transition between two straight path segments. Whatever the method, an axis moves by step_a *
 // alpha(t) + step_b * beta(t), where alpha brings the first segment from where it is left to its
 // end and beta the second from its beginning to where it is joined: one pair of scalar motions for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // node build.mjs <folder>: bundles the page into it: index.html, page.css, page.js (licences of what it contains: page.js.LEGAL.txt).
 import { build } from "esbuild";
 import { cp, mkdir } from "node:fs/promises";

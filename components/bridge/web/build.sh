@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # build.sh <folder> [--test]: the page, bundled into <folder>, when a source is newer than what is there. --test also installs what its tests need.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasp candidates of the object of the last request, kept up to date for a while. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers which grasps of an object serve: checks of the request, then the reply from the choice.
 #pragma once
 

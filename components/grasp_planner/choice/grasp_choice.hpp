@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the list of an object to the grasps that serve now: this robot, this scene, these people,
 // where the object is to go (chapter sections 3.2.8 - 3.2.9 for one hand).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The work of one choice: grasps checked one by one at the places the object is taken from and put
 // to.
 #pragma once

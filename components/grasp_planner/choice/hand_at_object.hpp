@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hand in a grasp: supports below it, people beside it, what it hides of the object.
 #pragma once
 

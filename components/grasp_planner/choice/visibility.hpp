@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of an object is seen past the hand that holds it. Own method.
 #pragma once
 

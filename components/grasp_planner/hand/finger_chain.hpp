@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One finger of a hand: where its links and fingertip are, and the inverse kinematics of the
 // fingertip's centre. Any tree of joints.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a fingertip can be: a grid of sampled forward kinematics and a hierarchy of spheres inside
 // it (chapter section 3.2.5).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What grasping needs to know of a hand, whatever the object: chains and solids; its workspaces
 // apart, because they take a moment to make.
 #pragma once

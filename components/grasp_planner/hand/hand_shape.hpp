@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hand's own solids for touch tests: slender cylinders, capsules and spheres as capsules
 // (closed forms), the rest through common/collision.
 #pragma once

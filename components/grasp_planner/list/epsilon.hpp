@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ferrari-Canny epsilon, L1: how far the origin is inside the convex hull of the wrenches
 // (formulas: section 3).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions of the grasp frames in the box of the object: uniform, so that no approach is preferred
 // (chapter section 3.2.2).
 #include <algorithm>

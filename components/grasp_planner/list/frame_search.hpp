@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One grasp frame: finger by finger, thumb first, contacts that the finger can reach, push into and
 // open from (chapter section 3.2.6).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a list of grasps can be of a hand and an object.
 #pragma once
 

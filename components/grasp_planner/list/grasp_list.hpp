@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The list of grasps of one hand on one object (chapter sections 3.2.1 - 3.2.7): deterministic,
 // unbiased, resumable.
 #pragma once

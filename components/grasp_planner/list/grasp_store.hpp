@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasp lists on disk: Protobuf, versioned, named by the content they were made from. Safe against
 // two writers and a kill.
 #pragma once

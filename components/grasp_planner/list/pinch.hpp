@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasps of a hand of two pads: a place of the surface for the first pad, the surface opposite for
 // the second, patches of contact on both. Own method. The pads' areas hold what two points could
 // not.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Incremental deterministic grid over all orientations (Yershova et al., chapter section 3.2.2):
 // HEALPix on the sphere times the circle.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An object made ready for grasping: mended mesh, contact points, trees, exact collision form.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hierarchy of axis-aligned boxes over points, split along the longer side down to single points
 // (chapter section 3.2.4).
 #pragma once

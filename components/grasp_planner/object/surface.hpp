@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The object's surface as contact points (chapter section 3.2.4): uniform samples that know their
 // triangle, normal and curvature.
 #pragma once

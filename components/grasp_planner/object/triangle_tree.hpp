@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact touch tests of capsules with a triangle mesh: a tree of boxes over the triangles. Closed
 // forms, no solver.
 #pragma once

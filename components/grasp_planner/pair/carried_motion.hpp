@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configurations of an arm whose hand stays on an object that is carried along a path: what a
 // closed chain of two arms can follow from its start to its end. Own method. Pure.
 #pragma once

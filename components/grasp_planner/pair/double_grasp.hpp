@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Double grasps: two hands on one object at a time, of a robot or of a robot and a person (chapter
 // section 3.2.8).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A load on several hands at once: the grip force of each so that all together bear it. Own method.
 // Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an opened hand backs off from an object, or comes to it along the same path in reverse. Own
 // method.
 #pragma once

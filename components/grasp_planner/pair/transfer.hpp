@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasps that leave a person a good one (chapter section 3.2.9): which grasps of the person's hand
 // go with each of the robot's, and where and how the object is best offered to them.
 #pragma once

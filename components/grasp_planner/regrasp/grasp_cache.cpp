@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/grasp_planner/regrasp/grasp_cache.hpp"
 
 #include "components/grasp_planner/list/grasp_fit.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lists of one hand, made when first asked for, then remembered, and kept on disk when there is
 // a store. For one thread at a time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From one grasp of an object to another, or from one place to another that one grasp does not
 // serve: picking up, passing from hand to hand and putting down, as few times as can be (chapter
 // section 3.2.10).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers which hands to take an object with: the planner's steps with the grasps as messages have
 // them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Regrasp requests that wait for an answer, and the latest reply: asking twice is harmless. Pure.
 #pragma once
 

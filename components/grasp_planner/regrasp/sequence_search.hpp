@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shortest sequence of picks, passes and places for one task.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks one step of a regrasp in detail: configurations of the whole robot that make it.
 #pragma once
 

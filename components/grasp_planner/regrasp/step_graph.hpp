@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The graph of the steps that may be possible, and the cheapest sequence in it. Pure.
 #pragma once
 

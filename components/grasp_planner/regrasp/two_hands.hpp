@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two hands that take an object at once, carry it together and put it down.
 #pragma once
 

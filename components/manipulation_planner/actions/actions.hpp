@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The actions, as coroutines over the parts of the planner. References must outlive the routines.
 #pragma once
 

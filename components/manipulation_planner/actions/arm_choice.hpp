@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which arm of the robot an action uses.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action carry: two hands at once on what is too heavy for one, a closed chain: up, over and
 // down, level meanwhile.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action regrasp without a place where the object is to stand: the object ends in the other
 // hand. Own method: the first hand puts it down within reach of both, the other picks it up there.
 #include <algorithm>

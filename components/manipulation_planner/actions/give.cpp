@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action give.
 #include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/actions/actions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clearance of grasps to the hand of the person who offers the object. The digits of that hand are
 // not observed but assumed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps that several actions have in common: grasps, retreats of the hand.
 #pragma once
 

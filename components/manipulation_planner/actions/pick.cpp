@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action pick.
 #include "components/manipulation_planner/actions/pick.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A part of picking that other actions use.
 #pragma once
 

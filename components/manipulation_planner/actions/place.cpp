@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Putting down: a place is chosen before the object is picked, so that the grasp serves there too
 // (chapter section 3.2.9). Own method: the places.
 #include "components/manipulation_planner/actions/place.hpp"

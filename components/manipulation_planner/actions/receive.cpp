@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action receive: waits for an offer, clears the area for one, and takes the object.
 #include <algorithm>
 #include <cmath>

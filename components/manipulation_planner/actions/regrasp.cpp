@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action regrasp: from one hand to the other, where one alone cannot bring the object to its
 // place (chapter section 3.2.10).
 #include <algorithm>

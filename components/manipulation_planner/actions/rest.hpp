@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motions of the arm to rest and out of the area in which people offer objects.
 #pragma once
 

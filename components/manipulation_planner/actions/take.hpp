@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes an offered object by one grasp: comes to the object clear of the fingers, closes, feels
 // that the giver has released the object, and retreats.
 #pragma once

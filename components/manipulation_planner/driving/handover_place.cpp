@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/manipulation_planner/driving/handover_place.hpp"
 
 #include "common/model/platform.hpp"

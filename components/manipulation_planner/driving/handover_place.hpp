@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a robot can hand over what it holds from a place of its platform. Own method. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the platform may stand so that the arm serves a person or a surface. Own method; the costs
 // of people are those of chapter section 4.1. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands to the hand in use, and how they end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the hand in use holds, as it was taken, and whether it still does. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where an object was during the last seconds, and whether it has come to rest. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The area in which a person offers objects: how far the arm is from this area, and configurations
 // that leave it clear. Own method. Pure.
 #pragma once

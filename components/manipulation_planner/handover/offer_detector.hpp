@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects that a person offers an object, with hysteresis. Pure.
 #pragma once
 

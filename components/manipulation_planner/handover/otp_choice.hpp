@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses the object transfer point for the person as they are now, and again when they move.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where and how to offer an object: object transfer points ranked by comfort, safety, visibility,
 // legibility and the robot's effort (chapter sections 3.2.9 and 4.1.2). Own method: the sum. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hands by which a person may take what is offered, and the one that is
 // ready for it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shift of the exchange point that attention asks for, within bounds. Own method: attention
 // asks relative to the point that it has seen, so a changed point rests before the next shift.
 // Pure.

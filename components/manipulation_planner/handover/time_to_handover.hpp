@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Predicts when an object changes hands. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands to the trajectory controller and their acknowledgement, for the arm in use.
 #pragma once
 

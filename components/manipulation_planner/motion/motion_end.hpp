@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How motions and other parts of an action end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans and executes motions of the arm in use, and of the platform.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks, while a motion runs, what may end it before its goal. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a motion of the arm or the platform is to do, and what ends it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Online replanning: a running motion is checked again and again for a better path for the people
 // as they are now, and for a path around what came into it (chapter sections 2.1 and 4.1.1). The
 // path planner keeps what lies before the switch point; the controller is given its time.

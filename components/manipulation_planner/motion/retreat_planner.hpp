@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Retreat from people that are too near to the arm. Own method. The guard permits such a motion
 // only when every link near a person moves clearly away from the person.
 #pragma once

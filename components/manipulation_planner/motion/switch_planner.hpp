@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motions from a running path onto another one: whether they are free of collision, and whether the
 // other path is worth the switch. Pure; all data are values, for a job.
 #pragma once

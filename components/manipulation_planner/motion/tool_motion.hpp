@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Straight motions of the tool of the arm in use (chapter section 4.6): up, down, toward a grasp
 // and off an object, with the fingers moving along.
 #pragma once

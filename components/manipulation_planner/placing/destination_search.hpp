@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds places for what is held, or will be: by a job, for the scene as it is now.
 #pragma once
 

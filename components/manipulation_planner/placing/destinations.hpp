@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where what is taken by a grasp can be put down: found before the grasp, used by the action that
 // places the object. Pure.
 #pragma once

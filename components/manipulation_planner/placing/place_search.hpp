@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where an object can be put down on a surface, and how the arm gets it there. Own method. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grid of points on top of a box. Pure.
 #pragma once
 

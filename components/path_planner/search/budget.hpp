@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the checks of a problem against its budget, and evaluates the conditions that cancel
 // planning.
 #pragma once

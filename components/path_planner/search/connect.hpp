@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RRT-Connect (Kuffner and LaValle) on flat arrays: checks whole motions in batches, searches the
 // nearest state with SIMD, and grows the smaller tree.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs planners in OMPL's framework: planners of this component as OMPL planners, and OMPL's
 // planners on the space, samples, checks and costs of this component.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts between planned axes and all axes of the robot.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/path_planner/search/search.hpp"
 
 #include "components/path_planner/search/connect.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random search for a first path: RRT-Connect, T-RRT and bidirectional T-RRT of this component;
 // OMPL's RRT, RRT-Connect, T-RRT and BiT-RRT on the space, samples, checks and costs of this
 // component.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The configuration space of one problem: checks and costs of states and motions, with a budget of
 // checks.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smoothing of a path (chapter section 4.1.1): shortcuts and path perturbation, checked in the
 // order price, bounds, collision.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/path_planner/search/transition_connect.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bidirectional T-RRT (Devaurs, Simeon and Cortes; chapter section 4.1.1 for the transition test)
 // on flat arrays: computes the costs along a motion in one batch and follows the motion up to the
 // first state that fails the transition test.

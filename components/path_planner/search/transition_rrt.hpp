@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // T-RRT (chapter section 4.1.1): an RRT whose new states must pass a transition test on their cost.
 #pragma once
 

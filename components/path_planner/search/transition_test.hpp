@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The transition test of T-RRT (chapter section 4.1.1): accepts decreasing costs always and
 // increasing costs with a probability that falls with the increase. The temperature rises after
 // refusals and falls after each accepted increase.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The states of a search tree on flat arrays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/spark/facts/fact_finder.hpp"
 
 #include <algorithm>

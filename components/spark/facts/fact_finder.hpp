@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes facts from geometry: zones, motion, gaze, visibility, reach, support, containment,
 // proximity and handover. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hysteresis of facts: a fact begins at one limit and ends at another, after a dwell time. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the facts of a handover between any two of people and robot: holding, offering, waiting,
 // withdrawing and releasing objects. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adopts people who were lost by a previous SPARK process.
 #include <algorithm>
 

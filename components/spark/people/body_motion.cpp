@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/spark/people/body_motion.hpp"
 
 #include <algorithm>

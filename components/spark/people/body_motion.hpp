@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Estimates the velocities of the joints of one body: the trunk from all of its joints, and every
 // joint relative to the trunk. Pure.
 #pragma once

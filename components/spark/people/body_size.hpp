@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Estimates a person's stature from the distances between joints. Pure.
 #pragma once
 

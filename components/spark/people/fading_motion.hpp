@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Estimates and predicts the motion of a noisy point: position, a decaying velocity and a faster
 // decaying acceleration. Pure.
 #pragma once

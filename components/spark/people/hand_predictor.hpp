@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Predicts a person's hand over the next half second, with its uncertainty. Pure.
 #pragma once
 

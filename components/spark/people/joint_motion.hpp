@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Estimates the velocity of one noisy point: a constant-velocity Kalman filter with increased gain
 // at large innovations. Pure.
 #pragma once

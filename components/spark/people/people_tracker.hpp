@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tracks people: merges bodies from several trackers to persistent people with complete, moving
 // bodies. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The track of one person: the body merged from all sources, its motion and its size. Pure.
 #pragma once
 

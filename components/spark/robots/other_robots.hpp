@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tracks the other robots from their own reports. Pure. Own method.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/spark/robots/robots_link.hpp"
 
 namespace handsel::spark {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports the own robot to the other robots of the domain, and takes their reports.
 #pragma once
 

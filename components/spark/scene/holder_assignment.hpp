@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides the holder of an object from geometry, grip sensors, the load of the robot's hands and
 // the hands of people. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tracking of one object: pose from several observations, with its uncertainty. Pure.
 #pragma once
 

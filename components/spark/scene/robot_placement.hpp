@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of the robot, its links and its hands from its reported state. Pure.
 #pragma once
 

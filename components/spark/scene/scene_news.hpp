@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects changes of a scene since the last publication. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/supervisor/safety/go_sender.hpp"
 
 namespace handsel::supervisor {

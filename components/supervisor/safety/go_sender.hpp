@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends a Go after every change, and repeats it at the Go rate. Pure.
 #pragma once
 

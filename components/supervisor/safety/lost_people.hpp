@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stores the lost people over a restart of SPARK, with the time since their last observation. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides whether the robot may move: the epoch (number of the motion permission) in each Go
 // (architecture: mode machine). Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Latches that prevent motion until a person releases them: pause, fault, stop of the robot, failed
 // storage; and the speed override. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The text form of the durable state, with version and checksum. Pure.
 #pragma once
 

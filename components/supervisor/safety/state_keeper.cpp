@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/supervisor/safety/state_keeper.hpp"
 
 namespace handsel::supervisor {

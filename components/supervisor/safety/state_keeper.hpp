@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides when the durable state is stored and published, and when a person is answered. Pure.
 #pragma once
 

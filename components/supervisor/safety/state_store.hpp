@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stores the durable state in a file in a separate folder. The only part of this component with
 // disk access.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks conditions and effects of planned actions in a state. Pure.
 #pragma once
 

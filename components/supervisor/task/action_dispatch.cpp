@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/supervisor/task/action_dispatch.hpp"
 
 #include <utility>

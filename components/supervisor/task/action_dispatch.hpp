@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends the actions of a task one at a time, each repeated until the planner reports it. Pure.
 #pragma once
 

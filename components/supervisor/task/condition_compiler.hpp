@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditions, effects and costs of a task domain: checked text becomes literals and tests. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A task domain (common/config/schema/task_domain.proto) checked and ready for the planner. Pure.
 #pragma once
 

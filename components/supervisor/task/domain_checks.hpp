@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks and bounds over all tasks of a compiled domain. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Helpers for the text of a task domain: words, lists for people, errors with their place. Pure.
 #pragma once
 

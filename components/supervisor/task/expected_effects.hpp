@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expected effects of the last action before the facts show them. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records failed actions of one task: retries, and whether the task was given up. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Literals and actions of a domain with their variables bound to names of a world. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hierarchical task network planning: a task is decomposed by its methods down to actions; the
 // cheapest decomposition is the plan. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A condition that applies only after it has held for some time. Pure.
 #pragma once
 

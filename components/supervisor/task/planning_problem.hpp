@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The planning problem of a task: its goal in terms of the domain, the world, and excluded actions.
 // Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tracks the execution of a plan and the outcome of previous plans. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a person's goal to a task of the domain, or to the reason of its refusal. Pure.
 #pragma once
 

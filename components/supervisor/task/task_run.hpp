@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs one task from goal to end: planning, execution, monitoring, replanning. Pure.
 #pragma once
 

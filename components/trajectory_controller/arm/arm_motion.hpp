@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm on its path: begins, switches and ends trajectories, stops beside the path in time and
 // rejoins it. A path may move axes of hands and head too, from its begin until the arm rests and
 // the path is over. Pure; no heap in step(), rejoin() and path_at().

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One axis from wherever it is to a target in minimum time, changeable and stoppable at any moment.
 // No heap, noexcept.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Movers of some axes of the robot, within the limits of the robot. Pure, no heap after
 // construction.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which commands are accepted: whether any counts now, and whether a trajectory can be run. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path of the arm is one motion made of the commands accepted: where each begins on it. Pure.
 #pragma once
 

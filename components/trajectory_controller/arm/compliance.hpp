@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm at rest: complies with pushes, and retreats from people who come too near. Pure, no heap
 // after construction.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs along trajectories by time scaling (common/trajectory/time_scaling), switches from one to
 // the next, and checks every step before it is taken. No heap in step() and look(), noexcept.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Brings resting set-points to where the robot is, while it does not follow them: to the robot
 // side's own reference, or to the measured configuration. Pure, no heap after construction.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The axes of a hand: where they move, what they press on, and within what limits. Pure; no heap
 // after construction.
 #pragma once

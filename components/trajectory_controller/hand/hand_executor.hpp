@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the hand does: move, grasp until contact holds, release, release as a person takes the load.
 // Own method. Pure; no heap in step().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All hands of the robot: commands to them, their motion, and the mass they hold. Pure; no heap in
 // step().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pull on a hand: the force beyond the load's own, filtered. Pure, no heap.
 #pragma once
 

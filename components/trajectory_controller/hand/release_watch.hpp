@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When the hand releases its load at the handover, from the force on the hand. Own method. A
 // confident pull loosens the grip, only so far that it still bears the load; a pull that continues,
 // or a load that is gone because the person bears it, opens the hand; a load that comes back closes

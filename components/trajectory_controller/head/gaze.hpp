@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Head angles at which the camera views a point, and whether the head may turn there. Pure.
 #pragma once
 

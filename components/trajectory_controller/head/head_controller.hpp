@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns the head to the gaze target of attention where the head collides with nothing there. Pure;
 // no heap in step().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact of the arm with something unforeseen, from the torques its model does not explain. A
 // steady push never becomes usual: a clamp stays a contact until it is freed. Own method. Pure, no
 // heap after construction.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/trajectory_controller/input/motion_permission.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The permission to move: the Go in force, and why there is none. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The newest sample of people: as capsules for the guard, as points for the hands, with the partner
 // of a handover, whose forearms and hands are exempt from separation. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What live sources of people observe: the union of their boxes. Pure, no heap after construction,
 // noexcept.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/trajectory_controller/input/person_capsules.hpp"
 
 #include <algorithm>

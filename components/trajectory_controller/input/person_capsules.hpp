@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People as capsules ready for many comparisons: made once a HumanState sample, read by the guard
 // every period.
 #pragma once

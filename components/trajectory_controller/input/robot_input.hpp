@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot as its side reports it: newest state, whether it follows set-points, and when
 // set-points have to begin anew at its configuration. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the servos of the robot side hold, as the robot side reports it. Pure.
 #pragma once
 

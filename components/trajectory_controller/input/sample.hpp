@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The newest sample of an input with the time it was taken. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When the newest sample of an input was taken. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is reported of the commands: ids of those accepted and refused last, and why. Pure; no heap
 // in step().
 #pragma once

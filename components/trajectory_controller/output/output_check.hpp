@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The last check of every set-point: inside the limits, with a checked stop behind it, where a live
 // source observes. What fails is replaced by the next set-point of the stop checked before. Pure,
 // no heap, noexcept.

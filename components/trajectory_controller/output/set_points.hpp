@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The set-point of all axes sent last, and the next one while it is made. Pure, no heap after
 // construction.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The last check of a set-point before it is sent: finite, inside the guard limits, continuous with
 // the one before, and still stoppable inside the limits. Own method. Pure, no heap.
 #pragma once

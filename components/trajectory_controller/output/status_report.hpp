@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the controller reports: its status, and what moves now. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast fingers may move where a person can reach the hand: the limit that keeps the stop proof
 // from having to intervene, and SSM (ISO 10218-2:2025) where a person comes toward the hand. Pure,
 // no heap after construction, noexcept. Own method.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which Go is accepted: one issued from the durable safety state, not from an older one, and newer
 // than this controller's start. Pure.
 #pragma once

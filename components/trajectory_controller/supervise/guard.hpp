@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The guard: decides last how fast the running trajectory may continue, from the robot's motion,
 // the people around it and the walls it must not pass. One pure function, no state. Speed and
 // separation after ISO/TS 15066 with the jerk-limited minimum-time stop. Own method: the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Velocities of a robot's links from those of its axes. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the guard, the reach of people and the observed space allow: where the arm is on its path, a
 // little later and about the time of a stop later. One of the three is evaluated in each cycle.
 // Pure, no heap after construction, noexcept.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Normal < Slow < Hold < Stop < Fault, with named causes and the rules that clear them
 // (architecture: section 1; reliability). Pure.
 #pragma once

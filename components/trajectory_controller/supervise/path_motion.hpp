@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion along a path at full speed, and what it takes to stop it at a fraction of that speed.
 // Pure, no heap.
 #pragma once

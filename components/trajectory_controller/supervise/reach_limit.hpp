@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a path may be run so that the stop proof will hold on it: the limit that keeps the proof
 // from having to intervene. Pure, no heap after construction, noexcept. Own method.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast the path is wanted to run: the strictest of what the guard, attention, the supervisor,
 // the forecast and the human-aware cost ahead ask for. Pure, no heap.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a path may gather speed again after people have slowed it. Own method: what people
 // allow depends on the arm's acceleration as well, so a path that gathered speed as fast as the
 // axes can would be slowed again by that alone, over and over. Pure, no heap.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When the arm has to be at rest after it was asked to stop: by the time that its fastest stop,
 // every axis by itself, would take. Pure, no heap.
 #pragma once

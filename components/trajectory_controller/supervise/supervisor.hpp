@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mode of the controller in each cycle, and its cause: what the parts report, as inputs of the
 // mode machine. Pure, no heap in update().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the arm follows its set-points. Pure, no heap.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematics of the arm of a Cartesian motion, on a platform that may move.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Waypoints of a Cartesian motion and their elbow angles.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans one Cartesian motion in steps: waypoints, elbow angles, timing, joints at each period.
 #pragma once
 

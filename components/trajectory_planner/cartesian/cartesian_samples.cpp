@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the joints at every period, and their approximation.
 #include <algorithm>
 #include <cmath>

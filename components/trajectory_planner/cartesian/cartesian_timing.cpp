@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the smoothed trajectory of the active axes.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/trajectory_planner/cartesian/path_check.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the path of a Cartesian motion.
 #pragma once
 

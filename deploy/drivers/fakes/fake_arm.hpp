@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fakes of two makers' controllers, for rehearsal without an arm. They move as commanded, refuse
 // what a real one would refuse, and keep account of what was wrong. Pure: the process beside them
 // speaks UDP and plays the script.

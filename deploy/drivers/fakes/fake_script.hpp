@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What happens to a fake arm, line by line: WHEN WHAT. A line waits for its moment after the line
 // before has happened.
 //   after 0.5     user_stop on       so many seconds after the line before, or the start

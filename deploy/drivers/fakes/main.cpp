@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated controller of an arm's maker: exchanges UDP with a driver at the arm's cycle, plays a
 // script, and reports at its end what it was commanded and what it would have refused.
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an option that counts or measures something must be; the library's own check names the
 // largest number there is when it is not.
 #pragma once

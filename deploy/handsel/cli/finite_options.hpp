@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options that hold finite numbers; the library's own checks take infinities and print the largest
 // number there is.
 #pragma once

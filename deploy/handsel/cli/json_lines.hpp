@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON Lines in, JSON Lines out, as every batch tool of the command does it (docs: a bad line is
 // answered, the rest still runs).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the command talks: results to stdout (JSON Lines when it is no terminal), everything else to
 // stderr.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The subcommands of `handsel`, one function a group. Each adds its subcommands to the application;
 // running one sets exit_code: 0 yes, 1 the answer is no, 2 bad usage or bad input (ConfigError), 3
 // something needed is not there (MissingError).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // handsel distance: contact and distance of pairs of primitive shapes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel grasp ...`: lists of grasps and the stability of contacts, without DDS.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel grasp choose`, `double`, `transfer` and `regrasp`: grasps that serve, and two hands on
 // one object.
 #pragma once

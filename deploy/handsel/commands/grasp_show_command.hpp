@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel grasp show`: pictures of grasps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // handsel model check | info | fk: robot descriptions and URDFs without a running system.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // handsel plan: collision-free paths for problems given as JSON Lines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What would stop the system from working on this machine. Each check examines one thing and says
 // in one sentence what is wrong and in one what to do.
 #pragma once

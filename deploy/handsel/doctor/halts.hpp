@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stamps of a simulated system against this machine's clock. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is wrong with the samples of perception processes, found from those of a few seconds. Pure:
 // arrivals come in, findings go out.
 #pragma once

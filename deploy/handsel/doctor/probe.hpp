@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A piece of work in a forked process of its own: what it prints on stderr is kept, a crash in it
 // is an answer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a trial is evaluated by beside success: safety, reaction time, amount of work (formulas:
 // section 4). Own method: the definitions of these measures.
 #pragma once

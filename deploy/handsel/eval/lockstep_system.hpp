@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole system in one process and virtual time: every box and the simulator on a LocalNetwork,
 // and a passive observer. The bridge is left out: it shows, and nothing listens to it.
 #pragma once

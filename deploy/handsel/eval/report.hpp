@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a performance came to: for machines (JSON) and for people.
 #pragma once
 

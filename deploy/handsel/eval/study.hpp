@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares conditions that were tried with the same seeds: means, paired differences with
 // intervals, ratios, and the files of a study.
 #pragma once

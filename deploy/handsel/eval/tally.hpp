@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table at the end of `handsel eval`: successes with intervals and reasons of failures, of all
 // trials and by what the seeds drew.
 #pragma once

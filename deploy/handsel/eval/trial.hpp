@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One randomised performance of a scenario in lock-step, and many of them side by side.
 #pragma once
 

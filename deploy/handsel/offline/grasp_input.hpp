@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the commands about grasps read, and the list they all begin with.
 #pragma once
 

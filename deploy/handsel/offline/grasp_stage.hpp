@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a robot does before a table: the robot, its hands' lists on an object, the scene. For
 // commands.
 #pragma once

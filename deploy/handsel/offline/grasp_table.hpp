@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hands against objects: how many grasps, how good, how long it took, and why the other frames gave
 // none.
 #pragma once

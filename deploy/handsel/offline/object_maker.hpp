@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a mesh of a user to an object that can be handed over: unit, upright axis, mass, inertia,
 // convex parts, cavity. Own method.
 #pragma once

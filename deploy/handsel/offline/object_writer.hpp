@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes an object as files beside its mesh: description, convex parts, the mesh where it is
 // another than the user's.
 #pragma once

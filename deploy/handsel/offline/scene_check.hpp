@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the simulator would refuse, before anything is started.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots' configurations, obstacles and people in the lines of batch tools. LineError says what is
 // wrong with a line.
 #pragma once

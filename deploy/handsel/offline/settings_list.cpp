@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/handsel/offline/settings_list.hpp"
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of a component as a list, with the source of each value.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/handsel/offline/trajectory_lines.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `handsel trajectory` answers to a line, and trajectories as JSON. LineError says what is
 // wrong with a line.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Three-dimensional pictures: triangles onto coloured points, with depth, light and see-through
 // parts. For people, not for time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of the human-aware costs on the vertical plane through a person's taking arm.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of grasps: the figures of chapter section 3.2, and the pieces others are put together
 // from. Frame of all: the object's.
 #pragma once

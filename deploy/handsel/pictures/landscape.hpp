@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The planners on a landscape of costs over two axes, to look at (chapter Fig. 11).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of two hands on one object, of handing over, and of regrasp sequences. Frame of all: the
 // world.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a robot is along its path, and what the path costs people.
 #pragma once
 

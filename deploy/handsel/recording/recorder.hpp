@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records the samples of a domain into a file, unchanged, with the IDL that defines their meaning.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/handsel/recording/replay.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Feeds what came in from outside, as it was recorded, into a running system once more.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The language of stories: one line, one step (docs/stories.md). Pure: text in, steps out.
 #pragma once
 

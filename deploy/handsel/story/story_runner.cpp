@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "deploy/handsel/story/story_runner.hpp"
 
 #include <signal.h>

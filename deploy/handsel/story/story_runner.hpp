@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a story over real processes: does what its lines say, watches over DDS, and says which line
 // did not come true.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The safety state over the life of a whole system: kept when the system is killed, forgotten when
 // the system ends in order.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts processes, restarts what dies, stops them all. Children never outlive it, however it ends.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the launcher detects hung processes and starts processes again: deploy/config/launcher.txtpb.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a process is alive, starved or hung, found from its heartbeats and from the kernel's
 // accounts of it. Pure: no clock, no files.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What /proc knows about the processes and sockets of this machine.
 #pragma once
 

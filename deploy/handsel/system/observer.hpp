@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Listens to a running system and keeps the newest sample of everything a person asks about, and
 // what changed when.
 #pragma once

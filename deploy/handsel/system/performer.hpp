@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Performs a scenario's tasks through TaskGoal and TaskStatus and watches the simulator's oracle.
 // Works on any bus.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For how long a running process has waited for a processor: /proc.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds hung processes by their heartbeats, has them replaced, and reports for processes that
 // cannot: the launcher's participant on the bus.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which processes make the system, and how each is started.
 #pragma once
 

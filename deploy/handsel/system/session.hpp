@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command's access to a running system: a DDS participant, a passive observer, and Ctrl-C as a
 // flag.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `handsel status` shows, computed from the samples received.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole running system as one object: the domain's lock, the processes and a passive observer.
 #pragma once
 

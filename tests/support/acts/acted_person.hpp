@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person moved by a script of minimum-jerk pieces: feet, facing, hand and gaze. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Labelled sequences of people with an object in front of a robot: the simulator's giver, a
 // scripted person, and a recorded handover. Pure, seeded.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recorded handover of the reference data, with a robot that replaces one of the two people.
 #include <algorithm>
 #include <array>

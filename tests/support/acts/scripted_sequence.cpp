@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A random script of a person with an object, and of a second person beside.
 #include <algorithm>
 #include <cmath>

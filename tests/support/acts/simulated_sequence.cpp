@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulator's giver and partner, without physics: the object moves with the commanded hand.
 #include <cmath>
 #include <optional>

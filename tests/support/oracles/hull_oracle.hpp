@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Convex hull of a set of wrenches by Qhull: an oracle for epsilon and the peer of its benchmark.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ruckig on the same problems, for comparison; only if built (HANDSEL_RUCKIG). Without Eigen: the
 // source file is compiled for the processor of this machine.
 #pragma once

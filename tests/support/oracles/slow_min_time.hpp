@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An independent, slow minimum-time solver for one axis: scans every family of bang-bang profiles
 // for all roots, without assumptions on monotonicity or the sign of the motion. For tests only.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All leaves of a wire sample, each with its name.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command that runs in the background of a test; ended with SIGINT, like Ctrl-C.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A running system, real processes over DDS, that is always busy: it picks up a mug and puts the
 // mug down again.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads deploy/docker-compose.yml in its fixed style: services are indented by two, their entries
 // by four.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A copy of the project's settings with single values changed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commissioning of a real robot: a driver process with a scripted emulation of the maker's
 // controller, the controller process and all other senders, over DDS. No step waits for a time:
 // every step waits for the expected observation.

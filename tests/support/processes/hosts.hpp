@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hosts of one network on this machine: network namespaces with own addresses, joined by a switch.
 // Creating them requires root; the machine's own network is unaffected.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plain HTTP client on a socket, for tests: sends bytes as given, reads until the connection ends
 // or a text has arrived.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A live source of people that observes a room of 10 m by 10 m.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real-time scenarios on a shared machine: a hypervisor may withhold all processors for tens of
 // milliseconds, regardless of priorities. A scenario that fails during such a stall is invalid and
 // runs again.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processor time of work in its thread, independent of other processes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plain WebSocket client on the HTTP client's socket, for tests: handshake, masked frames as
 // given, the server's output as bytes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table of bad files: the content of each, the command that reads the file, and the required
 // refusal.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad JSON Lines on standard input of the batch commands: each line is answered, the exit code
 // is 2.
 #include "tests/system/bad_files/bad_files.hpp"

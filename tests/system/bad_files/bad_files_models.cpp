@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad meshes and bad descriptions of robots, hands and objects.
 #include <algorithm>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad recordings: motion of people (CSV, BVH), samples of a domain (MCAP), lines of trials.
 #include <filesystem>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad scenarios and stories: no process of the system may start.
 #include "tests/system/bad_files/bad_files.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad settings of each component and the files beside them: task domain, calibration, profiles of
 // people, the transport's own XML.
 #include "tests/system/bad_files/bad_files.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every file that a user can name is checked: no bad file crashes or hangs a command or is read
 // only in part. Each row runs the command as shipped. HANDSEL_BIN selects another folder of
 // binaries, such as build/asan/bin; HANDSEL_BAD_FILES selects rows by a part of their names.

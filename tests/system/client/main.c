@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A program outside the build: opens both ends of every topic, then publishes a person until its
  * input ends. */
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mobile robot passes a person in a corridor and behind a doorway at a larger distance than on
 // the shortest path. In lock-step.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mobile robot in lock-step: past a person, to a sideboard and then to a person, also with
 // slipping wheels or a lost localisation.
 #include <gtest/gtest.h>

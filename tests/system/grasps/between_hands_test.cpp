@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot with two arms brings objects to places out of reach of one arm: in lock-step, with the
 // goals of the shipped scenarios.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A full mug is carried upright from the table into the hand of a person: in lock-step.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Executes one planned grasp in the emulated world: straight approach, the controller's hand
 // closing, lift, tilt, shake.
 #pragma once

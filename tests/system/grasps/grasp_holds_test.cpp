@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasps of the planner hold by contact and friction alone: lifted, tilted by 90 degrees, shaken at
 // 2 Hz. Prints the failures.
 #include <cstdlib>

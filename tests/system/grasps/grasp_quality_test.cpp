@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Correlation of the quality of a listed grasp with holding. The Schunk hand alone, in the emulated
 // physics, by contact only: grasps of every decile of quality are closed on the object, lifted,
 // tilted and shaken.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Third-party objects with the Schunk, Allegro and Barrett hands: no list is empty.
 #include <gtest/gtest.h>
 

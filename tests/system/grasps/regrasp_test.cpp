@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Double grasps and regrasp sequences of the robot with two arms on three objects: every step is
 // checked by forward kinematics and FCL, and minimality by an exhaustive search of grasps.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of topics against the nodes, all in one process and virtual time: the actual readers
 // and writers of each topic, and no malformed message.
 #include <gtest/gtest.h>

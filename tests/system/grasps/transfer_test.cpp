@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Twenty transfers of the project's robot and objects to a person in four places, each checked by
 // the models' kinematics, FCL and a reconstruction of the person's arm from its joints.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two hands on the running system, all components in lock-step with the simulator: pick-and-place
 // goals without a feasible grasp of one hand, and a tray too heavy for one hand. HANDSEL_GOALS:
 // some of the five goals, e.g. "3 4"; HANDSEL_SEEDS: of the tray, e.g. "1 2".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Straight motions of the tool in the running system: to a grasp with the fingers closing during
 // the motion, up, down and away from the object (chapter section 4.6). In lock-step.
 #include <gtest/gtest.h>

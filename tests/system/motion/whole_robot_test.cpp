@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motions of the whole robot: tool, elbow, hand and head in one trajectory (chapter section 4.6.1),
 // planned by the trajectory planner and executed by the controller of the running system in
 // lock-step.

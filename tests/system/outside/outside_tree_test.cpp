@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of a user outside the tree: settings over the shipped ones, a search path, and the
 // arguments of the processes.
 #include <gmock/gmock.h>

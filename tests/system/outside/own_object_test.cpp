@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A user's object outside the tree, from a mesh in millimetres written by this test: described,
 // grasped and given.
 #include <gmock/gmock.h>

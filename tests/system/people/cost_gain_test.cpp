@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The attentional gain of the human-aware costs reaches the planners: near a person the same motion
 // becomes slower and paths keep a larger clearance. The whole system in lock-step, twice with the
 // same person, once with the gain 1.

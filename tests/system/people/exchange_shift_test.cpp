@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A receiver holds a hand beside the planned offer: the exchange point follows the hand by the
 // attentional shift, during the motion and while the robot waits. The whole system in lock-step,
 // and again with a manipulation planner that ignores the shift.

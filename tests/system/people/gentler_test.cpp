@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same motion near people: velocity, acceleration and jerk fall with the distance of a person
 // (chapter section 2.1). The whole system in lock-step; the path is requested directly.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The adaptive clock by margin in the running system: AVOID samples passing people at the period of
 // the margin, and during a longer period nobody is nearer than the margin permits. The whole system
 // in lock-step; distances of the simulator.

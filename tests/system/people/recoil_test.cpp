@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm recoils from a person who steps in at 1.6 m/s: a larger distance than without recoil, in
 // lock-step (HANDSEL_RUNS: trials of each).
 #include <gtest/gtest.h>

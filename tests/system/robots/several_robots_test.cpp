@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several robots: in lock-step past a robot that reaches in between object and person, and two
 // named systems in one DDS domain, each of which observes the robot of the other.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fixture that runs the same bus test over DDS and in virtual time.
 #pragma once
 

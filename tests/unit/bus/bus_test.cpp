@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of every bus, tested on both implementations.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Malformed RTPS datagrams at the ports of running participants: they continue with constant
 // memory.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Long lists and malformed elements: an observation is shortened and counted, not dropped; a
 // command is dropped.
 #include <gtest/gtest.h>

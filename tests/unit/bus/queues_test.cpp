@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Queues of requests and goals: duplicates are harmless, newer replaces older where configured, and
 // every queue is bounded.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings: written samples are read, also from damaged files; a replay gives the recorded
 // samples with present time.
 #include <gmock/gmock.h>

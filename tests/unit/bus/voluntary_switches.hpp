@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Number of voluntary context switches of the calling thread.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The message validation layer: every message converted in both directions, every field damaged,
 // every IDL field documented.
 #include <gtest/gtest.h>

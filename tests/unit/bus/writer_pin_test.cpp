@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rule that selects the pinned writer of a topic.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // User settings over the shipped ones: files, values of the command line, files on the search path.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variants of a scenario are drawn by the seed, equally in every process; an error in any variant
 // is refused with its line.
 #include "common/config/scenario.hpp"

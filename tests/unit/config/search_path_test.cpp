@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Searches names in the folders of the user before those of the project.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shipped settings files contain meaning and unit of each key as a comment, and a document
 // contains the table of each file. Both follow from the schema: HANDSEL_WRITE_SETTINGS=1 writes
 // them.

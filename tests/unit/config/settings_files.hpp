@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every settings file of the system, as its schema describes it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each settings file: the schema of each field, and the refusals of the reader.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

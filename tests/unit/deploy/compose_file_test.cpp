@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // deploy/docker-compose.yml and deploy/Dockerfile against the list of processes, the table of
 // topics and the files they name.
 #include <gmock/gmock.h>

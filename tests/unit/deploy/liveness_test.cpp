@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Alive, starved or hung: the launcher's conclusion from heartbeats and kernel data.
 #include "deploy/handsel/system/liveness.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The process watch of the launcher: processes without heartbeats are replaced, and their health is
 // reported on their behalf while they do not run.
 #include "deploy/handsel/system/process_watch.hpp"

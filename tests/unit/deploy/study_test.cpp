@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditions with the same seeds are paired, and distinguished only if they differ.
 #include "deploy/handsel/eval/study.hpp"
 

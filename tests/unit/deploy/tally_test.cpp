@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of `handsel eval`: each trial counts once in each of its groups.
 #include "deploy/handsel/eval/tally.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes as cells and as convex parts, compared with shapes whose volumes are known.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two arms joined by a held object: along random motions of the first arm, the tip of the second
 // keeps its grasp, by forward kinematics.
 #include "components/trajectory_planner/closed_chain.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pairs of grasps, checked on the hands' link shapes by forward kinematics and FCL, independent of
 // the tests of the pairs.
 #include <gtest/gtest.h>

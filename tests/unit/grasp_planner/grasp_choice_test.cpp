@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasps for a robot in a scene, and lists on disk.
 #include <gtest/gtest.h>
 

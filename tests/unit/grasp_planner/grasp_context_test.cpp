@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasps chosen for the next step: goal of the object, visibility for a person, places of the
 // platform. Checked on the whole robot's links with FCL at configurations found here.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hands known by description alone, and imperfect meshes: the properties of a listed grasp hold for
 // fingers with any number of axes.
 #include <gmock/gmock.h>

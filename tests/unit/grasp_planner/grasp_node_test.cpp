@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The grasp planner's node on LocalBus: requests, their repetition, refusals, candidates.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of grasps: near parts hide far ones, transparent parts do not, and a figure shows its
 // subject.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasp lists on disk under two writers that are killed at random times, and lists that are
 // continued.
 #include <gtest/gtest.h>

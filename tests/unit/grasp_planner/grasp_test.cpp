@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of the grasp planner: orientations, surface points, trees, curvature.
 #include <gtest/gtest.h>
 

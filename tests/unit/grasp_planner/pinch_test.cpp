@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasp lists of the parallel gripper on the project's objects: every property of a listed grasp,
 // checked independently.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The action that drives the platform, with emulated planners and an emulated controller.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

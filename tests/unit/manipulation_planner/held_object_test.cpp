@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The object in the hand, with the real robot and mug.
 #include <cstdlib>
 #include <filesystem>

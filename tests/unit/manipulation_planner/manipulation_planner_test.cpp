@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/manipulation_planner/placing/place_search.hpp"
 #include "tests/unit/manipulation_planner/manipulation_rig.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The manipulation planner with emulated planners and an emulated controller.
 #pragma once
 

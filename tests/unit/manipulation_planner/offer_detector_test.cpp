@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/manipulation_planner/handover/offer_detector.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/manipulation_planner/motion/online_replanner.hpp"
 
 #include "components/manipulation_planner/parts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Search of object transfer points: place and pose of a handover.
 #include "components/manipulation_planner/handover/otp_search.hpp"
 

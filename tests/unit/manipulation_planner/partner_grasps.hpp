@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grasps of a person's hands about an upright object.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Receiving: an offered object is taken, a withdrawn object is not pursued.
 #include <algorithm>
 #include <memory>

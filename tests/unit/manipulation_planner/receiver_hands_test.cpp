@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The planner's choice of the receiver's hand, from the choice of the grasp to the offer.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Search of platform places with people and surfaces in reach.
 #include <gtest/gtest.h>
 

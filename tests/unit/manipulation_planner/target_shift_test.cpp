@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The attentional shift of the exchange point.
 #include "components/manipulation_planner/handover/target_shift.hpp"
 

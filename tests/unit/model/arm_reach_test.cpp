@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The computed reach of an arm against distances of sampled configurations.
 #include "common/model/arm_reach.hpp"
 

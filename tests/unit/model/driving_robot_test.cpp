@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mobile robot: its description extends another one, and place and heading of the platform are
 // its last axes.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hand of a person on an object, averaged over noisy samples.
 #include "common/model/human/holding_hand.hpp"
 

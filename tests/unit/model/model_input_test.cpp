@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refused descriptions, with file, line and reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cartesian planning for Jido beside its table with the elbow angle active: random configurations
 // to reachable tool poses. Results are checked by forward kinematics and an independent exact
 // collision check. HANDSEL_QUERIES: number of queries; the label full plans 100.

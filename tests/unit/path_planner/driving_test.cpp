@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mobile platform, alone and with its arm: the model, human-aware costs, paths, and requests on
 // LocalBus.
 #include <cstdlib>

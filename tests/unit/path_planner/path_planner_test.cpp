@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/PathGeometric.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests of every kind at the path planner on LocalBus: configurations, poses, regions, upright,
 // Cartesian, beside a head; and invalid ones.
 #include <cstdlib>

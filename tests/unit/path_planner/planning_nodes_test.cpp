@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nodes of path planner, collision checker and cost map on LocalBus.
 #include <cstdlib>
 #include <filesystem>

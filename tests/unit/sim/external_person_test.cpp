@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An external person: follows the observations, takes an object offered near the hand, pulls with
 // limited force, keeps the object.
 #include <gtest/gtest.h>

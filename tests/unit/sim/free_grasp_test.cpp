@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places at which a person can hold an object that a robot holds.
 #include <gtest/gtest.h>
 

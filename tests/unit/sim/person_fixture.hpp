@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People without the emulated world: an offered object and the passing of time.
 #pragma once
 

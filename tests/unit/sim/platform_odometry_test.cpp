@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wheel odometry of a platform and its localisation.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded people: third-party and own BVH and CSV files, bodies of other sizes, and invalid files.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places and supports of a scenario's objects that are drawn by the seed.
 #include "sim/scene/scene_setup.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Specified errors of the emulated sensors, measured on their stream.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small world for tests: Jido at rest, a mug on a column between its fingers, and optionally a
 // person in front.
 #pragma once

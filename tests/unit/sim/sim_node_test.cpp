@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulator as a process: set-points that arrive too late.
 #include <gtest/gtest.h>
 

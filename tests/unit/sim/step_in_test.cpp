@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person who walks up to the robot without avoiding it: the walk, and the refusal of invalid
 // walks.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A restarted SPARK adopts the lost people of the previous process.
 #include <gtest/gtest.h>
 

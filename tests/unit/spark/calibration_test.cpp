@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration of sources: invalid files, and points converted to the world frame.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

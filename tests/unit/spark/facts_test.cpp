@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facts: each with geometry that makes it true or false, the hysteresis between, and a real
 // handover.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Other robots in SPARK: extrapolated poses, the nearest ones, silent ones.
 #include "components/spark/robots/other_robots.hpp"
 

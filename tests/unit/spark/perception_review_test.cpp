@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handsel doctor --perception`: no finding for correct samples, each fault by its name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

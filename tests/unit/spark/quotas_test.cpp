@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quotas of SPARK: the nearest and most relevant elements are kept, the rest is counted, memory
 // does not grow with ever-new names.
 #include <gmock/gmock.h>

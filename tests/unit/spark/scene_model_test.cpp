@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Objects in SPARK: unobserved, in hands, reported by two sources, under exchanged names, unknown.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SPARK on a LocalBus: inputs from sources and operators, and outputs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

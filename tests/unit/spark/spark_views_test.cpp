@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live sources of people: the age of their samples, and repeated samples.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

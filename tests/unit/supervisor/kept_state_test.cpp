@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stored state of a system: none after an orderly end, its latches after a kill.
 #include "deploy/handsel/system/kept_state.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The latches of the supervisor, their text form and their file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

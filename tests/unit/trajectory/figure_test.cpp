@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws docs/figures/corner_127.svg: three points, two straight segments at 127 degrees, V 0.1 m/s,
 // A 0.3 m/s^2, J 0.9 m/s^3 (chapter figure 18). The file in the documentation must be identical;
 // HANDSEL_WRITE_FIGURES=1 writes it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers of `handsel trajectory` to valid and invalid lines; trajectories as JSON and on the wire.
 #include "deploy/handsel/offline/trajectory_lines.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Complete trajectories of an arm over DDS: below 64 kB, one datagram.
 #include <cmath>
 #include <cstdio>

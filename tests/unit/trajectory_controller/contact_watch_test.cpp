@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detection of contact, and that a steady push remains a contact.
 #include "components/trajectory_controller/input/contact_watch.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arm, hands, head and set-points of the controller: each part alone.
 #include <gtest/gtest.h>
 

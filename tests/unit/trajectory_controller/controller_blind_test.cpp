@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No arm moves blind: the arm does not enter a space without a live source, and without any live
 // source the arm stops.
 #include <gmock/gmock.h>

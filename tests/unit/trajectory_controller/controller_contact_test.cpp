@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pushes on the arm, moving and at rest.
 #include "components/trajectory_controller/controller.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs and reports of the controller: each part alone.
 #include <gtest/gtest.h>
 

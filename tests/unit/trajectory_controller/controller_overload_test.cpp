@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Controller and robot side together, with a gap in the set-points: the robot side stops by itself,
 // and both continue in order.
 #include <gtest/gtest.h>

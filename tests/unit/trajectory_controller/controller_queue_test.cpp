@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Successive trajectories: joined in motion, queued, refused.
 #include "components/trajectory_controller/controller.hpp"
 

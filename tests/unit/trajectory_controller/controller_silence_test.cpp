@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Silent senders: the resulting mode, and how motion continues.
 #include "components/trajectory_controller/controller.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speed of the arm, its causes, and the reports of both.
 #include "components/trajectory_controller/controller.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trajectories that move arm, hand and head together.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

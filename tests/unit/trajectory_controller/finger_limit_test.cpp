@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fingers that move beside a face: no set-point is replaced by one of a stop, and the arm stays on
 // its path.
 #include "components/trajectory_controller/supervise/finger_limit.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The head: its gaze target, and its clearance to the arm.
 #include "components/trajectory_controller/controller.hpp"
 

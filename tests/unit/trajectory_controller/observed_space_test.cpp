@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The union of the boxes of live views.
 #include "components/trajectory_controller/input/observed_space.hpp"
 

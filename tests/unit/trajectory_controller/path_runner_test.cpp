@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An interrupted path is rejoined near the point of interruption.
 #include "components/trajectory_controller/arm/path_runner.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rise of the speed factor after people have slowed the arm.
 #include "components/trajectory_controller/supervise/speed_rise.hpp"
 

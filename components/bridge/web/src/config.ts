@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values that the page cannot read from DDS: /config.json of the bridge.
 export interface Config {
   robot: string;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes CDR bytes to objects by the IDL text of their channel: the same for live and recorded
 // samples.
 import { IDLMessageDefinition, parseIDL } from "@foxglove/omgidl-parser";

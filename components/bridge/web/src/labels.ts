@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Short texts over the 3-D view, placed without overlap.
 import * as THREE from "three";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The connection to the bridge: subscribes, keeps the newest sample of each topic, decodes only
 // used topics, reconnects.
 import { Channel, FoxgloveClient, MessageData, SubscriptionId } from "@foxglove/ws-protocol";

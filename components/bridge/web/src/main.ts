@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page: shows the newest samples in tables and a 3-D view. Draws on change, at most 30 times a
 // second.
 import { Config, loadConfig } from "./config";

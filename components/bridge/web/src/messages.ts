@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fields of messages that the page uses (units: idl/). The wire's schema defines the content of
 // a sample.
 export interface Vector3 { x: number; y: number; z: number }

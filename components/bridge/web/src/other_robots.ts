@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Other robots nearby, as the capsules that they report.
 import * as THREE from "three";
 import { OtherRobot } from "./messages";

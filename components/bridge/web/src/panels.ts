@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tables beside the 3-D view.
 import { Link } from "./link";
 import { nearness } from "./nearness";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People as rounded limbs between their REP-155 joints, with their gaze.
 import * as THREE from "three";
 import { Person } from "./messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot from its URDF, and the future path of its tool.
 import * as THREE from "three";
 import URDFLoader, { URDFRobot } from "urdf-loader";

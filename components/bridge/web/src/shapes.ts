@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small three.js parts of several drawn objects.
 import * as THREE from "three";
 import { Pose, Vector3 } from "./messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions along a jerk-limited trajectory: each axis is a series of cubic segments.
 import { AxisTrajectory } from "./messages";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a link may touch a body part: limits of force and energy at a contact (ISO 10218-2:2025,
 // which has taken in ISO/TS 15066). Pure.
 #pragma once

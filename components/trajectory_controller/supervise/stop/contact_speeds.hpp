@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast the robot may touch each body region: as an arm, and with its fingers. Pure, no heap.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks whether all people are so far that none can reach the robot within a stop, from distances
 // measured once for each sample of people. Pure, no heap after construction, noexcept.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The links that the axes move, reduced to what fast repeated kinematics needs: one frame a moving
 // joint, capsules fixed to it. Pure.
 #pragma once

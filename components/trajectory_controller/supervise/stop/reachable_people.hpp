@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where parts of people can be by a given time: their measured state as start, speed and
 // acceleration bounded. Pure.
 #pragma once

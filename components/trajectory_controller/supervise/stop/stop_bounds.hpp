@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds of the travel and the speed of every link in two stops. Pure, no heap after construction,
 // noexcept.
 #pragma once

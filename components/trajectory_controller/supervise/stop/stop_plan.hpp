@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stop in which every axis comes to rest by itself as fast as it can: where and how fast each
 // axis is at any time of it. Pure, no heap after construction, noexcept.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proof that a set-point can be followed by a stop that harms nobody: every link is at rest, or
 // slow enough for a contact, wherever a person can be by then. Two stops are checked: the
 // controller's own, at once, and the robot side's, after set-points have failed; in each of them

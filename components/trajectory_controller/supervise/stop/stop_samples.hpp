@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Links of the robot at several times of a stop, with their speeds. Pure, no heap after
 // construction, noexcept.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the arm can be within its stop, and whether a live source of people observes that: no arm
 // moves blind. Pure, no heap after construction, noexcept. Own method.
 #pragma once
