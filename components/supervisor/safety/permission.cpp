@@ -59,10 +59,11 @@ void Permission::withdraw(const std::string& reason) {
   go_.reason = reason;
 }
 
-/// Returns whether a drive stopped by a person or its own reflex waits for an acknowledgement,
-/// which must precede the permission.
+/// Lets a drive continue that a person or its own reflex has stopped; the permission to move comes
+/// after the resume delay.
 void Permission::acknowledge_drives() {
   ++go_.epoch;
+  go_.allowed = false;
   go_.acknowledge = true;
   go_.reason = "a person lets the drives continue";
   acknowledgement_ = Acknowledgement::none;

@@ -569,10 +569,12 @@ TEST(Permission, a_persons_word_reaches_a_drive_that_waits_for_it_and_permission
   rig.run(0.12);
   EXPECT_EQ(rig.go.epoch, epoch + 1);
   EXPECT_TRUE(rig.go.acknowledge);
+  EXPECT_FALSE(rig.go.allowed) << "only after the resume delay";
   rig.execution.mode = Mode::hold;
   rig.execution.causes = 1U << static_cast<unsigned>(Cause::no_go);
   rig.run(0.3);
   EXPECT_EQ(rig.go.epoch, epoch + 2);
+  EXPECT_TRUE(rig.go.allowed);
   EXPECT_FALSE(rig.go.acknowledge);
 }
 
