@@ -37,8 +37,8 @@ struct LeftOutElements {
   std::string why;        ///< of the first one: field and what is wrong, one sentence
 };
 
-/// Conversion of one message between its domain struct and its IDL struct. Both are passed as
-/// untyped pointers to the right struct.
+/// Converts one message between domain struct and IDL struct, passed as untyped pointers. Types of
+/// the table are singletons (message_type()); others, e.g. of ros2_type(), belong to their maker.
 class MessageType {
  public:
   virtual ~MessageType() = default;
@@ -58,9 +58,8 @@ class MessageType {
     LeftOutElements left_out;
     return from_wire(wire, message, why, left_out);
   }
-  /// As above. In an observation, malformed elements of a list are left out singly and counted
-  /// (idl/README.md); every other message is accepted or
-  /// rejected whole.
+  /// As above. Malformed elements of HumanObservation and ObjectObservation are left out singly and
+  /// added to `left_out` (idl/README.md); every other message is accepted or rejected whole.
   virtual bool from_wire(const void* wire, void* message, std::string& why,
                          LeftOutElements& left_out) const = 0;
   /// Returns the stamp of an IDL sample [ns]; 0: unknown.
@@ -73,8 +72,8 @@ class MessageType {
   virtual std::string to_json(const void* message) const = 0;
   /// Calls with every leaf value of the sample.
   virtual void leaves(void* wire, const std::function<void(const WireLeaf&)>& visit) const = 0;
-  /// Fills in a valid sample for tests, with two elements per list or, if `full`, every list and
-  /// text at its bound.
+  /// Fills in a valid sample for tests, with two elements per list (one per list of bytes) or, if
+  /// `full`, every list and text at its bound.
   virtual void fill(void* wire, bool full) const = 0;
 
   /// Returns a zeroed IDL sample whose deleter also frees its buffers.

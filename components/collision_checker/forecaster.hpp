@@ -106,7 +106,8 @@ class Forecaster {
   AtRest rest_;
 };
 
-/// Checks the states of a query in order. `clearance` is over the free ones.
+/// Checks all states of a query; one of the wrong size is not free. `clearance`: min distance of
+/// the free ones to scene and people, at most 5 m; infinity: no free one.
 StateVerdict check_states(const RobotModel& robot, CollisionWorld& world, const StateQuery& query);
 
 }  // namespace handsel::collision_checker

@@ -17,7 +17,8 @@ struct CartesianProblem {
   std::vector<int> also;  ///< further active axes (hand, head)
   Vector also_goal;       ///< goal of the further axes [rad]
   std::uint64_t seed{1};  ///< seed of the random samples; the result depends on it alone
-  /// Max number of checked states; each solution of the inverse kinematics counts as one.
+  /// Max number of checked states, solutions of the inverse kinematics and search steps; exhausted
+  /// without a path: not solved, while shortening: the path so far.
   std::uint64_t budget{100000};
 };
 
@@ -27,9 +28,10 @@ struct CartesianSettings {
   double range{0.6};  ///< max length of an edge of the tree, in this distance [rad]
   /// Step of the inverse kinematics along a path segment, in this distance [rad].
   double step{0.04};
-  /// Max motion of a joint between two samples; a larger one is a jump and is refused [rad].
+  /// Max motion of an arm joint between two samples [rad]; at a larger one the step is halved up to
+  /// four times, then the segment is refused as a jump.
   double largest_step{0.1};
-  double goal_bias{0.1};             ///< fraction of samples that are goals
+  double goal_bias{0.1};             ///< fraction of targets that are nodes of the other tree
   int goal_elbows{48};               ///< number of elbow angles tried at the goal
   int shortcuts{60};                 ///< number of shortcuts tried on a found path
   double initial_temperature{0.02};  ///< of the transition test near people (T-RRT)
@@ -60,7 +62,8 @@ struct CartesianResult {
 
 /// Plans a path. Tries goals on the branch of the start first, then changes to other branches in
 /// joint space. Grows two trees: RRT-Connect without people, with the transition test of T-RRT near
-/// people. The arm must consist of shoulder, elbow and wrist (ik::SrsArm). A path segment turns the
+/// people. An arm that is no ik::SrsArm, wrong sizes, an axis goal beyond its limits or a start in
+/// collision: not solved, with a reason. A path segment turns the
 /// tool about one axis by an angle below pi; at pi the axis is undefined and there is no path
 /// segment.
 CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost,

@@ -13,8 +13,8 @@ namespace handsel::ros2_lane {
 
 class TfTree {
  public:
-  /// A static frame does not grow old. At 4096 frames those not sent for ten seconds are forgotten;
-  /// while there is no room, false.
+  /// Stores or replaces a frame. For a new one beyond 4096 forgets those not sent for 10 s, at most
+  /// once a second and never static ones; returns false if there is still no room.
   bool set(const ros2::Transform&, TimePoint arrival, bool is_static);
 
   struct Place {
@@ -23,7 +23,8 @@ class TfTree {
     /// Of the oldest transform up to the root that is not static; max when all is.
     TimePoint arrival{};
   };
-  /// Returns a frame's place, or nullopt when its parents do not lead to the root within 64 steps.
+  /// Returns a frame's place of any age, identity for the root itself; nullopt when its parents do
+  /// not lead to the root in fewer than 64 steps.
   std::optional<Place> find(const std::string& frame, const std::string& root) const;
 
  private:

@@ -22,7 +22,8 @@ struct TrajectoryOutbox {
   std::optional<StateQuery> query;           ///< to the collision checker
   std::optional<TrajectoryRequest> request;  ///< to the trajectory planner
   std::optional<TrajectoryCommand> command;  ///< to the trajectory controller
-  /// The controller has taken or refused it: others may command again.
+  /// The controller has the command, or the motion was refused before: the writer is released, so
+  /// that the manipulation planner may command again.
   bool command_done{};
   std::vector<std::string> results;  ///< one sentence each
 };
@@ -39,7 +40,7 @@ class TrajectoryExecutor {
                      std::shared_ptr<const RobotModel> robot, std::uint64_t client);
 
   /// Begins the motion asked for, or refuses it with a sentence in `out`; without points stops the
-  /// running one.
+  /// running one, or refuses one that has not begun.
   void on(const ros2::JointTrajectory&, TimePoint now, TrajectoryOutbox& out);
   /// Takes the newest status of the task's action; while it runs, motions are refused.
   void on(const ActionStatus& status) { activity_.on(status); }
@@ -51,7 +52,8 @@ class TrajectoryExecutor {
   void on(const StateVerdict&);
   /// Takes the planner's answer; one to another request is left out.
   void on(const TrajectoryReply&);
-  /// To be called often; repeats what is not answered.
+  /// Continues the motion; to be called often. Repeats a message without answer every 0.5 s, and
+  /// refuses the motion after 5 s without answer to one message.
   void step(TimePoint now, TrajectoryOutbox& out);
 
  private:

@@ -31,7 +31,7 @@ struct Touch {
   double normal_force{};                ///< magnitude [N]
   Vector3 force_on_a{Vector3::Zero()};  ///< with friction, world [N]
   double friction{};                    ///< Coulomb coefficient of the pair
-  double torsion{};                     ///< torque about the normal per normal force [m]
+  double torsion{};                     ///< max torque about the normal per normal force [m]
 };
 
 /// Replaces `out` by the contacts closer than `reach` of the last step of length dt.

@@ -20,7 +20,8 @@ struct GraspList {
 /// Asks for at most `max_grasps` grasps of an object. `for_human`: who will get it, empty: nobody.
 Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
                               std::uint32_t max_grasps);
-/// Asks for grasps of an object, from other places of the platform where none is within reach.
+/// Asks for grasps of an object; where none is within reach, for grasps from other places of the
+/// platform, each in Grasp::platform. Does not drive.
 Routine<GraspList> ask_grasps_anywhere(Parts& parts, const std::string& object);
 /// Returns the grasp for where the object is now; nullopt: the arm does not reach it.
 std::optional<Grasp> grasp_now(const Parts& parts, const std::string& object, const Grasp& grasp);

@@ -37,18 +37,22 @@ class HeldObject {
   /// Returns the grasp of the hand in use; nullopt: unknown.
   const std::optional<Grasp>& grasp() const { return grasp_; }
 
-  /// Returns whether an object is where the hand has hold of it.
+  /// Returns whether `object` is what is held and its position within max_slip of its place in the
+  /// hand.
   bool is_in_hand(const SceneObject& object) const;
   /// Returns whether the scene has the object in the hand in use.
   bool is_held_by_hand(const std::string& object) const;
-  /// Returns whether a hand of the person is at the object.
+  /// Returns whether a hand of the person is within taken_range of the object's surface, or without
+  /// a model within person_hand_range of its origin; false if either is unknown.
   bool is_at_hand_of(const std::string& person, const std::string& object) const;
-  /// Returns whether a hand of the person is at what is held; false for an empty id.
+  /// Returns whether a hand of the person is at what is held; false for an empty `person` and while
+  /// a surface holds the object.
   bool is_taken_by(const std::string& person) const;
 
   /// Observes, each step, whether what is held is still in the hand.
   void update(TimePoint now);
-  /// Returns whether what was held has left the hand for a while and no person has it.
+  /// Returns whether update() has found what is held out of the hand, and near no person's hand,
+  /// for longer than slip_time. In the hand counts what the scene lacks or has in any hand.
   bool has_slipped(TimePoint now) const;
 
  private:

@@ -23,14 +23,15 @@ struct RobotGrip {
 
 /// An object with the stored results of the observations.
 struct ObjectTrack {
-  SceneObject object;                     ///< estimate; `age` as of the last scene
-  std::size_t robot_hand{};               ///< index of the last robot hand that held the object
-  Pose T_palm_object{Pose::Identity()};   ///< pose in the palm frame of that hand
+  SceneObject object;        ///< estimate; `age` as of the last scene
+  std::size_t robot_hand{};  ///< index of the last robot hand that held the object
+  /// Pose in the palm frame of `robot_hand` at the newest sample, held or not.
+  Pose T_palm_object{Pose::Identity()};
   std::optional<RobotGrip> robot_grip;    ///< grasp of that hand; nullopt: none so far
   TimePoint seen{};                       ///< capture of the newest sample
   int samples{};                          ///< number of averaged samples; 0: none
   Vector3 last_seen_at{Vector3::Zero()};  ///< position of the newest sample, world [m]
-  std::vector<ObservedGrip> grips;        ///< grips of the newest sample
+  std::vector<ObservedGrip> grips;        ///< of the newest sample, by people or the robot
   std::string source;                     ///< name of the selected source
   double spread{};                        ///< distance between the selected source and another [m]
   TimePoint spread_until{};               ///< end of `spread`
@@ -54,16 +55,16 @@ bool select_shape(ObservedObject& observed, const ObjectLibrary& library);
 void correct_swapped_ids(std::vector<ObservedObject>& observed, const ObjectTracks& tracks,
                          TimePoint at, const settings::SparkSettings& settings);
 
-/// Returns whether a sample is used. One source is selected at a time, so that an object at rest
-/// does not alternate between two sources; the distance of another source is `spread` for
-/// doubt_time.
+/// Returns whether a sample is used: of the selected source, or of another, then selected, after
+/// source_timeout. Else a distance above source_agreement is `spread` for doubt_time.
 bool accept_source(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
                    TimePoint seen, const settings::SparkSettings& settings);
-/// Adds a sample to the estimate. A jump adds to the uncertainty for doubt_time.
+/// Adds a sample that accept_source() accepts. After a jump the uncertainty is at least the length
+/// of the jump for doubt_time.
 void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
                 const settings::SparkSettings& settings);
-/// Computes the uncertainty of an unobserved object from the distance that it may have moved, up to
-/// a limit of the settings. For an object in a person's hand that person's inflation is added.
+/// Updates the uncertainty: drift while unseen, up to unseen_most and 0 in the robot's hand, plus
+/// the inflation of a person who holds it, plus `spread`; at least `jump`.
 void update_uncertainty(ObjectTrack& track, const HumanState& people, TimePoint now,
                         const settings::SparkSettings& settings);
 

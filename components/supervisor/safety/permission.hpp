@@ -38,8 +38,8 @@ class Permission {
   void on(const ExecutionStatus& status, TimePoint arrival);
   /// Suspends or resumes the task by attention; a suspended task has no permission.
   void suspend(bool suspended) { suspended_ = suspended; }
-  /// Notes that a person has acknowledged the reported fault or stop, if any; the next Go after the
-  /// end of its cause contains the acknowledgement.
+  /// Notes that a person has acknowledged the reported fault or stopped drives; lapses when that
+  /// ends. Contained in the next Go for drives, in the Go that permits motion again for a fault.
   void acknowledge();
   /// Returns the epoch at which the last fault was acknowledged; fault reports of older epochs are
   /// outdated. Returns the max number before that Go is sent.
@@ -49,8 +49,8 @@ class Permission {
   /// the controller has the present Go, which permits motion, or waits in its first report after a
   /// start whose state permitted motion.
   bool missed_stop(bool permitted_at_start) const;
-  /// Updates the permission and returns the present Go. Grants a new epoch only after the
-  /// conditions have held for the configured resume delay.
+  /// Updates and returns the present Go. Grants motion after the conditions have held for the
+  /// resume delay; an acknowledgement of stopped drives has an epoch of its own, without delay.
   const Go& step(const PermissionState& state, TimePoint now);
   /// Returns the missing required components; empty: none.
   const std::vector<std::string>& missing() const { return missing_; }

@@ -41,7 +41,8 @@ class StateKeeper {
   /// system clock, the reference of stored ages.
   StateOutput step(TimePoint now, Stamp stamp, SafetyLatches& latches, LostPeople& lost);
 
-  /// Delays an answer to a person until the revision is stored or cannot be stored.
+  /// Delays an answer to a person until the revision is stored or a store has failed; it is sent
+  /// unchanged in both cases.
   void answer_when_stored(std::uint64_t revision, const TaskStatus& status);
   /// Moves the due answers to the end of `out`, in order.
   void take_answers(std::vector<TaskStatus>& out);

@@ -35,7 +35,8 @@ class CartesianPlanning {
                     const CartesianRequest& request, const CartesianSettings& settings)
       : robot_(robot), group_(arm), world_(world), request_(request), settings_(settings) {}
 
-  /// Plans the motion, once.
+  /// Plans the motion and moves it out: to be called once. A motion that ends before the last
+  /// waypoint has `solved` false, a reason and the number `reached`.
   CartesianMotion run();
 
  private:

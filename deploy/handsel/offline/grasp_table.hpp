@@ -19,7 +19,8 @@ struct TableRow {
   double best{};                      ///< quality
   double seconds{};                   ///< for the list
   std::string findings;               ///< of the mesh
-  std::string reason;                 ///< why most frames gave none, or why there is no list
+  /// "Frames: most frequent reason" of those without grasp, also beside grasps; or the error.
+  std::string reason;
 };
 
 /// Factor that makes an object of these extents one for this hand: 1 when its middle extent is
@@ -29,7 +30,8 @@ double fitting_scale(const Vector3& extents, double opening);
 /// two pads their widest gap [m].
 double opening_of(const grasp_planner::HandGeometry& hand_geometry);
 
-/// `options.object` is the object; with `fit` it is scaled for the hand.
+/// Lists the grasps of `hand` (name or file; `options.hand` is ignored) on `options.object`, with
+/// `fit` scaled for the hand. Writes a ConfigError to `reason`; throws MissingError.
 TableRow table_row(const std::string& hand, const ListOptions& options, bool fit);
 /// Returns the line with the titles of the columns, without line feed.
 std::string table_head();

@@ -21,8 +21,8 @@ using RegionMotions = std::array<RegionMotion, kBodyRegions>;
 /// place after `time` [s], when the bounds hold [m]. A speed above the bound stays as measured.
 double reach_after(double time, double speed, const RegionMotion& bounds) noexcept;
 
-/// Returns the speed from which a part starts: as measured with `uncertainty` [m/s] added, or the
-/// largest of its region when it was not measured just now [m/s].
+/// Returns the speed from which a part starts [m/s]: if `part.measured`, its speed plus
+/// `uncertainty`, not capped; else the larger of its speed and the largest of its region.
 double start_speed(const PersonCapsule& part, double uncertainty,
                    const RegionMotion& bounds) noexcept;
 
@@ -33,7 +33,8 @@ struct PartReaches {
   std::size_t count{};  ///< number of capsules in PersonCapsules
 };
 
-/// Computes the reaches `time` [s] after now. Allocates nothing.
+/// Computes the reaches `time` [s] after now, to which the age of each part is added. `uncertainty`
+/// as of start_speed() [m/s]. Allocates nothing.
 void reach_of_parts(const PersonCapsules& people, double time, double uncertainty,
                     const RegionMotions& bounds, PartReaches& out) noexcept;
 
