@@ -51,8 +51,8 @@ class HeldObject {
 
   /// Observes, each step, whether what is held is still in the hand.
   void update(TimePoint now);
-  /// Returns whether update() has found what is held out of the hand, and near no person's hand,
-  /// for longer than slip_time. In the hand counts what the scene lacks or has in any hand.
+  /// Returns whether update() has found the held object outside the hand and near no person's hand
+  /// for longer than slip_time. What the scene lacks or has in any hand counts as in the hand.
   bool has_slipped(TimePoint now) const;
 
  private:
