@@ -13,31 +13,17 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr int kHandDirections = 40;              // number of directions about the object
-constexpr int kHandRolls = 16;                   // number of rotations about the palm's normal
 constexpr double kTilts[] = {0.0, -0.45, 0.45};  // of the hand about the axis across it [rad]
 constexpr double kShifts[] = {0.0, 0.03};        // of the hand against its fingers' direction [m]
-constexpr int kPalmGaps = 2;  // number of distances from the palm to the object, beyond contact
-constexpr double kMinLength = 0.12;           // min extent held off the middle [m]
-constexpr double kMinLengthToGive = 0.07;     // same, of a person who gives [m]
-constexpr double kOffMiddle = 0.32;           // such a place, divided by the extent
-constexpr double kOffMiddleToGive = 0.45;     // same, of a person who gives
-constexpr double kMaxOffMiddleToGive = 0.10;  // max distance of such a place [m]
-constexpr double kMinTowardPreferred = -0.6;  // min cosine to the preferred direction
-constexpr int kGivingChoices = 200;           // number of usable places from which a giver chooses
-constexpr double kOtherPlace = 0.05;          // min distance of a different place [m]
-constexpr double kOtherSide = 0.7;            // or max cosine between the palms' normals
-constexpr int kApproachSteps = 4;             // number of poses tested before the grasp
-constexpr double kPalmOverlap = 0.003;   // depth by which flesh is compressed by the object [m]
-constexpr double kDigitOverlap = 0.004;  // same, of a digit [m]
-constexpr double kDifference = 1e-4;     // step of the finite differences [m]
-constexpr int kLeanSteps = 8;            // number of leans tested
+constexpr int kApproachSteps = 4;                // number of poses tested before the grasp
+constexpr double kDifference = 1e-4;             // step of the finite differences [m]
+constexpr int kLeanSteps = 8;                    // number of leans tested
 
 /// Returns directions spread evenly over the sphere.
-std::vector<Vector3> directions() {
+std::vector<Vector3> directions(int number) {
   std::vector<Vector3> out;
-  for (int i = 0; i < kHandDirections; ++i) {
-    const double z = 1 - (2.0 * i + 1) / kHandDirections, r = std::sqrt(1 - z * z),
+  for (int i = 0; i < number; ++i) {
+    const double z = 1 - (2.0 * i + 1) / number, r = std::sqrt(1 - z * z),
                  turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
     out.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
   }
@@ -46,14 +32,15 @@ std::vector<Vector3> directions() {
 
 /// Returns the points about which the hand is placed, world: the centre of mass and, of a long
 /// extent, a point on either side.
-std::vector<Vector3> anchors(const FreeGraspQuery& query) {
+std::vector<Vector3> anchors(const FreeGraspQuery& query, const FreeGraspSettings& settings) {
   Eigen::AlignedBox3d box;
   for (const Vector3& vertex : query.object->mesh.vertices) box.extend(vertex);
   std::vector<Vector3> out{query.T_world_object * query.object->com};
-  const double min_length = query.p_left ? kMinLengthToGive : kMinLength;
+  const double min_length = query.p_left ? settings.giving_min_extent : settings.taking_min_extent;
   const auto off_middle = [&](double length) {
-    return query.p_left ? std::min(kOffMiddleToGive * length, kMaxOffMiddleToGive)
-                        : kOffMiddle * length;
+    return query.p_left
+               ? std::min(settings.giving_off_middle * length, settings.giving_max_off_middle)
+               : settings.taking_off_middle * length;
   };
   for (int axis = 0; axis < 3; ++axis) {
     const double length = box.sizes()[axis];
@@ -97,8 +84,8 @@ FreeGraspSearch::FreeGraspSearch(const FreeGraspQuery& query, const HumanHand& s
       shape_(shape),
       settings_(settings),
       T_object_world_(query.T_world_object.inverse()),
-      anchors_(anchors(query)),
-      directions_(directions()) {
+      anchors_(anchors(query, settings)),
+      directions_(directions(settings.taking_directions)) {
   if (query.p_left) surface_ = surface_left(*query.object, T_object_world_ * *query.p_left);
 }
 
@@ -116,7 +103,8 @@ bool FreeGraspSearch::advance() {
   }
   for (int i = 0; i < kTests && !over_; ++i) {
     if (next_ < candidates_.size()) consider(candidates_[next_++]);
-    over_ = next_ == candidates_.size() || usable_ == (query_.p_left ? kGivingChoices : 1);
+    over_ =
+        next_ == candidates_.size() || usable_ == (query_.p_left ? settings_.giving_choices : 1);
   }
   return over_;
 }
@@ -127,7 +115,7 @@ void FreeGraspSearch::consider(const Candidate& candidate) {
   const auto grasp = test(candidate);
   if (!grasp) return;
   ++usable_;
-  const double cost = candidate.cost + settings_.room_preference * covered(*grasp);
+  const double cost = candidate.cost + settings_.giving_room_preference * covered(*grasp);
   if (found_ && cost >= min_cost_) return;
   found_ = grasp;
   min_cost_ = cost;
@@ -136,7 +124,6 @@ void FreeGraspSearch::consider(const Candidate& candidate) {
 /// Returns the fraction of the surface near the hand, where a receiver has no room; the surface
 /// counts the more, the nearer to the point that is left to the receiver. 0 without such a point.
 double FreeGraspSearch::covered(const FreeGrasp& grasp) const {
-  constexpr double kNear = 0.03;  // room for the receiver's fingers [m]
   std::array<HandPart, kHandParts> hand = shape_.parts(grasp.closures);
   for (HandPart& part : hand) part = transformed(grasp.T_object_hand, part);
   double all = 0, near = 0;
@@ -144,7 +131,7 @@ double FreeGraspSearch::covered(const FreeGrasp& grasp) const {
   for (const auto& [p, weight] : surface_) {
     all += weight;
     const bool is_near = std::any_of(hand.begin(), hand.end(), [&, &at = p](const HandPart& part) {
-      const double limit = part.radius + kNear;
+      const double limit = part.radius + settings_.giving_finger_room;
       return nearest_points(part.a, part.b, at, at, on_part, on_sample) < limit * limit;
     });
     if (is_near) near += weight;
@@ -170,17 +157,18 @@ Vector3 FreeGraspSearch::inward(const Vector3& p_world) const {
 bool FreeGraspSearch::is_clear(const HandPart& part) const {
   Vector3 on_part, on_robot;
   return std::none_of(robot_.begin(), robot_.end(), [&](const HandPart& other) {
-    const double limit = part.radius + other.radius + settings_.clearance;
+    const double limit = part.radius + other.radius + settings_.taking_clearance;
     return nearest_points(part.a, part.b, other.a, other.b, on_part, on_robot) < limit * limit;
   });
 }
 
 void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction) {
   constexpr double kOutside = 0.3;  // distance of the hand before the motion to the object [m]
-  if (direction.dot(query_.preferred) < kMinTowardPreferred) return;
+  if (direction.dot(query_.preferred) < settings_.taking_min_side_cosine) return;
   const Vector3 first = direction.unitOrthogonal(), second = direction.cross(first);
-  for (int k = 0; k < kHandRolls; ++k) {
-    const double roll = 2 * std::numbers::pi * k / kHandRolls;
+  const int rolls = settings_.taking_rolls;
+  for (int k = 0; k < rolls; ++k) {
+    const double roll = 2 * std::numbers::pi * k / rolls;
     const Vector3 fingers = std::cos(roll) * first + std::sin(roll) * second;
     for (const double shift : kShifts) {
       const Vector3 start = anchor + kOutside * direction - shift * fingers;
@@ -194,8 +182,7 @@ void FreeGraspSearch::add_about(const Vector3& anchor, const Vector3& direction)
 /// which leave the receiver more of the object.
 void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const Vector3& fingers,
                           double tilt) {
-  constexpr double kFar = 0.4;   // max length of the motion [m]
-  constexpr double kRoom = 0.2;  // distance from a point to leave free that costs nothing [m]
+  constexpr double kFar = 0.4;  // max length of the motion [m]
   double moved = 0, beyond = distance(start) - kPalmDistance;
   for (int i = 0; i < 40 && moved < kFar && beyond > 5e-4; ++i) {
     moved += beyond;
@@ -206,12 +193,14 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
   T.linear() << -direction, fingers.cross(-direction), fingers;
   T.linear() = T.linear() * Eigen::AngleAxisd(tilt, Vector3::UnitY()).toRotationMatrix();
   T.translation() = start - moved * direction;
-  const double near_left =
-      query_.p_left ? std::max(0.0, 1 - (T.translation() - *query_.p_left).norm() / kRoom) : 0.0;
+  const double near_left = query_.p_left
+                               ? std::max(0.0, 1 - (T.translation() - *query_.p_left).norm() /
+                                                       settings_.giving_room_distance)
+                               : 0.0;
   add_candidate({T, 0, 0, true}, direction, near_left);
-  if (!query_.p_left || settings_.max_palm_gap <= 0 || tilt != 0) return;
-  for (int i = 1; i <= kPalmGaps; ++i) {
-    T.translation() += settings_.max_palm_gap / kPalmGaps * direction;
+  if (!query_.p_left || settings_.giving_palm_gap <= 0 || tilt != 0) return;
+  for (int i = 1; i <= settings_.giving_palm_gaps; ++i) {
+    T.translation() += settings_.giving_palm_gap / settings_.giving_palm_gaps * direction;
     add_candidate({T, 0, 0, false}, direction, near_left);
   }
 }
@@ -223,23 +212,23 @@ void FreeGraspSearch::add_candidate(Candidate candidate, const Vector3& directio
   Pose T_wrist = candidate.T_world_hand;
   T_wrist.translation() -= query_.wrist * T_wrist.linear().col(2);
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);
-  if (!posture || posture->strain > settings_.max_strain) return;
+  if (!posture || posture->strain > settings_.taking_max_strain) return;
   const double beside = (1 - direction.dot(query_.preferred)) / 2;
   candidate.strain = posture->strain;
-  candidate.cost =
-      posture->strain + settings_.side_preference * beside + settings_.room_preference * near_left;
+  candidate.cost = posture->strain + settings_.taking_side_preference * beside +
+                   settings_.giving_room_preference * near_left;
   candidates_.push_back(candidate);
 }
 
 /// Returns the arm of the person who leans as far as the wrist's position needs.
 HumanArm FreeGraspSearch::leaning_to(const Vector3& p_wrist) const {
-  constexpr double kStretch = 0.92;  // max extension divided by the arm's length
   HumanArm arm = query_.arm;
   for (int i = 0; i <= kLeanSteps; ++i) {
-    const double lean = i * settings_.max_lean / kLeanSteps;
+    const double lean = i * settings_.taking_place_max_lean / kLeanSteps;
     arm.shoulder = query_.arm.shoulder + query_.trunk * (std::sin(lean) * query_.forward +
                                                          (std::cos(lean) - 1) * Vector3::UnitZ());
-    if ((p_wrist - arm.shoulder).norm() <= kStretch * (arm.upper + arm.forearm)) break;
+    if ((p_wrist - arm.shoulder).norm() <= settings_.taking_stretch * (arm.upper + arm.forearm))
+      break;
   }
   return arm;
 }
@@ -248,7 +237,8 @@ std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const
   const Pose& T = candidate.T_world_hand;
   for (const HandPart& part : shape_.palm()) {
     const HandPart there = transformed(T, part);
-    if (surface_distance(*query_.object, transformed(T_object_world_, there)) < -kPalmOverlap ||
+    if (surface_distance(*query_.object, transformed(T_object_world_, there)) <
+            -settings_.taking_palm_overlap ||
         !is_clear(there))
       return std::nullopt;
   }
@@ -257,7 +247,7 @@ std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const
   std::array<std::optional<double>, kDigits> contacts;
   for (int d = 0; d < kDigits; ++d) {
     const auto contact = first_contact(shape_, d, *query_.object, grasp.T_object_hand);
-    if (contact && contact->distance < -kDigitOverlap) return std::nullopt;
+    if (contact && contact->distance < -settings_.taking_digit_overlap) return std::nullopt;
     if (contact) contacts[d] = contact->closure;
     if (!contact || !can_close(T, d, contact->closure)) continue;
     grasp.closures[d] = contact->closure;
@@ -270,9 +260,9 @@ std::optional<FreeGrasp> FreeGraspSearch::test(const Candidate& candidate) const
   }
   const Vector3 palm = T.linear().col(0), fingers = of_fingers.stableNormalized();
   const bool is_enclosed =
-      of_thumb.dot(fingers) < -settings_.min_opposition ||
-      (candidate.palm_touches && fingers.dot(palm) < -settings_.min_opposition);
-  if (grasp.digits_in_contact < settings_.min_digits || !is_enclosed || !can_come(T))
+      of_thumb.dot(fingers) < -settings_.taking_min_opposition ||
+      (candidate.palm_touches && fingers.dot(palm) < -settings_.taking_min_opposition);
+  if (grasp.digits_in_contact < settings_.taking_min_digits || !is_enclosed || !can_come(T))
     return std::nullopt;
   return grasp;
 }
@@ -293,7 +283,8 @@ bool FreeGraspSearch::can_close(const Pose& T_world_hand, int digit, double clos
 bool FreeGraspSearch::can_come(const Pose& T_world_hand) const {
   for (int i = 0; i <= kApproachSteps; ++i) {
     Pose before = T_world_hand;
-    before.translation() -= i * settings_.approach / kApproachSteps * T_world_hand.linear().col(0);
+    before.translation() -=
+        i * settings_.taking_approach / kApproachSteps * T_world_hand.linear().col(0);
     for (const HandPart& part : shape_.parts({})) {
       if (!is_clear(transformed(before, part))) return false;
     }
@@ -304,9 +295,9 @@ bool FreeGraspSearch::can_come(const Pose& T_world_hand) const {
 /// Returns whether a pose is a place that was held before in vain.
 bool FreeGraspSearch::is_avoided(const Pose& T_world_hand) const {
   const Pose T = T_object_world_ * T_world_hand;
-  return std::any_of(query_.avoided.begin(), query_.avoided.end(), [&T](const Pose& before) {
-    return (T.translation() - before.translation()).norm() < kOtherPlace &&
-           T.linear().col(0).dot(before.linear().col(0)) > kOtherSide;
+  return std::any_of(query_.avoided.begin(), query_.avoided.end(), [&](const Pose& before) {
+    return (T.translation() - before.translation()).norm() < settings_.giving_other_min_distance &&
+           T.linear().col(0).dot(before.linear().col(0)) > settings_.giving_other_max_cosine;
   });
 }
 

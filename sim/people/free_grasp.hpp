@@ -11,6 +11,7 @@
 
 #include "common/model/human/hand_closure.hpp"
 #include "common/model/human/human_wrist.hpp"
+#include "sim/people/person_settings.hpp"
 
 namespace handsel::sim {
 
@@ -20,20 +21,6 @@ struct FreeGrasp {
   Closures closures{};                   ///< of the digits in contact with the object
   int digits_in_contact{};               ///< number of digits that touch the object
   double strain{};                       ///< of the person's arm and wrist, as in WristPosture
-};
-
-/// Choice of a place; values and meanings as in common/config/schema/sim.proto.
-struct FreeGraspSettings {
-  double clearance{0.003};      ///< min distance of hand and robot [m]
-  double approach{0.08};        ///< straight motion of the open hand before the grasp [m]
-  double max_strain{1.0};       ///< max strain of arm and wrist
-  double max_lean{0.33};        ///< max lean of the trunk [rad]
-  int min_digits{3};            ///< min number of digits in contact
-  double min_opposition{0.2};   ///< min cosine between thumb or palm and opposed fingers
-  double side_preference{0.5};  ///< cost of a hand opposite the preferred direction
-  double room_preference{2.0};  ///< cost of a hand near the surface left to a receiver
-  double max_palm_gap{0.045};   ///< max distance of a giver's palm from the object [m]
-  double away_weight{0.7};      ///< side away from the robot, relative to that toward the person
 };
 
 /// Inputs of the choice of a place.

@@ -35,8 +35,9 @@ Vector3 PersonModel::side_to_take(const PersonView& view) const {
   const Vector3 toward =
       (shoulder(hand_index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
-  return (toward + (away.norm() > 1e-3 ? Vector3(settings_.taking.away_weight * away.normalized())
-                                       : Vector3(Vector3::Zero())))
+  return (toward + (away.norm() > 1e-3
+                        ? Vector3(settings_.taking.taking_away_weight * away.normalized())
+                        : Vector3(Vector3::Zero())))
       .normalized();
 }
 

@@ -8,7 +8,7 @@ namespace handsel::sim {
 namespace {
 
 // Distance of the curve's control point from the place, along the palm's normal: the last 8 cm,
-// which FreeGraspSettings::approach keeps free, are nearly straight [m].
+// which taking_approach keeps free, are nearly straight [m].
 constexpr double kControlDistance = 0.25;
 constexpr double kTurnedAt = 0.75;  // fraction of a reach at which the hand has turned
 

@@ -34,15 +34,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.robot_grip.max_torque = read.grip_torque;
   s.person_grip.max_force = read.person_grip_force;
   s.collision_force = read.collision_force;
-  s.taking.clearance = read.taking_clearance;
-  s.taking.approach = read.taking_approach;
-  s.taking.max_strain = read.taking_max_strain;
-  s.taking.min_digits = read.taking_min_digits;
-  s.taking.min_opposition = read.taking_min_opposition;
-  s.taking.side_preference = read.taking_side_preference;
-  s.taking.away_weight = read.taking_away_weight;
-  s.taking.room_preference = read.giving_room_preference;
-  s.taking.max_palm_gap = read.giving_palm_gap;
+  s.taking = read.free_grasp;
   s.touch_force = read.touch_force;
   s.grasp_time = read.grasp_time;
   s.lose_time = read.lose_time;

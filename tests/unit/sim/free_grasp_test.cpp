@@ -127,7 +127,7 @@ TEST_F(FreeGraspTest, a_hand_that_gives_may_hold_by_the_digits_alone) {
     return free / all;
   };
   FreeGraspSettings palm_on_object;
-  palm_on_object.max_palm_gap = 0;
+  palm_on_object.giving_palm_gap = 0;
   const auto with_palm = find_free_grasp(query_, shape_, palm_on_object);
   const auto by_digits = find_free_grasp(query_, shape_);
   ASSERT_TRUE(with_palm && by_digits);

@@ -1,0 +1,11 @@
+// Settings of all people, made from common/config/schema/sim.proto.
+#pragma once
+
+#include "common/config/settings/sim.hpp"
+
+namespace handsel::sim {
+
+/// Choice of a place for a hand on an object.
+using FreeGraspSettings = settings::SimSettings::FreeGrasp;
+
+}  // namespace handsel::sim
