@@ -6,14 +6,9 @@
 #include "sim/people/person_parts.hpp"
 
 namespace handsel::sim {
-namespace {
-// Bounds of the motion to a sample [s]; after a longer gap the body moves within the max.
-constexpr double kMinSamplePeriod = 0.005, kMaxSamplePeriod = 0.1;
-// A sample places the body if the waist moved farther [m] and faster [m/s] than this.
-constexpr double kMinJump = 0.5, kMaxBodySpeed = 5.0;
-}  // namespace
 
-FollowedBody::FollowedBody(const BodyPoints& start, double stature) : from_(start), to_(start) {
+FollowedBody::FollowedBody(const BodyPoints& start, double stature, const PersonManners& manners)
+    : manners_(manners), from_(start), to_(start) {
   fitted_.stature = stature;
 }
 
@@ -26,10 +21,12 @@ bool FollowedBody::observe(const ObservedPerson& seen, double now) {
   for (std::size_t i = 0; i < to_.size(); ++i) to_[i] = fitted_.joints[i].position;
   const double distance = (to_[kWaist] - here[kWaist]).norm();
   const bool placed =
-      !has_sample_ || distance > std::max(kMinJump, kMaxBodySpeed * (now - motion_start_));
+      !has_sample_ || distance > std::max(manners_.external_min_jump,
+                                          manners_.external_max_speed * (now - motion_start_));
   from_ = placed ? to_ : here;
-  motion_duration_ = placed ? kMinSamplePeriod
-                            : std::clamp(now - motion_start_, kMinSamplePeriod, kMaxSamplePeriod);
+  motion_duration_ = placed ? manners_.external_min_motion
+                            : std::clamp(now - motion_start_, manners_.external_min_motion,
+                                         manners_.external_max_motion);
   motion_start_ = now;
   has_sample_ = true;
   return placed;

@@ -4,6 +4,7 @@
 
 #include "common/messages/perception.hpp"
 #include "common/messages/world.hpp"
+#include "sim/people/person_settings.hpp"
 #include "sim/people/recording.hpp"
 
 namespace handsel::sim {
@@ -15,7 +16,7 @@ namespace handsel::sim {
 /// (`fit_body`). Own method: needs neither period nor delay of the tracker.
 class FollowedBody {
  public:
-  FollowedBody(const BodyPoints& start, double stature);
+  FollowedBody(const BodyPoints& start, double stature, const PersonManners& manners);
 
   /// Takes a sample at `now` [s]. Returns true if the sample placed the body without a motion.
   bool observe(const ObservedPerson& seen, double now);
@@ -23,6 +24,7 @@ class FollowedBody {
   void sample(double now, BodyPoints& out) const;
 
  private:
+  PersonManners manners_;
   Person fitted_;
   BodyPoints from_, to_;
   double motion_start_{0}, motion_duration_{0};

@@ -26,11 +26,12 @@ bool of_hand(BodyPart part, Side side) {
 }
 
 /// Returns the pose of a held object in the hand frame. `turn`: orientation of the object,
-/// whose nearest part is then at the palm.
-Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>& turn) {
+/// whose nearest part is then at the palm. `ahead`: distance of an unturned object [m].
+Pose held_pose(const ObjectModel& model, const std::optional<Eigen::Quaterniond>& turn,
+               double ahead) {
   constexpr double kMaxOffset = 0.4;     // first offset of a turned object's origin [m]
   constexpr double kOffsetStep = 0.002;  // decrement of the offset [m]
-  if (!turn) return Pose(Eigen::Translation3d(kObjectAhead, 0, 0));
+  if (!turn) return Pose(Eigen::Translation3d(ahead, 0, 0));
   double offset = kMaxOffset;
   const Vector3 palm_direction = turn->inverse() * Vector3::UnitX();
   while (offset > 0 && surface_distance(model, -offset * palm_direction) > kPalmDistance)
@@ -64,7 +65,7 @@ int object_index(const ObjectBodies& objects, const std::string& id) {
 
 People::People(const SceneSetup& setup, const SimSettings& settings, ObjectBodies& objects,
                ShapeStore& shapes, btDynamicsWorld& world)
-    : objects_(objects), world_(world) {
+    : objects_(objects), world_(world), manners_(settings.manners) {
   people_.reserve(setup.people.size());
   for (const StartPerson& start : setup.people)
     build(start, settings, static_cast<int>(people_.size()), shapes);
@@ -82,6 +83,7 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
                    ShapeStore& shapes) {
   PersonSettings person_settings = start.settings;
   person_settings.taking = settings.taking;
+  person_settings.manners = settings.manners;
   Body person{PersonModel(person_settings),
               Grip(settings.person_grip),
               -1,
@@ -120,7 +122,8 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
     const Pose hand = person.hand().state().T_world_body;
     const Eigen::Quaterniond turn = start.hand_turn.value_or(Eigen::Quaterniond::Identity());
     const auto T_hand_object = person.model.hold_from_beginning(object.model(), turn);
-    object.put(hand * T_hand_object.value_or(held_pose(object.model(), start.hand_turn)));
+    object.put(hand * T_hand_object.value_or(held_pose(object.model(), start.hand_turn,
+                                                       manners_.giving_object_ahead)));
     person.grip.hold(hand.inverse() * object.state().T_world_body);
   }
   people_.push_back(std::move(person));
@@ -231,7 +234,7 @@ void People::hold_or_release(Body& person) {
   if (!person.model.wants_grip()) {
     person.grip.release();
   } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
-    if (hand_gap(person) < kPalmDistance + 0.03) {
+    if (hand_gap(person) < kPalmDistance + manners_.taking_hold_gap) {
       person.grip.hold(person.hand().state().T_world_body.inverse() *
                        objects_[person.object].state().T_world_body);
     } else {
@@ -273,12 +276,12 @@ void People::pull(Body& person, double dt) {
 
 /// Moves the held object in the hand, toward this position in the frame of the hand [m].
 void People::move_in_hand(Body& person, const Vector3& p_hand_object, double dt) const {
-  constexpr double kSpeed = 0.15;  // [m/s]
   const ObjectBody& object = objects_[person.object];
   Pose T = person.grip.T_holder_object();
   const Pose T_body_object = object.state().T_world_body.inverse() * object.T_world_object();
   const Vector3 left = p_hand_object - (T * T_body_object).translation();
-  T.translation() += std::min(1.0, kSpeed * dt / std::max(left.norm(), 1e-9)) * left;
+  T.translation() +=
+      std::min(1.0, manners_.giving_shift_speed * dt / std::max(left.norm(), 1e-9)) * left;
   person.grip.set_T_holder_object(T);
 }
 
@@ -299,7 +302,7 @@ int People::touching_person(int object) const {
     if (p.grip.holding()) return true;
     const PersonPhase phase = p.model.phase();
     return (phase == PersonPhase::closing || phase == PersonPhase::reaching) &&
-           hand_gap(p) < kPalmDistance + 0.012;
+           hand_gap(p) < kPalmDistance + manners_.taking_touch_gap;
   });
   return found != people_.end() ? static_cast<int>(found - people_.begin()) : -1;
 }

@@ -66,8 +66,8 @@ class People {
   /// Sets the position of the robot's mobile platform, world [m].
   void set_platform(const Vector3& p_world) { platform_ = p_world; }
   bool grips(int object) const;  ///< Returns whether a person's hand holds the object.
-  /// Returns whether a person's hand holds the object, or reaches for the object and is within 12
-  /// mm of contact.
+  /// Returns whether a person's hand holds the object, or reaches for the object and nearly
+  /// touches it (taking_touch_gap).
   bool touches(int object) const { return touching_person(object) >= 0; }
   /// Returns the index of the first person for whom touches() holds; -1: none.
   int touching_person(int object) const;
@@ -107,6 +107,7 @@ class People {
 
   ObjectBodies& objects_;
   btDynamicsWorld& world_;
+  PersonManners manners_;
   std::vector<Body> people_;
   std::optional<Vector3> platform_;  // of a mobile robot
 };

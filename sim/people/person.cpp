@@ -7,29 +7,6 @@
 
 namespace handsel::sim {
 
-namespace {
-
-// Max speed of an object that counts as offered [m/s].
-constexpr double kMaxOfferSpeed = 0.05;
-// Same, for a person who takes objects before they are at rest [m/s].
-constexpr double kMaxEarlyOfferSpeed = 0.35;
-// Max speed of an object that a reach still follows [m/s].
-constexpr double kMaxTargetSpeed = 0.2;
-// Same, for a person who takes objects before they are at rest [m/s].
-constexpr double kMaxEarlyTargetSpeed = 0.5;
-constexpr double kLeanReach = 0.12;  // increase of the reach by leaning forward [m]
-// Min displacement of an object from where the robot grasped it before a person reaches for it [m].
-constexpr double kMinLift = 0.1;
-// Max rate of moving back while the grip force is too large, divided by the rate of withdrawing.
-constexpr double kMaxYieldRate = 0.5;
-constexpr double kMaxPullTime = 8.0;     // max duration of a pull [s]
-constexpr double kStepBackLength = 0.2;  // step backward with a received object [m]
-constexpr double kKeepTime = 2.0;        // time before a fetcher leaves with the object [s]
-// Max displacement of a recorded body on the floor before contact [m].
-constexpr double kMaxRecordedStep = 0.3;
-
-}  // namespace
-
 const char* name(PersonPhase phase) {
   static constexpr const char* kNames[] = {"arriving", "watching",    "reaching", "closing",
                                            "pulling",  "withdrawing", "keeping",  "retracting",
@@ -71,7 +48,7 @@ PersonModel::PersonModel(const PersonSettings& settings)
   }
   if (settings_.kind == PersonKind::external) {
     place_body();
-    followed_.emplace(points_, settings_.stature);
+    followed_.emplace(points_, settings_.stature, settings_.manners);
   }
   step(0, PersonView{});
 }
@@ -131,8 +108,9 @@ void PersonModel::step(double dt, const PersonView& view) {
       run_phase(dt, view);
     }
     if (settings_.steps_in.speed > 0)
-      feet_ = home_ -
-              distance_from_place(settings_.steps_in, settings_.approach_from, clock_) * forward();
+      feet_ = home_ - distance_from_place(settings_.steps_in, settings_.approach_from, clock_,
+                                          settings_.manners.person_max_step_acceleration) *
+                          forward();
     step_aside(dt);
     update_hand(dt, view);
     if (!followed_) turn_gaze(gaze_target(view), dt);
@@ -164,40 +142,39 @@ void PersonModel::step(double dt, const PersonView& view) {
 }
 
 bool PersonModel::waits_for_robot(const PersonView& view) const {
-  constexpr double kMinAhead = 1.3;   // min distance to the robot along the walk [m]
-  constexpr double kMinBeside = 0.9;  // min distance of the platform's centre from the walk [m]
-  constexpr double kMinBesideHand = 0.55;  // min distance of the robot's hand from the walk [m]
   if (settings_.kind != PersonKind::walker || !view.platform) return false;
+  const PersonManners& manners = settings_.manners;
   const Vector3 walk = walk_direction_ * forward();
   const auto is_ahead = [&](const Vector3& p_world, double beside) {
     const Vector3 to = (p_world - feet_).cwiseProduct(Vector3(1, 1, 0));
     const double ahead = to.dot(walk);
-    return ahead > 0 && ahead < kMinAhead && (to - ahead * walk).norm() < beside;
+    return ahead > 0 && ahead < manners.walker_robot_ahead && (to - ahead * walk).norm() < beside;
   };
-  return is_ahead(*view.platform, kMinBeside) || is_ahead(view.robot_hand, kMinBesideHand);
+  return is_ahead(*view.platform, manners.walker_robot_beside) ||
+         is_ahead(view.robot_hand, manners.walker_hand_beside);
 }
 
 void PersonModel::wait_for_robot(double dt, double duration) {
-  constexpr double kMaxWaitForRobot = 3.0;  // max time at rest before turning back [s]
   phase_since_ += dt;
   waited_for_robot_ += dt;
-  if (waited_for_robot_ < kMaxWaitForRobot) return;
+  if (waited_for_robot_ < settings_.manners.walker_max_wait) return;
   waited_for_robot_ = 0;
   walk_direction_ = -walk_direction_;
   phase_since_ += 2 * phase_time() - duration;  // same place on the walk back
 }
 
 void PersonModel::run_phase(double dt, const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
   if (wants_grip_ && view.grip_broke) give_up();
   switch (phase_) {
     case PersonPhase::arriving: {
       const double length =
           settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
       if (waits_for_robot(view))
-        wait_for_robot(dt, length / kWalkSpeed);
+        wait_for_robot(dt, length / manners.person_walk_speed);
       else
         waited_for_robot_ = 0;
-      const double s = length > 0 ? phase_time() * kWalkSpeed / length : 1;
+      const double s = length > 0 ? phase_time() * manners.person_walk_speed / length : 1;
       feet_ =
           home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();
       if (s < 1) break;
@@ -220,9 +197,10 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
       }
       break;
     case PersonPhase::closing:
-      if (view.object == nullptr || hand_to_surface(view) > kPalmDistance + 0.03) {
+      if (view.object == nullptr ||
+          hand_to_surface(view) > kPalmDistance + manners.taking_hold_gap) {
         give_up();
-      } else if (phase_time() > kCloseTime) {
+      } else if (phase_time() > manners.person_close_time) {
         wants_grip_ = true;
         from_ = hand_target_;
         enter(PersonPhase::pulling);
@@ -239,7 +217,8 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
         hold_object(view);
       } else {
         hand_target_ = carry_position();
-        if (settings_.kind == PersonKind::fetcher && phase_time() > kKeepTime) leave();
+        if (settings_.kind == PersonKind::fetcher && phase_time() > manners.fetcher_keep_time)
+          leave();
       }
       break;
     case PersonPhase::retracting:
@@ -251,10 +230,13 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
     case PersonPhase::darting:
       continue_dart(dt, view);
       break;
-    case PersonPhase::leaving:
-      feet_ = home_ - 3.0 * min_jerk(phase_time() * kWalkSpeed / 3.0) * forward();
+    case PersonPhase::leaving: {
+      const double length = manners.person_leave_distance;
+      feet_ =
+          home_ - length * min_jerk(phase_time() * manners.person_walk_speed / length) * forward();
       if (wants_grip_) hand_target_ = carry_position();
       break;
+    }
   }
 }
 
@@ -265,7 +247,9 @@ bool PersonModel::is_unavailable(const PersonView& view) const {
 }
 
 bool PersonModel::is_offered_to(const PersonView& view, int side) const {
-  const double max_speed = settings_.behaviour.early ? kMaxEarlyOfferSpeed : kMaxOfferSpeed;
+  const PersonManners& manners = settings_.manners;
+  const double max_speed = settings_.behaviour.early ? manners.taking_max_early_offer_speed
+                                                     : manners.taking_max_offer_speed;
   if (refusing_ || view.object == nullptr || is_unavailable(view) ||
       view.object_velocity.norm() > max_speed)
     return false;
@@ -273,11 +257,11 @@ bool PersonModel::is_offered_to(const PersonView& view, int side) const {
   // An object that the robot has only begun to lift is not offered to anybody.
   const bool is_lifted =
       settings_.kind != PersonKind::taker || !p_object_at_grasp_ ||
-      (view.T_world_object.translation() - *p_object_at_grasp_).norm() >= kMinLift;
+      (view.T_world_object.translation() - *p_object_at_grasp_).norm() >= manners.taking_min_lift;
   if (!is_lifted) return false;
   if (settings_.kind == PersonKind::partner && announcement_ != Announcement::offers) return false;
   return (object_centre(view) - shoulder(side)).norm() <
-         reach_ + (settings_.recording ? kMaxRecordedStep : kLeanReach);
+         reach_ + (settings_.recording ? manners.recorded_max_step : manners.taking_lean_reach);
 }
 
 /// Selects the preferred hand, unless the other hand is clearly nearer or only the other reaches
@@ -289,17 +273,20 @@ void PersonModel::choose_hand(const PersonView& view) {
                left_distance = (object_centre(view) - shoulder(0)).norm();
   const double own = preferred == Side::right ? right : left_distance,
                other = preferred == Side::right ? left_distance : right;
-  const bool change = !has_changed_hands() &&
-                      (own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own));
+  const PersonManners& manners = settings_.manners;
+  const double max_own = reach_ + manners.taking_lean_reach - manners.taking_hand_margin;
+  const bool change = !has_changed_hands() && (own > other + manners.taking_hand_advantage ||
+                                               (own > max_own && other < own));
   side_ = change == (preferred == Side::right) ? Side::left : Side::right;
 }
 
 /// Returns the lean with which the straight arm reaches a point [rad].
 double PersonModel::lean_to_reach(const Vector3& p_hand) const {
-  const double excess = (p_hand - shoulder(hand_index())).norm() - 0.95 * reach_;
+  const double excess =
+      (p_hand - shoulder(hand_index())).norm() - settings_.manners.person_max_reach * reach_;
   return std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[hand_index()]].z() -
                                                        template_[kWaist].z()),
-                    0.0, kMaxLean);
+                    0.0, settings_.manners.person_max_lean);
 }
 
 void PersonModel::watch(double dt, const PersonView& view) {
@@ -314,14 +301,17 @@ void PersonModel::watch(double dt, const PersonView& view) {
   offer_time_ = takes && cooldown_ <= 0 && is_offered_to(view, hand_index()) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0) return taking_.forget();
   if (chooses_place()) choose_place(view);
-  if (offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
+  const PersonManners& manners = settings_.manners;
+  if (offer_time_ < (settings_.recording ? manners.recorded_reaction : settings_.reaction)) return;
   if (chooses_place() && !taking_.has_place()) return;
   offer_time_ = 0;
   side_of_object_ = side_to_take(view);
   from_ = hand_point();
   const Vector3 goal = grasp_point(view);
-  duration_ =
-      std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
+  const double reach_time =
+      manners.taking_reach_time + manners.taking_time_per_distance * (goal - from_).norm();
+  duration_ = std::clamp(reach_time, manners.taking_min_reach_time, manners.taking_max_reach_time) /
+              settings_.behaviour.speed_scale;
   lean_from_ = lean_;
   lean_to_ = taking_.has_place() ? lean_to_take(view) : lean_to_reach(goal);
   hand_target_ = from_;
@@ -331,53 +321,60 @@ void PersonModel::watch(double dt, const PersonView& view) {
   if (settings_.recording) {
     home_ = feet_;
     step_ = (goal - recorded_contact(home_)).cwiseProduct(Vector3(1, 1, 0));
-    if (step_.norm() > kMaxRecordedStep) step_ *= kMaxRecordedStep / step_.norm();
+    if (step_.norm() > manners.recorded_max_step) step_ *= manners.recorded_max_step / step_.norm();
   }
   enter(PersonPhase::reaching);
 }
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
-  const double max_speed = settings_.behaviour.early ? kMaxEarlyTargetSpeed : kMaxTargetSpeed;
+  const PersonManners& manners = settings_.manners;
+  const double max_speed = settings_.behaviour.early ? manners.taking_max_early_target_speed
+                                                     : manners.taking_max_target_speed;
   const bool is_target_lost = refusing_ || view.object == nullptr || is_unavailable(view) ||
                               view.object_velocity.norm() > max_speed;
   exit_time_ = is_target_lost ? exit_time_ + dt : 0;
-  if (exit_time_ > 0.3) return give_up();
+  if (exit_time_ > manners.taking_lost_time) return give_up();
   if (view.object == nullptr) return;
   const double s = reach_fraction();
   lean_ = lean_from_ + s * (lean_to_ - lean_from_);
-  hand_target_ = taking_.has_place() ? taking_.position_at(from_, s, view.T_world_object)
-                                     : Vector3(from_ + s * (grasp_point(view) - from_));
-  if (s >= kMidwayFraction && settings_.behaviour.withdraws && !first_attempt_over_)
+  hand_target_ = taking_.has_place()
+                     ? taking_.position_at(from_, s, manners.taking_curve, view.T_world_object)
+                     : Vector3(from_ + s * (grasp_point(view) - from_));
+  if (s >= manners.person_midway && settings_.behaviour.withdraws && !first_attempt_over_)
     return give_up();
   if (s < 1) return;
-  if (hand_to_surface(view) < kPalmDistance + 0.012) {
+  if (hand_to_surface(view) < kPalmDistance + manners.taking_touch_gap) {
     enter(PersonPhase::closing);
-  } else if (phase_time() > reach_duration() + 1.0) {
+  } else if (phase_time() > reach_duration() + manners.taking_contact_time) {
     give_up();
   }
 }
 
 void PersonModel::replay(double dt, const PersonView& view) {
   const Recording& recording = *settings_.recording;
+  const PersonManners& manners = settings_.manners;
   const bool is_target_lost = refusing_ || view.object == nullptr || !view.held_by_robot ||
-                              view.object_velocity.norm() > 0.2;
+                              view.object_velocity.norm() > manners.taking_max_target_speed;
   exit_time_ = is_target_lost ? exit_time_ + dt : 0;
-  if (exit_time_ > 0.5 || phase_time() > recording.contact + 1.5) return give_up();
+  if (exit_time_ > manners.recorded_lost_time ||
+      phase_time() > recording.contact + manners.recorded_contact_time)
+    return give_up();
   playback_ = std::min(playback_ + dt, recording.contact);
   feet_ =
-      home_ + min_jerk(playback_ / std::max(0.1, recording.contact - settings_.warp_time)) * step_;
+      home_ +
+      min_jerk(playback_ / std::max(0.1, recording.contact - manners.recorded_warp_time)) * step_;
   place_body();
   const Vector3 recorded = points_[kHand[hand_index()]];
   if (view.object != nullptr) {
     const Vector3 p_recorded_contact = recorded_contact(home_ + step_);
     warp_ = nearest_grasp_point(view, p_recorded_contact) - p_recorded_contact;
-    if (warp_.norm() > settings_.max_warp) warp_ *= settings_.max_warp / warp_.norm();
+    if (warp_.norm() > manners.recorded_max_warp) warp_ *= manners.recorded_max_warp / warp_.norm();
   }
-  const double s = min_jerk(1 - (recording.contact - playback_) / settings_.warp_time);
+  const double s = min_jerk(1 - (recording.contact - playback_) / manners.recorded_warp_time);
   hand_active_ = s > 0;
   hand_target_ = recorded + s * warp_;
   if (playback_ >= recording.contact && view.object != nullptr &&
-      hand_to_surface(view) < kPalmDistance + 0.012)
+      hand_to_surface(view) < kPalmDistance + manners.taking_touch_gap)
     enter(PersonPhase::closing);
 }
 
@@ -385,18 +382,25 @@ void PersonModel::pull(double dt, const PersonView& view) {
   if (!wants_grip_ || view.object == nullptr) return give_up();
   const Vector3 direction =
       (carry_position() - hand_target_).cwiseProduct(Vector3(1, 1, 0)).normalized();
-  const double ramp = std::min(1.0, phase_time() / 0.4);
+  const PersonManners& manners = settings_.manners;
+  const double ramp = std::min(1.0, phase_time() / manners.taking_pull_rise);
   const double pull_force = view.grip_force.dot(direction);
-  const double speed = std::clamp(0.02 * (ramp * settings_.pull - pull_force), -0.1, 0.1);
+  const double speed =
+      std::clamp(manners.taking_pull_admittance * (ramp * settings_.pull - pull_force),
+                 -manners.taking_max_pull_speed, manners.taking_max_pull_speed);
   hand_target_ += speed * dt * direction;
-  overload_time_ = view.grip_force.norm() > kMaxToleratedForce ? overload_time_ + dt : 0;
+  overload_time_ =
+      view.grip_force.norm() > manners.person_max_tolerated_force ? overload_time_ + dt : 0;
   exit_time_ = view.held_by_robot ? 0 : exit_time_ + dt;
   const double moved = (hand_target_ - from_).dot(direction);
-  if (overload_time_ > 0.1 || phase_time() > kMaxPullTime || moved < -0.15) {
+  if (overload_time_ > manners.taking_overload_time ||
+      phase_time() > manners.taking_max_pull_time || moved < -manners.taking_max_pulled_back) {
     give_up();
-  } else if (exit_time_ > 0.1 || (moved > 0.05 && pull_force < 0.7 * settings_.pull)) {
+  } else if (exit_time_ > manners.taking_free_time ||
+             (moved > manners.taking_min_pull_travel &&
+              pull_force < manners.taking_pull_drop * settings_.pull)) {
     from_ = hand_target_;
-    duration_ = 1.2;
+    duration_ = manners.taking_withdraw_time;
     lean_from_ = lean_;
     home_ = feet_;
     held_below_ = extent_below_hand(view);
@@ -406,14 +410,17 @@ void PersonModel::pull(double dt, const PersonView& view) {
 
 void PersonModel::withdraw(double dt, const PersonView& view) {
   if (!wants_grip_) return give_up();
-  overload_time_ = view.grip_force.norm() > kMaxToleratedForce ? overload_time_ + dt : 0;
-  if (overload_time_ > 0.3) return give_up();
-  // A person pulls with at most twice the usual force, and moves back where the object is caught.
-  const double rate = 2 - view.grip_force.norm() / settings_.pull;
-  progress_ = std::max(0.0, progress_ + dt / duration_ * std::clamp(rate, -kMaxYieldRate, 1.0));
+  const PersonManners& manners = settings_.manners;
+  overload_time_ =
+      view.grip_force.norm() > manners.person_max_tolerated_force ? overload_time_ + dt : 0;
+  if (overload_time_ > manners.taking_carry_overload_time) return give_up();
+  // The force is limited, and the hand yields where the object is caught.
+  const double rate = manners.taking_max_pull_ratio - view.grip_force.norm() / settings_.pull;
+  progress_ = std::max(
+      0.0, progress_ + dt / duration_ * std::clamp(rate, -manners.taking_max_yield_rate, 1.0));
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
-  if (!settings_.behaviour.seated) feet_ = home_ - s * kStepBackLength * forward();
+  if (!settings_.behaviour.seated) feet_ = home_ - s * manners.taking_step_back * forward();
   hand_target_ = from_ + s * (carry_position() - from_);
   if (progress_ < 1) return;
   from_ = hand_target_;
@@ -423,17 +430,17 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
 void PersonModel::give_up() {
   wants_grip_ = false;
   first_attempt_over_ = true;
-  cooldown_ = 2.0;
+  cooldown_ = settings_.manners.taking_cooldown;
   from_ = hand_active_ ? hand_target_ : hand_point();
   hand_active_ = true;
   hand_target_ = from_;
   lean_from_ = lean_;
-  duration_ = 1.0;
+  duration_ = settings_.manners.person_retract_time;
   warp_.setConstant(playback_);
   const Vector3 rest = rest_position();
-  retract_control_ = hand_configuration_
-                         ? TakingHand::behind(from_, hand_configuration_->R_world_hand)
-                         : Vector3((from_ + rest) / 2);
+  retract_control_ = hand_configuration_ ? TakingHand::behind(from_, settings_.manners.taking_curve,
+                                                              hand_configuration_->R_world_hand)
+                                         : Vector3((from_ + rest) / 2);
   enter(PersonPhase::retracting);
 }
 
@@ -450,16 +457,19 @@ void PersonModel::retract(double) {
 }
 
 void PersonModel::continue_dart(double dt, const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
   const Vector3 to = view.robot_hand - hand_target_;
-  const double speed = std::min(speed_, kMaxHandAcceleration * phase_time());
-  const double move = std::min(speed * dt, std::max(0.0, to.norm() - 0.08));
+  const double speed = std::min(speed_, manners.person_dart_hand_acceleration * phase_time());
+  const double move = std::min(speed * dt, std::max(0.0, to.norm() - manners.person_dart_gap));
   if (to.norm() > 1e-6) hand_target_ += move / to.norm() * to;
   const Vector3 beyond = hand_target_ - shoulder(hand_index());
   const Vector3 missing_reach =
-      std::max(0.0, 1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
-  feet_speed_ = std::min(feet_speed_ + kMaxTrunkAcceleration * dt, missing_reach.norm() / dt);
+      std::max(0.0, 1 - manners.person_max_reach * reach_ / beyond.norm()) *
+      beyond.cwiseProduct(Vector3(1, 1, 0));
+  feet_speed_ = std::min(feet_speed_ + manners.person_dart_trunk_acceleration * dt,
+                         missing_reach.norm() / dt);
   if (feet_speed_ > 0) feet_ += feet_speed_ * dt * missing_reach.normalized();
-  if (phase_time() > 1.5) give_up();
+  if (phase_time() > manners.person_dart_time) give_up();
 }
 
 }  // namespace handsel::sim

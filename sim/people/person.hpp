@@ -17,6 +17,7 @@
 #include "common/model/object_model.hpp"
 #include "sim/people/followed_body.hpp"
 #include "sim/people/moving_offer.hpp"
+#include "sim/people/person_settings.hpp"
 #include "sim/people/recording.hpp"
 #include "sim/people/step_in.hpp"
 #include "sim/people/taking_hand.hpp"
@@ -67,14 +68,13 @@ struct PersonSettings {
   std::string external;  ///< source of observations that an external person follows
   /// Max distance at which an external person's hand is guided to an offered object [m].
   double correction{0.15};
-  double max_warp{0.10};    ///< max displacement of a recorded hand [m]
-  double warp_time{0.5};    ///< duration before contact over which a recorded hand is displaced [s]
-  double fetches_at{};      ///< time from which a fetcher reaches for the object [s]
-  StepInSettings steps_in;  ///< walk of an otherwise resting person toward the robot and back
+  double fetches_at{};           ///< time from which a fetcher reaches for the object [s]
+  StepInSettings steps_in;       ///< walk of an otherwise resting person toward the robot and back
   MovingOfferSettings moving;    ///< how a giver moves the offered object; duration 0: no motion
   BehaviourProfile behaviour{};  ///< individual behaviour
   std::vector<Furniture> furniture;  ///< held objects stay above these boxes
   FreeGraspSettings taking;          ///< choice of a place on an object that the robot holds
+  PersonManners manners;             ///< as of all people
 };
 
 /// The person's observations, by sight and by touch.
@@ -131,7 +131,7 @@ class PersonModel {
   void freeze(bool on) { frozen_ = on; }
   /// Starts a fast motion of the hand toward the robot's hand, at `speed` [m/s].
   void dart(double speed);
-  /// Starts a walk of 3 m backward; a held object stays in the hand.
+  /// Starts a walk backward; a held object stays in the hand.
   void leave();
   /// Ends all reaching for objects and all offers.
   void refuse() { refusing_ = true; }

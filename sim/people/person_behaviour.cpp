@@ -7,60 +7,22 @@
 
 namespace handsel::sim {
 
-namespace {
-
-// Duration of each part of a reach with a stop, divided by the duration of a reach without a stop.
-constexpr double kPartDuration = 0.6;
-// Time for which the robot must hold the object before a giver releases the object [s].
-constexpr double kReleaseDelay = 0.5;
-// Distance of the robot's hand at which a giver withdraws an offer [m].
-constexpr double kWithdrawDistance = 0.35;
-constexpr double kSecondOfferDelay = 2.0;  // time before the second offer [s]
-// Duration of the motion to the start of a moving offer [s].
-constexpr double kMoveTime = 1.0;
-// Bounds of the distance from the shoulder in a moving offer, divided by the length of the arm.
-constexpr double kMinExtension = 0.6, kMaxExtension = 0.95;
-constexpr double kMinBeforeShoulder = 0.4;  // min distance in front of the shoulder [m]
-constexpr double kMinPalmDistance = 0.35;   // min distance from the robot's palm [m]
-constexpr double kOfferTime = 1.0;          // duration of the motion to an offer [s]
-// Time constant of the hand's return to the neutral wrist configuration [s].
-constexpr double kWristReturnTime = 0.5;
-constexpr double kMaxOfferTurn = 0.6;       // max angle of an offer from straight ahead [rad]
-constexpr double kMaxIgnoredTime = 8.0;     // time after which an ignored offer is repeated [s]
-constexpr double kStepNearerLength = 0.12;  // step toward the robot before a repeated offer [m]
-constexpr int kMaxStepsNearer = 2;          // max number of these steps
-// Max shortening of the arm by such a step [m]; otherwise no step is made.
-constexpr double kMaxArmShortening = 0.01;
-constexpr double kAboveFurniture = 0.12;   // min height of a holding hand above furniture [m]
-constexpr double kBesideFurniture = 0.12;  // horizontal distance up to which this height holds [m]
-// Min height of the lowest point of a held object above furniture [m].
-constexpr double kObjectAboveFurniture = 0.02;
-constexpr double kRaiseTime = 0.7;  // duration of raising a hand in advance [s]
-// Position of a raised hand, forearm level: ahead of and below the shoulder, divided by the
-// stature.
-constexpr double kRaisedAhead = 0.18, kRaisedBelow = 0.19;
-// A received object is moved away from the robot's hand before it is lifted over furniture.
-// The lift rises over this time [s], and with the distance from the robot's hand: from this min
-// distance over this range [m].
-constexpr double kLiftTime = 1.2, kLiftMinHandDistance = 0.30, kLiftHandRange = 0.15;
-
-}  // namespace
-
 /// Returns the completed fraction of a reach or an offer, 0 to 1.
 double PersonModel::reach_fraction() const {
-  const double t = phase_time(), part = kPartDuration * duration_,
-               stop = settings_.behaviour.hesitation;
+  const double t = phase_time(), part = settings_.manners.person_part_time * duration_,
+               stop = settings_.behaviour.hesitation, midway = settings_.manners.person_midway;
   const bool in_two_parts = !first_attempt_over_ && (stop > 0 || settings_.behaviour.withdraws);
   if (!in_two_parts) return min_jerk(t / duration_);
-  return t < part + stop
-             ? kMidwayFraction * min_jerk(t / part)
-             : kMidwayFraction + (1 - kMidwayFraction) * min_jerk((t - part - stop) / part);
+  return t < part + stop ? midway * min_jerk(t / part)
+                         : midway + (1 - midway) * min_jerk((t - part - stop) / part);
 }
 
 double PersonModel::reach_duration() const {
   const bool in_two_parts =
       !first_attempt_over_ && (settings_.behaviour.hesitation > 0 || settings_.behaviour.withdraws);
-  return in_two_parts ? 2 * kPartDuration * duration_ + settings_.behaviour.hesitation : duration_;
+  return in_two_parts
+             ? 2 * settings_.manners.person_part_time * duration_ + settings_.behaviour.hesitation
+             : duration_;
 }
 
 bool PersonModel::is_offering() const {
@@ -76,7 +38,7 @@ bool PersonModel::is_to_offer() const {
 }
 
 void PersonModel::hold_object(const PersonView& view) {
-  const double back = kOfferTime / settings_.behaviour.speed_scale;
+  const double back = settings_.manners.giving_time / settings_.behaviour.speed_scale;
   hand_target_ = from_ + min_jerk(phase_time() / back) * (carry_position() - from_);
   if (!is_to_offer() || phase_time() < duration_) return;
   from_ = hand_target_;
@@ -95,28 +57,32 @@ Vector3 PersonModel::step_to_place() const {
 }
 
 /// Returns the vector from the shoulder to a comfortable offer toward the robot's hand, at least
-/// kMinHandDistance from the hand, after a step; world [m].
+/// giving_min_hand_distance from the hand, after a step; world [m].
 Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& step) const {
+  const PersonManners& manners = settings_.manners;
   const Vector3 root = shoulder(hand_index()),
                 to_hand = view.robot_hand - root - (home_ + step_to_place() - feet_) - step;
   Vector3 arm = comfortable_reach(body_, side_) - root;
   const double turn =
       std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);
-  arm = Eigen::AngleAxisd(std::clamp(turn, -kMaxOfferTurn, kMaxOfferTurn), Vector3::UnitZ()) * arm;
-  const double shortfall = kMinHandDistance - (to_hand - arm).norm();
+  arm = Eigen::AngleAxisd(std::clamp(turn, -manners.giving_max_turn, manners.giving_max_turn),
+                          Vector3::UnitZ()) *
+        arm;
+  const double shortfall = manners.giving_min_hand_distance - (to_hand - arm).norm();
   if (shortfall > 0) arm.head<2>() *= std::max(0.0, 1 - shortfall / arm.head<2>().norm());
   // An object beside the hand is offered as far from the body as an object in front of the hand,
   // and straight ahead.
   const Vector3 held = facing() * p_hand_object_to_give_.value_or(view.p_hand_object);
   if (taking_.has_place())
-    arm +=
-        std::max(0.0, kObjectAhead - held.dot(forward())) * forward() - held.dot(left()) * left();
+    arm += std::max(0.0, manners.giving_object_ahead - held.dot(forward())) * forward() -
+           held.dot(left()) * left();
   return arm;
 }
 
 void PersonModel::return_to_place() {
   const Vector3 step = step_to_place();
-  if (step.norm() > 0) feet_ = home_ + min_jerk(phase_time() / step_time(step.norm())) * step;
+  if (step.norm() > 0)
+    feet_ = home_ + min_jerk(phase_time() / step_time(step.norm(), settings_.manners)) * step;
 }
 
 /// Turns a giver into a partner, who receives the object back and offers it at rest on request.
@@ -126,9 +92,10 @@ void PersonModel::become_partner() {
 }
 
 void PersonModel::offer(double dt, const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
   // Fingers that only touch the object cannot bear its weight.
   exit_time_ = view.held_firmly ? exit_time_ + dt : 0;
-  if (exit_time_ > kReleaseDelay) {
+  if (exit_time_ > manners.giving_release_delay) {
     become_partner();
     return give_up();
   }
@@ -142,24 +109,25 @@ void PersonModel::offer(double dt, const PersonView& view) {
     hand_target_ = from_ + reach_fraction() * (shoulder(hand_index()) + p_shoulder_offer_ - from_);
   }
   const bool is_hand_near =
-      view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kWithdrawDistance;
+      view.object != nullptr &&
+      (view.robot_hand - object_centre(view)).norm() < manners.giving_withdraw_distance;
   if (is_hand_near || phase_time() < duration_) ignored_time_ = 0;
   // Repeats an ignored offer, by another hold and nearer to the robot's hand.
-  if ((ignored_time_ += dt) > kMaxIgnoredTime) {
+  if ((ignored_time_ += dt) > manners.giving_max_ignored_time) {
     ignored_time_ = 0;
     settings_.moving = {};
     from_ = hand_target_;
     home_ = feet_;
     hold_otherwise(view);
     const Vector3 step =
-        kStepNearerLength *
+        manners.giving_step_nearer *
         (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
     p_shoulder_offer_ = offer_from_shoulder(view);
     const Vector3 nearer = offer_from_shoulder(view, step);
     // A step that only bends the arm is not made.
-    const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - kMaxArmShortening;
+    const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - manners.giving_max_shortening;
     const bool steps_nearer =
-        has_room && !settings_.behaviour.seated && steps_nearer_ < kMaxStepsNearer;
+        has_room && !settings_.behaviour.seated && steps_nearer_ < manners.giving_max_steps_nearer;
     if (steps_nearer) p_shoulder_offer_ = nearer;
     if (steps_nearer) {
       ++steps_nearer_;
@@ -175,25 +143,29 @@ void PersonModel::offer(double dt, const PersonView& view) {
   first_attempt_over_ = true;
   if (!is_to_offer()) remember_hold();
   from_ = hand_target_;
-  duration_ = kSecondOfferDelay;
+  duration_ = manners.giving_second_offer_delay;
   enter(PersonPhase::keeping);
 }
 
 /// Turns the hand back to the neutral configuration of the wrist.
 void PersonModel::turn_hand_back(double dt) {
   if (hand_turn_.w() < 1)
-    hand_turn_ =
-        hand_turn_.slerp(std::min(1.0, dt / kWristReturnTime), Eigen::Quaterniond::Identity());
+    hand_turn_ = hand_turn_.slerp(std::min(1.0, dt / settings_.manners.moving_return_time),
+                                  Eigen::Quaterniond::Identity());
 }
 
 /// Moves the hand to the start of the moving offer, then along its curves. The object turns about
 /// its own origin, so the hand moves around the object.
 void PersonModel::offer_in_motion(double dt, const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
   if (!moving_) {
-    const ArmReach reach{shoulder(hand_index()), forward(),
-                         kMinExtension * reach_, kMaxExtension * reach_,
-                         kMinBeforeShoulder,     view.robot_hand - facing() * view.p_hand_object,
-                         kMinPalmDistance};
+    const ArmReach reach{shoulder(hand_index()),
+                         forward(),
+                         manners.moving_min_extension * reach_,
+                         manners.moving_max_extension * reach_,
+                         manners.moving_min_ahead,
+                         view.robot_hand - facing() * view.p_hand_object,
+                         manners.moving_min_palm_distance};
     // The boxes bound the object, but the reach bounds the hand in the neutral wrist configuration.
     MovingOfferSettings of_hand = settings_.moving;
     p_hand_object_ = view.p_hand_object;
@@ -204,8 +176,8 @@ void PersonModel::offer_in_motion(double dt, const PersonView& view) {
     moving_.emplace(of_hand, reach, shoulder(hand_index()) + p_shoulder_offer_);
   }
   const bool waits = view.finger_distance < settings_.moving.waits_within;
-  if (waits && phase_time() < kMoveTime) phase_since_ += dt;
-  const double s = min_jerk(phase_time() / kMoveTime);
+  if (waits && phase_time() < manners.moving_start_time) phase_since_ += dt;
+  const double s = min_jerk(phase_time() / manners.moving_start_time);
   if (s >= 1) moving_->step(dt, waits);
   hand_turn_ = Eigen::Quaterniond::Identity().slerp(s, moving_->turn());
   const Vector3 turned = facing() * (p_hand_object_ - hand_turn_ * p_hand_object_);
@@ -229,6 +201,7 @@ Side PersonModel::preferred_side() const {
 /// Raises the preferred hand in front of the body while the robot holds the object. Uses the other
 /// hand if only that hand reaches the object and is free. Lowers a raised hand before a change.
 void PersonModel::raise_hand_in_advance(double dt, const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
   Side wanted = preferred_side();
   const bool robot_holds_object = view.object != nullptr && view.held_by_robot;
   if (robot_holds_object && !has_changed_hands() &&
@@ -236,12 +209,14 @@ void PersonModel::raise_hand_in_advance(double dt, const PersonView& view) {
       is_offered_to(view, wanted == Side::left ? 1 : 0))
     wanted = other_side(wanted);
   const bool is_raised = robot_holds_object && side_ == wanted && !refusing_;
-  raise_progress_ = std::clamp(raise_progress_ + (is_raised ? dt : -dt) / kRaiseTime, 0.0, 1.0);
+  raise_progress_ =
+      std::clamp(raise_progress_ + (is_raised ? dt : -dt) / manners.person_raise_time, 0.0, 1.0);
   hand_active_ = raise_progress_ > 0;
   if (!hand_active_) side_ = wanted;
   const Vector3 rest = rest_position();
-  const Vector3 raised = shoulder(hand_index()) + settings_.stature * (kRaisedAhead * forward() -
-                                                                       Vector3(0, 0, kRaisedBelow));
+  const Vector3 raised =
+      shoulder(hand_index()) + settings_.stature * (manners.person_raised_ahead * forward() -
+                                                    Vector3(0, 0, manners.person_raised_below));
   hand_target_ = rest + min_jerk(raise_progress_) * (raised - rest);
 }
 
@@ -251,7 +226,7 @@ void PersonModel::step_aside(double dt) {
   if (length <= 0) return;
   const bool free = phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping ||
                     (phase_ == PersonPhase::offering && exit_time_ <= 0);
-  const double duration = step_time(length);
+  const double duration = step_time(length, settings_.manners);
   const bool under_way = sidestep_time_ > 0 && sidestep_time_ < duration;
   if (behaviour_time() < settings_.behaviour.sidestep_at || !(free || under_way)) return;
   sidestep_time_ += dt;
@@ -261,6 +236,7 @@ void PersonModel::step_aside(double dt) {
 /// Returns the min height of a holding hand at this position, world [m]. A hand is lifted over
 /// furniture lower than the shoulder only: a tall shelf is passed at its side.
 double PersonModel::height_above_furniture(const Vector3& hand) const {
+  const PersonManners& manners = settings_.manners;
   double min_height = -std::numeric_limits<double>::infinity();
   const double shoulder_height = shoulder(hand_index()).z();
   for (const Furniture& box : settings_.furniture) {
@@ -269,8 +245,10 @@ double PersonModel::height_above_furniture(const Vector3& hand) const {
                  z = box.T_world_box.translation().z();
     if (hand.z() < z - up || z + up > shoulder_height) continue;
     const double beside = (p.cwiseAbs() - half).cwiseMax(0).head<2>().norm();
-    const double above = std::max(kAboveFurniture, held_below_ + kObjectAboveFurniture);
-    min_height = std::max(min_height, z + up + above - std::max(0.0, beside - kBesideFurniture));
+    const double above = std::max(manners.person_above_furniture,
+                                  held_below_ + manners.person_object_above_furniture);
+    min_height = std::max(min_height,
+                          z + up + above - std::max(0.0, beside - manners.person_beside_furniture));
   }
   return min_height;
 }
@@ -281,10 +259,14 @@ void PersonModel::keep_above_furniture(const Vector3& robot_hand) {
                            phase_ == PersonPhase::leaving ||
                            (phase_ == PersonPhase::offering && exit_time_ <= 0);
   if (!holds_alone) return;
-  const double away = ((hand_target_ - robot_hand).norm() - kLiftMinHandDistance) / kLiftHandRange;
-  const double lift_fraction = phase_ == PersonPhase::withdrawing
-                                   ? std::min(min_jerk(phase_time() / kLiftTime), min_jerk(away))
-                                   : 1.0;
+  // A received object is moved away from the robot's hand before it is lifted over furniture.
+  const PersonManners& manners = settings_.manners;
+  const double away = ((hand_target_ - robot_hand).norm() - manners.person_lift_min_distance) /
+                      manners.person_lift_range;
+  const double lift_fraction =
+      phase_ == PersonPhase::withdrawing
+          ? std::min(min_jerk(phase_time() / manners.person_lift_time), min_jerk(away))
+          : 1.0;
   const double min_height = height_above_furniture(hand_target_);
   hand_target_.z() += lift_fraction * std::max(0.0, min_height - hand_target_.z());
   // A held object is not pressed down on furniture.

@@ -69,7 +69,8 @@ void PersonModel::bend_arm(int s, const Vector3& target) {
 
 void PersonModel::turn_gaze(const Vector3& target, double dt) {
   const Vector3 want = (target - points_[kHead]).normalized();
-  gaze_ = (gaze_ + std::min(1.0, dt / 0.15) * (want - gaze_)).normalized();
+  gaze_ = (gaze_ + std::min(1.0, dt / settings_.manners.person_gaze_time) * (want - gaze_))
+              .normalized();
 }
 
 void PersonModel::command_hands(double dt) {
@@ -84,8 +85,11 @@ void PersonModel::command_hands(double dt) {
 }
 
 Vector3 PersonModel::carry_position() const {
-  return points_[kTorso] + 0.22 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() -
-         Vector3(0, 0, 0.05);
+  const PersonManners& manners = settings_.manners;
+  const double beside = manners.person_carry_beside;
+  return points_[kTorso] + manners.person_carry_ahead * forward() +
+         (side_ == Side::left ? beside : -beside) * left() -
+         Vector3(0, 0, manners.person_carry_below);
 }
 
 /// Returns the position of the handover hand at rest, world [m].

@@ -12,16 +12,6 @@
 namespace handsel::sim {
 namespace {
 
-constexpr double kMaxGuideSpeed = 0.6;    // max speed of guiding the hand [m/s]
-constexpr double kMaxTouchGap = 0.012;    // max distance of palm and surface at which it closes [m]
-constexpr double kPullStiffness = 200.0;  // pull force per distance to the reported hand [N/m]
-constexpr double kMaxPullSpeed = 0.1;     // max speed of the hand while it pulls [m/s]
-// Max distance of the reported hand from the held hand before the person releases the object [m].
-constexpr double kMaxPullDistance = 0.5;
-constexpr double kAdmittance = 0.02;  // speed of the hand per force error [m/s/N]
-// Max distance from the reported position at which a guided hand counts as returned [m].
-constexpr double kReturnedDistance = 0.02;
-
 Vector3 limited(const Vector3& v, double max_norm) {
   return v.norm() > max_norm ? Vector3(max_norm / v.norm() * v) : v;
 }
@@ -42,6 +32,7 @@ void PersonModel::follow(const ObservedPerson& seen) {
 
 void PersonModel::run_external_person(double dt, const PersonView& view) {
   place_body();
+  const PersonManners& manners = settings_.manners;
   const auto is_offered_to_hand = [&](int side) {
     return cooldown_ <= 0 && is_offered_to(view, side);
   };
@@ -57,17 +48,19 @@ void PersonModel::run_external_person(double dt, const PersonView& view) {
     case PersonPhase::closing: {
       Vector3 to = p_reported(hand_index());
       if (wanted && in_reach(hand_index())) to = nearest_grasp_point(view, to);
-      hand_offset_ += limited(to - p_reported(hand_index()) - hand_offset_, kMaxGuideSpeed * dt);
+      hand_offset_ +=
+          limited(to - p_reported(hand_index()) - hand_offset_, manners.external_guide_speed * dt);
       if (!wanted && hand_offset_.norm() < 1e-9) {
         hand_active_ = false;
         enter(PersonPhase::watching);
         return;
       }
       hand_target_ = p_reported(hand_index()) + hand_offset_;
-      const bool touches = wanted && hand_to_surface(view) < kPalmDistance + kMaxTouchGap;
+      const bool touches =
+          wanted && hand_to_surface(view) < kPalmDistance + manners.taking_touch_gap;
       if (touches != (phase_ == PersonPhase::closing))
         enter(touches ? PersonPhase::closing : PersonPhase::reaching);
-      if (phase_ != PersonPhase::closing || phase_time() < kCloseTime) return;
+      if (phase_ != PersonPhase::closing || phase_time() < manners.person_close_time) return;
       wants_grip_ = true;
       enter(PersonPhase::pulling);
       return;
@@ -78,9 +71,12 @@ void PersonModel::run_external_person(double dt, const PersonView& view) {
     case PersonPhase::withdrawing:
     case PersonPhase::keeping:
       if (!wants_grip_ || view.grip_broke) return release();
-      hand_offset_ -= limited(hand_offset_, kMaxGuideSpeed * min_jerk(phase_time() / 0.5) * dt);
+      hand_offset_ -=
+          limited(hand_offset_, manners.external_guide_speed *
+                                    min_jerk(phase_time() / manners.external_return_rise) * dt);
       hand_target_ = p_reported(hand_index()) + hand_offset_;
-      if (phase_ == PersonPhase::withdrawing && hand_offset_.norm() < kReturnedDistance)
+      if (phase_ == PersonPhase::withdrawing &&
+          hand_offset_.norm() < manners.external_return_distance)
         enter(PersonPhase::keeping);
       return;
     default:
@@ -100,23 +96,29 @@ void PersonModel::run_external_person(double dt, const PersonView& view) {
 /// Holds the object while the robot holds it, and pulls toward the position of the free hand.
 void PersonModel::pull_toward(const Vector3& p_free_hand, double dt, const PersonView& view) {
   if (!wants_grip_ || view.grip_broke || view.object == nullptr) return release();
+  const PersonManners& manners = settings_.manners;
   const Vector3 to_free_hand = p_free_hand - hand_target_;
   const Vector3 direction = to_free_hand.stableNormalized();
-  const double wanted = std::min(settings_.pull, kPullStiffness * to_free_hand.norm());
-  const double speed = std::clamp(kAdmittance * (wanted - view.grip_force.dot(direction)),
-                                  -kMaxPullSpeed, kMaxPullSpeed);
+  const double wanted =
+      std::min(settings_.pull, manners.external_pull_stiffness * to_free_hand.norm());
+  const double speed =
+      std::clamp(manners.taking_pull_admittance * (wanted - view.grip_force.dot(direction)),
+                 -manners.taking_max_pull_speed, manners.taking_max_pull_speed);
   hand_target_ += speed * dt * direction;
-  overload_time_ = view.grip_force.norm() > kMaxToleratedForce ? overload_time_ + dt : 0;
+  overload_time_ =
+      view.grip_force.norm() > manners.person_max_tolerated_force ? overload_time_ + dt : 0;
   exit_time_ = view.held_by_robot ? 0 : exit_time_ + dt;
-  if (overload_time_ > 0.1 || to_free_hand.norm() > kMaxPullDistance) return release();
-  if (exit_time_ <= 0.1) return;
+  if (overload_time_ > manners.taking_overload_time ||
+      to_free_hand.norm() > manners.external_max_pull_distance)
+    return release();
+  if (exit_time_ <= manners.taking_free_time) return;
   hand_offset_ += hand_target_ - p_free_hand;
   enter(PersonPhase::withdrawing);
 }
 
 void PersonModel::release() {
   wants_grip_ = false;
-  cooldown_ = 1.0;
+  cooldown_ = settings_.manners.external_cooldown;
   hand_offset_ = hand_target_ - points_[kHand[hand_index()]];
   enter(PersonPhase::reaching);
 }

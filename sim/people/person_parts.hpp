@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// For the sources of PersonModel: indices of joints, and constants common to all behaviours.
+// For the sources of PersonModel: indices of joints, profiles of motion.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/model/human/human_body.hpp"
+#include "sim/people/person_settings.hpp"
 
 namespace handsel::sim {
-
-/// Grip force beyond which the person releases the object [N].
-inline constexpr double kMaxToleratedForce = 30.0;
-/// Min distance of an offer from the robot's hand [m].
-inline constexpr double kMinHandDistance = 0.5;
-/// Distance of an object's origin ahead of a fist that holds the object unturned [m].
-inline constexpr double kObjectAhead = 0.08;
-inline constexpr double kWalkSpeed = 0.6;   ///< mean walking speed [m/s]
-inline constexpr double kMaxLean = 0.35;    ///< max lean of the trunk forward [rad]
-inline constexpr double kCloseTime = 0.25;  ///< duration of closing the hand [s]
-/// Fraction of a reach at which a person hesitates or withdraws.
-inline constexpr double kMidwayFraction = 0.55;
 
 /// Returns the minimum-jerk profile from 0 to 1 (Flash and Hogan 1985); s is limited to [0, 1].
 inline double min_jerk(double s) {
@@ -27,17 +16,12 @@ inline double min_jerk(double s) {
   return s * s * s * (10 + s * (-15 + 6 * s));
 }
 
-/// Max accelerations of a rushing person, as assumed by the controller's stop proof [m/s^2].
-inline constexpr double kMaxHandAcceleration = 50.0, kMaxTrunkAcceleration = 10.0;
-/// Peak acceleration of the trunk in a short step [m/s^2]; a rapid voluntary step from standing has
-/// 3 to 4 m/s^2.
-inline constexpr double kMaxStepAcceleration = 4.0;
-
-/// Returns the duration of a minimum-jerk step of `length` [m] at walking speed [s]; the peak
-/// acceleration is at most kMaxStepAcceleration.
-inline double step_time(double length) {
+/// Returns the duration of a minimum-jerk step of `length` [m] at walking speed, but with at most
+/// the max acceleration [s].
+inline double step_time(double length, const PersonManners& manners) {
   constexpr double kPeak = 5.7735;  // max second derivative of min_jerk(): 10 / sqrt(3)
-  return std::max(length / kWalkSpeed, std::sqrt(kPeak * length / kMaxStepAcceleration));
+  return std::max(length / manners.person_walk_speed,
+                  std::sqrt(kPeak * length / manners.person_max_step_acceleration));
 }
 
 inline const int kShoulder[2] = {body_joint_index("l_shoulder"), body_joint_index("r_shoulder")};

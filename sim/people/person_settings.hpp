@@ -5,6 +5,8 @@
 
 namespace handsel::sim {
 
+/// Behaviour of all people: how they walk, take, give and carry.
+using PersonManners = settings::SimSettings::Person;
 /// Choice of a place for a hand on an object.
 using FreeGraspSettings = settings::SimSettings::FreeGrasp;
 

@@ -10,8 +10,6 @@ namespace handsel::sim {
 
 namespace {
 
-// Distance of the wrist from the shoulder for which people lean, divided by the arm's length.
-constexpr double kStretchedArm = 0.93;
 constexpr double kLeanStep = 0.01;  // step of the search for a lean [rad]
 
 }  // namespace
@@ -64,13 +62,15 @@ bool PersonModel::gives_from_place() const {
 /// in the frame of hand(), nullopt: there is none.
 std::optional<Vector3> PersonModel::choose_place_to_give(const ObjectModel& object,
                                                          const Eigen::Quaterniond& turn) {
-  constexpr double kOutwardWeight = 0.8, kBackWeight = 0.6;  // of the hand's side of the object
+  const PersonManners& manners = settings_.manners;
   const auto arm = human_arm(body_, side_);
   if (!arm) return std::nullopt;
   FreeGraspQuery query = place_query(object, *arm);
   query.T_world_object = make_pose(comfortable_reach(body_, side_), facing() * turn);
   const Vector3 outward = side_ == Side::left ? left() : Vector3(-left());
-  query.preferred = (kOutwardWeight * outward - kBackWeight * forward()).normalized();
+  query.preferred =
+      (manners.giving_outward_weight * outward - manners.giving_back_weight * forward())
+          .normalized();
   query.avoided = held_in_vain_;
   // The end toward the robot, of an upright object the upper end.
   const Vector3 away = forward() + Vector3::UnitZ();
@@ -98,8 +98,9 @@ std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
 /// which the object was offered in vain, while the hand has another place.
 void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_.reset();
-  const bool is_far = view.object != nullptr && !view.held_by_robot &&
-                      (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
+  const bool is_far =
+      view.object != nullptr && !view.held_by_robot &&
+      (view.robot_hand - object_centre(view)).norm() > settings_.manners.giving_min_hand_distance;
   if (settings_.kind != PersonKind::partner || !taking_.has_place() || !is_far) return;
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
@@ -116,8 +117,8 @@ void PersonModel::remember_hold() {
 /// Changes the grasp of an object that the robot has not taken; keeps it where the hand has
 /// no other place.
 void PersonModel::hold_otherwise(const PersonView& view) {
-  const bool is_far =
-      view.object != nullptr && (view.robot_hand - object_centre(view)).norm() > kMinHandDistance;
+  const bool is_far = view.object != nullptr && (view.robot_hand - object_centre(view)).norm() >
+                                                    settings_.manners.giving_min_hand_distance;
   if (!gives_from_place() || !is_far) return;
   remember_hold();
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
@@ -168,10 +169,11 @@ double PersonModel::lean_to_take(const PersonView& view) const {
   const double palm = (template_[kHand[s]] - template_[kWrist[s]]).norm();
   const Vector3 p_wrist = T.translation() - palm * T.linear().col(2);
   const Vector3 upright = upright_shoulder();
+  const double max_distance = settings_.manners.taking_lean_from * (reach_ - palm);
   double nearest = 0, min_distance = std::numeric_limits<double>::infinity();
-  for (double lean = 0; lean <= kMaxLean; lean += kLeanStep) {
+  for (double lean = 0; lean <= settings_.manners.person_max_lean; lean += kLeanStep) {
     const double distance = (p_wrist - upright - by_leaning(lean)).norm();
-    if (distance <= kStretchedArm * (reach_ - palm)) return lean;
+    if (distance <= max_distance) return lean;
     if (distance < min_distance) min_distance = distance, nearest = lean;
   }
   return nearest;
@@ -180,6 +182,7 @@ double PersonModel::lean_to_take(const PersonView& view) const {
 /// Updates the configuration of the handover hand: a fist, except while the hand takes, holds in a
 /// chosen place, or moves back without an object.
 void PersonModel::update_hand(double dt, const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
   switch (phase_) {
     case PersonPhase::watching:
       bend_ = 0;
@@ -190,19 +193,19 @@ void PersonModel::update_hand(double dt, const PersonView& view) {
     case PersonPhase::withdrawing: {
       if (!taking_.has_place() || view.object == nullptr) return;
       const bool reaches = phase_ == PersonPhase::reaching, closes = phase_ == PersonPhase::closing;
+      const double turned = reaches ? min_jerk(reach_fraction() / manners.taking_turned_at) : 1;
+      const double closed = reaches  ? 0
+                            : closes ? std::min(1.0, phase_time() / manners.person_close_time)
+                                     : 1;
       hand_configuration_ =
-          taking_.configuration(R_world_rest_, reaches ? TakingHand::turned(reach_fraction()) : 1,
-                                reaches  ? 0
-                                : closes ? std::min(1.0, phase_time() / kCloseTime)
-                                         : 1,
-                                view.T_world_object);
+          taking_.configuration(R_world_rest_, turned, closed, view.T_world_object);
       bend_ = phase_ == PersonPhase::withdrawing ? 1 - min_jerk(progress_) : 1;
       return;
     }
     case PersonPhase::retracting:
       if (hand_configuration_) {
         for (double& closure : hand_configuration_->closures)
-          closure = std::max(0.0, closure - dt / kCloseTime);
+          closure = std::max(0.0, closure - dt / manners.person_close_time);
       }
       bend_ = 1 - min_jerk(phase_time() / duration_);
       return taking_.forget();

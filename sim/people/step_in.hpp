@@ -12,7 +12,8 @@ struct StepInSettings {
 };
 
 /// Returns the distance of the person from the place [m] at `time` [s]: `from` [m] before and after
-/// the visit, 0 during the stay. The speed rises and falls with kMaxStepAcceleration.
-double distance_from_place(const StepInSettings& visit, double from, double time);
+/// the visit, 0 during the stay. The speed rises and falls with `acceleration` [m/s^2].
+double distance_from_place(const StepInSettings& visit, double from, double time,
+                           double acceleration);
 
 }  // namespace handsel::sim

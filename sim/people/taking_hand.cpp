@@ -1,18 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/people/taking_hand.hpp"
 
-#include "sim/people/person_parts.hpp"
-
 namespace handsel::sim {
-
-namespace {
-
-// Distance of the curve's control point from the place, along the palm's normal: the last 8 cm,
-// which taking_approach keeps free, are nearly straight [m].
-constexpr double kControlDistance = 0.25;
-constexpr double kTurnedAt = 0.75;  // fraction of a reach at which the hand has turned
-
-}  // namespace
 
 void TakingHand::choose(const FreeGraspQuery& query, const HumanHand& shape,
                         const FreeGraspSettings& settings) {
@@ -38,17 +27,17 @@ void TakingHand::forget() {
   place_.reset();
 }
 
-Vector3 TakingHand::position_at(const Vector3& from, double s, const Pose& T_world_object) const {
+Vector3 TakingHand::position_at(const Vector3& from, double s, double curve,
+                                const Pose& T_world_object) const {
   const Pose T = goal(T_world_object);
-  const Vector3 to = T.translation(), control = behind(to, Eigen::Quaterniond(T.linear()));
+  const Vector3 to = T.translation(), control = behind(to, curve, Eigen::Quaterniond(T.linear()));
   return (1 - s) * (1 - s) * from + 2 * s * (1 - s) * control + s * s * to;
 }
 
-Vector3 TakingHand::behind(const Vector3& from, const Eigen::Quaterniond& R_world_hand) {
-  return from - kControlDistance * (R_world_hand * Vector3::UnitX());
+Vector3 TakingHand::behind(const Vector3& from, double curve,
+                           const Eigen::Quaterniond& R_world_hand) {
+  return from - curve * (R_world_hand * Vector3::UnitX());
 }
-
-double TakingHand::turned(double s) { return min_jerk(s / kTurnedAt); }
 
 HandConfiguration TakingHand::configuration(const Eigen::Quaterniond& R_world_rest, double turned,
                                             double closed, const Pose& T_world_object) const {

@@ -32,13 +32,12 @@ class TakingHand {
   /// Returns the pose of the hand in the chosen place, world; a place is chosen.
   Pose goal(const Pose& T_world_object) const { return T_world_object * place_->T_object_hand; }
   /// Returns the position at the fraction s of a reach from `from` [m], on a curve that ends along
-  /// the palm's normal; a place is chosen.
-  Vector3 position_at(const Vector3& from, double s, const Pose& T_world_object) const;
-  /// Returns the control point of a curve that leaves `from` [m] against the palm's normal.
-  static Vector3 behind(const Vector3& from, const Eigen::Quaterniond& R_world_hand);
-  /// Returns how far the hand has turned toward the orientation in the place, at the fraction s of
-  /// a reach, [0, 1].
-  static double turned(double s);
+  /// the palm's normal; a place is chosen. `curve`: as of behind().
+  Vector3 position_at(const Vector3& from, double s, double curve,
+                      const Pose& T_world_object) const;
+  /// Returns the control point of a curve that leaves `from` [m] against the palm's normal, at the
+  /// distance `curve` [m].
+  static Vector3 behind(const Vector3& from, double curve, const Eigen::Quaterniond& R_world_hand);
   /// Returns the configuration at the fractions of turning and closing, [0, 1]; a place is chosen.
   HandConfiguration configuration(const Eigen::Quaterniond& R_world_rest, double turned,
                                   double closed, const Pose& T_world_object) const;

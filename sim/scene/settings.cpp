@@ -35,6 +35,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.person_grip.max_force = read.person_grip_force;
   s.collision_force = read.collision_force;
   s.taking = read.free_grasp;
+  s.manners = read.person;
   s.touch_force = read.touch_force;
   s.grasp_time = read.grasp_time;
   s.lose_time = read.lose_time;

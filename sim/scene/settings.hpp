@@ -27,6 +27,7 @@ struct SimSettings {
   GripSettings robot_grip, person_grip;
   PersonHandSettings person_hand;     ///< free hand of a person on its spring
   FreeGraspSettings taking;           ///< choice of a place on an object that the robot holds
+  PersonManners manners;              ///< behaviour of all people
   double collision_force{0.5};        ///< min normal force of a collision of the robot [N]
   double touch_force{0.2};            ///< min normal force of a contact for force closure [N]
   double grasp_time{0.02};            ///< duration of force closure that begins a grasp [s]

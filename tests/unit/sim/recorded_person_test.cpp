@@ -54,13 +54,13 @@ TEST(SimRecording,
       const Vector3 moved = person.body().joints[joint("waist")].position - recorded_at(t, "waist");
       const double bent =
           (person.hand().T_world_body.translation() - recorded_at(t, "r_hand") - moved).norm();
-      if (t < contact - settings.warp_time - 0.002) {
+      if (t < contact - settings.manners.recorded_warp_time - 0.002) {
         ASSERT_LT(bent, 0.005) << "at " << t;
       }
       warp = std::max(warp, bent);
       step = std::max(step, moved.norm());
     }
-    EXPECT_LT(warp, settings.max_warp + 0.005);
+    EXPECT_LT(warp, settings.manners.recorded_max_warp + 0.005);
     EXPECT_LT(step, 0.305);
     const bool within = off.head<2>().norm() < 0.3 && std::abs(off.z()) < 0.1;
     EXPECT_EQ(person.phase() == PersonPhase::closing, within) << off.transpose();

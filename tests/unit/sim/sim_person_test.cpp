@@ -3,6 +3,8 @@
 
 #include "common/geometry/segments.hpp"
 #include "common/model/object_surface.hpp"
+#include "sim/scene/settings.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 #include "tests/unit/sim/person_fixture.hpp"
 
 namespace handsel::sim::sim_person_test {
@@ -296,6 +298,24 @@ TEST(SimPerson, walks_in_from_behind_its_place) {
   for (int i = 0; i < 2500; ++i) person.step(0.001, PersonView{});
   EXPECT_NEAR(person.body().joints[joint("waist")].position.x(), 1.5, 0.05);
   EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, walks_as_fast_as_the_settings_file_says) {
+  const handsel::test::TemporaryFolder folder;
+  std::filesystem::copy(deploy() / "config/trajectory_controller.txtpb", folder.path());
+  folder.write("sim.txtpb", "person_walk_speed: 1.2\n");
+  PersonSettings settings = taker();
+  settings.approach_from = 1.2;
+  const auto arrives_after = [&settings] {
+    PersonModel person(settings);
+    double clock = 0;
+    for (; person.phase() == PersonPhase::arriving && clock < 10; clock += 0.001)
+      person.step(0.001, PersonView{});
+    return clock;
+  };
+  EXPECT_NEAR(arrives_after(), 2.0, 0.01);
+  settings.manners = load_settings(folder.path()).manners;
+  EXPECT_NEAR(arrives_after(), 1.0, 0.01);
 }
 
 TEST(SimWorld, who_fetches_a_mug_takes_it_from_where_it_stands_and_goes) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/base/errors.hpp"
+#include "sim/people/person_settings.hpp"
 #include "sim/people/step_in.hpp"
 #include "sim/scene/scene_setup.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
@@ -15,14 +16,16 @@
 namespace handsel::sim::step_in_test {
 namespace {
 
+constexpr double kAcceleration = PersonManners{}.person_max_step_acceleration;
+
 TEST(StepIn, walks_in_at_the_speed_stays_and_walks_back) {
   const StepInSettings visit{3.0, 1.6, 2.0};
   constexpr double kFrom = 1.5, kStep = 0.001;
-  EXPECT_EQ(distance_from_place(visit, kFrom, 0.0), kFrom);
-  EXPECT_EQ(distance_from_place(visit, kFrom, 3.0), kFrom);
+  EXPECT_EQ(distance_from_place(visit, kFrom, 0.0, kAcceleration), kFrom);
+  EXPECT_EQ(distance_from_place(visit, kFrom, 3.0, kAcceleration), kFrom);
   double fastest = 0, stayed = 0, before = kFrom;
   for (double time = 3.0; time < 9.0; time += kStep) {
-    const double distance = distance_from_place(visit, kFrom, time);
+    const double distance = distance_from_place(visit, kFrom, time, kAcceleration);
     fastest = std::max(fastest, std::abs(distance - before) / kStep);
     stayed += distance < 1e-9 ? kStep : 0.0;
     ASSERT_GE(distance, 0.0);
@@ -31,15 +34,15 @@ TEST(StepIn, walks_in_at_the_speed_stays_and_walks_back) {
   }
   EXPECT_NEAR(fastest, 1.6, 0.01);
   EXPECT_NEAR(stayed, 2.0, 0.1);
-  EXPECT_EQ(distance_from_place(visit, kFrom, 9.0), kFrom);
+  EXPECT_EQ(distance_from_place(visit, kFrom, 9.0, kAcceleration), kFrom);
 }
 
 TEST(StepIn, over_a_short_way_the_speed_is_not_reached) {
   const StepInSettings visit{0.0, 1.6, 1.0};
   double fastest = 0;
   for (double time = 0; time < 1.0; time += 0.001)
-    fastest = std::max(fastest, (distance_from_place(visit, 0.3, time) -
-                                 distance_from_place(visit, 0.3, time + 0.001)) /
+    fastest = std::max(fastest, (distance_from_place(visit, 0.3, time, kAcceleration) -
+                                 distance_from_place(visit, 0.3, time + 0.001, kAcceleration)) /
                                     0.001);
   EXPECT_LT(fastest, 1.2);
   EXPECT_GT(fastest, 0.9);
