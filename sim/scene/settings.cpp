@@ -2,12 +2,36 @@
 #include "sim/scene/settings.hpp"
 
 #include <cstdlib>
+#include <string>
 
 #include "common/config/resources.hpp"
 #include "common/config/settings/sim.hpp"
 #include "common/config/settings/trajectory_controller.hpp"
+#include "common/config/settings_text.hpp"
 
 namespace handsel::sim {
+
+namespace {
+
+/// Compares settings of people with each other; throws ConfigError.
+void check_people(const settings::SimSettings& read, const SettingsText& text) {
+  const PersonManners& m = read.person;
+  const auto check = [&text](double low, double high, const char* key, const char* other) {
+    if (low > high) text.refuse(key, std::string("must be at most ") + other);
+  };
+  check(read.free_grasp.taking_place_max_lean, m.person_max_lean, "taking_place_max_lean",
+        "person_max_lean");
+  check(m.taking_max_offer_speed, m.taking_max_target_speed, "taking_max_offer_speed",
+        "taking_max_target_speed");
+  check(m.taking_max_early_offer_speed, m.taking_max_early_target_speed,
+        "taking_max_early_offer_speed", "taking_max_early_target_speed");
+  check(m.taking_min_reach_time, m.taking_max_reach_time, "taking_min_reach_time",
+        "taking_max_reach_time");
+  check(m.taking_touch_gap, m.taking_hold_gap, "taking_touch_gap", "taking_hold_gap");
+  check(m.external_min_motion, m.external_max_motion, "external_min_motion", "external_max_motion");
+}
+
+}  // namespace
 
 std::filesystem::path data_root() {
   if (const char* data = std::getenv("HANDSEL_DATA")) return data;
@@ -16,7 +40,9 @@ std::filesystem::path data_root() {
 }
 
 SimSettings load_settings(const std::filesystem::path& folder) {
-  const auto read = settings::read_sim_settings(folder / "sim.txtpb");
+  SettingsText text;
+  const auto read = settings::read_sim_settings(folder / "sim.txtpb", &text);
+  check_people(read, text);
   const auto controller =
       settings::read_trajectory_controller_settings(folder / "trajectory_controller.txtpb");
   SimSettings s;

@@ -114,7 +114,15 @@ void add_components(BadFiles& table) {
   Settings(table, "sim", "sim.txtpb")
       .key("step", "1", "is 1, must be")
       .key("position_noise", "nan", "is nan, must be")
-      .key("solver_iterations", "2000000000", "is 2e+09, must be");
+      .key("solver_iterations", "2000000000", "is 2e+09, must be")
+      .key("taking_directions", "0", "is 0, must be")
+      .key("person_close_time", "0", "is 0, must be")
+      .key("taking_place_max_lean", "0.4", "taking_place_max_lean: must be at most person_max_lean")
+      .key("taking_max_offer_speed", "0.3", "must be at most taking_max_target_speed")
+      .key("taking_max_early_target_speed", "0.3", "taking_max_early_offer_speed: must be at most")
+      .key("taking_min_reach_time", "2", "taking_min_reach_time: must be at most")
+      .key("taking_hold_gap", "0.01", "taking_touch_gap: must be at most taking_hold_gap")
+      .key("external_min_motion", "0.2", "must be at most external_max_motion");
   Settings(table, "ros2_lane", "ros2_lane.txtpb")
       .key("people_rate", "nan", "is nan, must be")
       .key("tf_rate", "900", "is 900, must be");
