@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings of all people, made from common/config/schema/sim.proto.
 #pragma once
 

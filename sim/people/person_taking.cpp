@@ -170,8 +170,11 @@ double PersonModel::lean_to_take(const PersonView& view) const {
   const Vector3 p_wrist = T.translation() - palm * T.linear().col(2);
   const Vector3 upright = upright_shoulder();
   const double max_distance = settings_.manners.taking_lean_from * (reach_ - palm);
+  const int steps =
+      std::max(1, static_cast<int>(std::ceil(settings_.manners.person_max_lean / kLeanStep)));
   double nearest = 0, min_distance = std::numeric_limits<double>::infinity();
-  for (double lean = 0; lean <= settings_.manners.person_max_lean; lean += kLeanStep) {
+  double lean = 0;
+  for (int i = 0; i < steps; ++i, lean += kLeanStep) {
     const double distance = (p_wrist - upright - by_leaning(lean)).norm();
     if (distance <= max_distance) return lean;
     if (distance < min_distance) min_distance = distance, nearest = lean;
