@@ -208,8 +208,8 @@ int main(int argc, char** argv) {
   while (!stopped && t <= end) {
     body_at(&person, t, &body);
     guess_gaze(&body);
-    seen.stamp = things.stamp =
-        dds_time(); /* when it was measured: a camera's time of exposure, not the time of sending */
+    /* when it was measured: a camera's time of exposure, not the time of sending */
+    seen.stamp = things.stamp = dds_time();
     dds_write(humans, &seen);
     if (objects) dds_write(objects, &things);
 
