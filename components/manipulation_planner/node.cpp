@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "components/manipulation_planner/node.hpp"
 
+#include <algorithm>
+
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/settings_text.hpp"
@@ -23,6 +25,12 @@ settings::ManipulationPlannerSettings load_settings(const NodeContext& context) 
     text.refuse("otp_max_ahead", "must be at least otp_min_ahead");
   if (s.otp_max_below < s.otp_min_below)
     text.refuse("otp_max_below", "must be at least otp_min_below");
+  const double longest_rest = std::max({s.offer_rest, s.offer_detour_rest, s.offer_long_rest,
+                                        s.offer_max_turn_time, s.offer_retreat_end});
+  if (s.offer_trail <= longest_rest)
+    text.refuse("offer_trail",
+                "must be above offer_rest, offer_detour_rest, offer_long_rest, "
+                "offer_max_turn_time and offer_retreat_end");
   s.people = load_people(context.settings).people;
   return s;
 }

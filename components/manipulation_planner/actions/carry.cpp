@@ -15,8 +15,7 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSamePlace = 0.004;  // what moved less is where it was planned to be taken [m]
-constexpr std::size_t kSteps = 3;     // of a plan: two grasps and the place
+constexpr std::size_t kSteps = 3;  // of a plan: two grasps and the place
 
 /// The steps of the plan.
 struct CarryPlan {
@@ -70,7 +69,8 @@ Routine<Outcome> enclose(Parts& parts, const std::string& object, const RegraspS
   const SceneObject* thing = parts.now.object(object);
   const bool as_planned =
       thing != nullptr &&
-      (thing->T_world_object.translation() - step.T_world_object.translation()).norm() < kSamePlace;
+      (thing->T_world_object.translation() - step.T_world_object.translation()).norm() <
+          parts.settings.regrasp_same_place;
   // At the end of a joint's range only the place as it was seen when planning is reached.
   if (!grasp && as_planned) grasp = step.grasp;
   if (!grasp)
@@ -200,8 +200,9 @@ Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, con
   }
   is_down = true;
   const SceneObject* now = parts.now.object(object);
-  const bool is_lifted = now == nullptr || now->T_world_object.translation().z() >
-                                               T_start.translation().z() + kSamePlace;
+  const bool is_lifted =
+      now == nullptr || now->T_world_object.translation().z() >
+                            T_start.translation().z() + parts.settings.regrasp_same_place;
   if (!done.good && is_lifted) {
     parts.refuse(text_of(parts.action.phase), done.reason);
     parts.action.phase = ActionPhase::put_back;

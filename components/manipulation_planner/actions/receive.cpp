@@ -17,10 +17,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kObserveAgain = 0.02;  // [s]
-constexpr double kSameDistance =
-    0.5;  // distances of the arm's farthest axis that count as equal [rad]
-
 /// Uses the arm that is nearest to the giver: people hold back before that hand.
 Routine<Outcome> use_nearest_arm(Parts& parts, const std::string& giver) {
   const Person* person = parts.now.person(giver);
@@ -55,7 +51,7 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& giver
       waits_since = parts.now.time();
       continue;
     }
-    co_await parts.waiting.pause(kObserveAgain);
+    co_await parts.waiting.pause(parts.settings.offer_check_period);
   }
   co_return std::nullopt;
 }
@@ -114,7 +110,8 @@ Routine<OfferGrasps> rank_grasps(Parts& parts, const Offer& offer, const std::st
                            (parts.destinations.has(g.id) ? 0.0 : parts.settings.place_detour);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
     const bool may_slip = g.margin < parts.settings.min_sure_margin;
-    ranked.emplace_back(std::pair(may_slip, std::floor((distance + penalty) / kSameDistance)),
+    ranked.emplace_back(std::pair(may_slip, std::floor((distance + penalty) /
+                                                       parts.settings.receive_same_distance)),
                         std::move(g));
   }
   std::stable_sort(ranked.begin(), ranked.end(),

@@ -9,9 +9,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kAtRest =
-    0.02;  // an arm or hand this near its rest configuration is there, max norm [rad]
-
 /// Returns whether the hand in use, at rest, would be in the way of another hand with the fingers
 /// that its last grasp opened.
 bool is_opened_beside_another(const Parts& parts) {
@@ -20,7 +17,7 @@ bool is_opened_beside_another(const Parts& parts) {
     return false;
   const Vector off =
       RobotModel::part(parts.arm.configuration() - parts.arm.robot().rest_configuration(), fingers);
-  return off.cwiseAbs().maxCoeff() > kAtRest;
+  return off.cwiseAbs().maxCoeff() > parts.settings.rest_range;
 }
 
 /// Returns the rest configuration, or where what is held must stay upright and would not, one with
@@ -53,7 +50,8 @@ Routine<Outcome> rest(Parts& parts) {
   if (motion.goals.empty()) motion.goals = {upright_at(parts, at_rest)};
   Outcome outcome = co_await move(parts, motion);
   const Vector off = RobotModel::part(parts.now.set_point(), arm) - at_rest;
-  if (!outcome.good || off.cwiseAbs().maxCoeff() > kAtRest || !is_opened_beside_another(parts))
+  if (!outcome.good || off.cwiseAbs().maxCoeff() > parts.settings.rest_range ||
+      !is_opened_beside_another(parts))
     co_return outcome;
   const Vector folded =
       RobotModel::part(parts.arm.robot().rest_configuration(), parts.arm.fingers());
@@ -69,7 +67,7 @@ Routine<Outcome> rest_others(Parts& parts) {
     if (other.arm == nullptr || other.name == used) continue;
     const Vector off = RobotModel::part(
         parts.now.set_point() - parts.arm.robot().rest_configuration(), *other.arm);
-    if (off.cwiseAbs().maxCoeff() < kAtRest) continue;
+    if (off.cwiseAbs().maxCoeff() < parts.settings.rest_range) continue;
     const std::optional<Grasp> grasp = parts.held.grasp();
     Outcome done = co_await use_arm(parts, other.name);
     if (done.good) done = co_await rest(parts);

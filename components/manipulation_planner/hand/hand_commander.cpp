@@ -2,12 +2,6 @@
 #include "components/manipulation_planner/hand/hand_commander.hpp"
 
 namespace handsel::manipulation_planner {
-namespace {
-
-constexpr int kMaxHandTries = 20;       // to send a hand command
-constexpr double kHandTryPeriod = 0.3;  // between tries [s]
-
-}  // namespace
 
 Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
                                      const Vector* effort, double mass_ratio) {
@@ -24,13 +18,13 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
     return now_.execution()->hand_command == id && arm_.hand_state() != HandState::refused;
   };
   bool acknowledged = false;
-  for (int tries = 0; tries < kMaxHandTries && !acknowledged; ++tries) {
+  for (std::uint32_t tries = 0; tries < settings_.hand_command_tries && !acknowledged; ++tries) {
     const bool ready =
         co_await waiting_.until([this] { return link_.may_move(); }, settings_.permission_timeout);
     if (!ready) break;
     command.epoch = now_.execution()->epoch;
     link_.send(command);
-    acknowledged = co_await waiting_.until(is_acknowledged, kHandTryPeriod);
+    acknowledged = co_await waiting_.until(is_acknowledged, settings_.hand_command_period);
   }
   arm_.set_finger_goal(std::nullopt);
   if (acknowledged && action == HandAction::move) arm_.set_finger_goal(position);

@@ -8,7 +8,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kLength = 2.0;           // of the trail [s]
 constexpr double kMinStep = 1e-3;         // between two observations [s]
 constexpr std::size_t kDifferences = 10;  // of positions, from which the noise is measured
 
@@ -17,7 +16,7 @@ constexpr std::size_t kDifferences = 10;  // of positions, from which the noise 
 void ObjectTrail::add(TimePoint seen, const Vector3& p_world) {
   if (!places_.empty() && to_seconds(seen - places_.back().first) < kMinStep) return;
   places_.emplace_back(seen, p_world);
-  while (to_seconds(seen - places_.front().first) > kLength) places_.pop_front();
+  while (to_seconds(seen - places_.front().first) > settings_.offer_trail) places_.pop_front();
   measure_noise();
 }
 

@@ -11,7 +11,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr std::size_t kMaxConfigurations = 6;     // to wait in
 constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};  // from rest, away from the person [m]
 constexpr double kOfferAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
 constexpr double kSwing[] = {0.4, -0.4, 0.8, -0.8, 1.2, -1.2};  // from rest, at the shoulder [rad]
@@ -90,7 +89,7 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
     if (is_clear != (b.clearance >= 0)) return is_clear;
     return is_clear ? a.from_rest < b.from_rest : a.clearance > b.clearance;
   });
-  if (places.size() > kMaxConfigurations) places.resize(kMaxConfigurations);
+  places.resize(std::min<std::size_t>(places.size(), settings_.offer_area_goals));
   std::vector<Vector> out;
   out.reserve(places.size());
   for (Place& place : places) out.push_back(std::move(place.joints));

@@ -13,9 +13,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSameGoal = 0.03;   // max norm: a configuration this near to a goal is that [rad]
-constexpr double kSamePoint = 0.01;  // exchange points this near to each other are the same [m]
-
 const Vector3& trunk_of(const Person& person) {
   return person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
 }
@@ -41,9 +38,10 @@ bool has_changed(const ReceiverTarget& before, const ReceiverTarget& now,
          now.hands != before.hands;
 }
 
-bool is_goal_of(const MotionSpec& motion, const Vector& q) {
+bool is_goal_of(const MotionSpec& motion, const Vector& q,
+                const settings::ManipulationPlannerSettings& settings) {
   return std::any_of(motion.goals.begin(), motion.goals.end(), [&](const Vector& goal) {
-    return (goal - q).lpNorm<Eigen::Infinity>() < kSameGoal;
+    return (goal - q).lpNorm<Eigen::Infinity>() < settings.otp_same_goal;
   });
 }
 
@@ -145,7 +143,7 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   const Person* person = parts.now.person(receiver);
   if (!settings.follow_receiver || person == nullptr) co_return false;
   const ReceiverTarget now = target_of(*person, look_at_hands(parts, *person));
-  const bool is_astray = parts.arm.at_rest() && !is_goal_of(motion, goal);
+  const bool is_astray = parts.arm.at_rest() && !is_goal_of(motion, goal, settings);
   if (!is_astray && !has_changed(*motion.receiver, now, settings)) co_return false;
   const Pose T_world_object = T_world_held_at(parts, goal);
   OtpChoice choice = co_await choose_otp(parts, receiver, &T_world_object);
@@ -157,7 +155,7 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   const double gain =
       distance < settings.commit_distance ? settings.commit_gain : settings.follow_gain;
   if (choice.present_cost && *choice.present_cost <= choice.search.poses.front().cost + gain) {
-    if (!is_goal_of(motion, goal)) motion.goals = {goal};
+    if (!is_goal_of(motion, goal, settings)) motion.goals = {goal};
     motion.receiver = now;
     show(partner_at(parts, *person, T_world_object), parts.action);
     co_return false;
@@ -173,8 +171,10 @@ Routine<bool> follow_shift(Parts& parts, MotionSpec& motion, const Vector& goal)
   const Person* person = parts.now.person(receiver);
   if (!parts.settings.follow_receiver || person == nullptr) co_return false;
   const Pose T_world_object = T_world_held_at(parts, goal);
-  if ((T_world_object.translation() - parts.action.exchange_point).norm() > kSamePoint) {
-    if (!is_goal_of(motion, goal)) co_return false;  // it is still to be led to the shifted one
+  if ((T_world_object.translation() - parts.action.exchange_point).norm() >
+      parts.settings.otp_same_point) {
+    if (!is_goal_of(motion, goal, parts.settings))
+      co_return false;  // it is still to be led to the shifted one
     // Of several poses found, the motion leads to another one than was reported.
     show({T_world_object, goal, 0, partner_at(parts, *person, T_world_object)}, parts.action);
     if (parts.shift.is_another_choice(T_world_object.translation()))

@@ -66,16 +66,18 @@ class OtpCosts {
   enum class Place { good, blocked, out_of_reach, forbidden };
   /// Adds up what speaks against a place; `cost` only of a good one.
   Place of_place(const Vector3& p, double& cost) const {
-    if (furniture_.blocked_by(p) != nullptr || inside_box(scene_, p, 0.12)) return Place::blocked;
+    if (furniture_.blocked_by(p) != nullptr || inside_box(scene_, p, settings_.otp_furniture_gap))
+      return Place::blocked;
     const double comfort = comfort_of_place(p);
     if (comfort >= 1) return Place::out_of_reach;
     const OutsideCost outside = layers_.outside_cost(p);
     if (outside.forbidden_by != nullptr) return Place::forbidden;
-    cost = settings_.w_comfort * comfort +
-           settings_.w_safety * safety_cost(distance_to_body(body_, p), 0.8) +
-           settings_.w_visibility * visibility_cost(person_, p, 3.0) +
-           settings_.w_effort * (p - p_now_).norm() + outside.cost +
-           settings_.w_preference * against_preference(p);
+    cost =
+        settings_.w_comfort * comfort +
+        settings_.w_safety * safety_cost(distance_to_body(body_, p), settings_.otp_safety_range) +
+        settings_.w_visibility * visibility_cost(person_, p, settings_.otp_visibility_range) +
+        settings_.w_effort * (p - p_now_).norm() + outside.cost +
+        settings_.w_preference * against_preference(p);
     return Place::good;
   }
   /// Cost of the arm that reaches the place: of the ready hand, where the other reaches too as
@@ -92,7 +94,6 @@ class OtpCosts {
   }
   /// Cost by the person's profile: the other side, another distance; 0 without a profile.
   double against_preference(const Vector3& p) const {
-    constexpr double kFull = 0.3;  // [m]
     const auto& people = settings_.people;
     const auto profile =
         std::find_if(people.begin(), people.end(),
@@ -107,11 +108,11 @@ class OtpCosts {
       const double off =
           (p - torso())
               .dot(profile->handed == settings::Handedness::left ? Vector3(-to_left) : to_left);
-      cost += std::clamp(off / kFull, 0.0, 1.0);
+      cost += std::clamp(off / settings_.preference_range, 0.0, 1.0);
     }
     if (profile->preferred_distance > 0)
-      cost += std::min(
-          1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance) / kFull);
+      cost += std::min(1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance) /
+                                settings_.preference_range);
     return cost;
   }
   /// Cost of how the hand holds the object toward the person; nullopt: they could not take it.

@@ -15,8 +15,7 @@ void TargetShift::note_choice(const Vector3& p_chosen, TimePoint now) {
 }
 
 bool TargetShift::has_led_to(const Vector3& p) const {
-  constexpr double kSamePoint = 0.03;  // the arm and the object in the hand give [m]
-  return p_shifted_ && (p - *p_shifted_).norm() < kSamePoint;
+  return p_shifted_ && (p - *p_shifted_).norm() < reached_;
 }
 
 std::optional<Vector3> TargetShift::wanted(const Vector3& p_present, TimePoint now) const {

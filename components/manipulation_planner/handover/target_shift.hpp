@@ -17,6 +17,7 @@ class TargetShift {
   explicit TargetShift(const settings::ManipulationPlannerSettings& settings)
       : max_shift_(settings.max_shift),
         min_shift_(settings.min_shift),
+        reached_(settings.shift_reached),
         pause_(from_seconds(settings.shift_pause)) {}
 
   /// Takes the newest advice; it expires as AdvisedValue does.
@@ -32,8 +33,8 @@ class TargetShift {
   /// wanted until the next refusal or choice.
   void note_refusal(const Vector3& p_refused) { p_refused_ = p_refused; }
 
-  /// Returns whether a point, world [m], is within 3 cm of the one last passed to note_change()
-  /// since the choice.
+  /// Returns whether a point, world [m], is within shift_reached of the one last passed to
+  /// note_change() since the choice.
   bool has_led_to(const Vector3& p) const;
   /// Returns whether a point, world [m], is too far from the chosen one for a shift of it.
   bool is_another_choice(const Vector3& p) const {
@@ -48,7 +49,7 @@ class TargetShift {
                                        TimePoint now) const;
 
  private:
-  double max_shift_, min_shift_;  // [m]
+  double max_shift_, min_shift_, reached_;  // [m]
   Duration pause_;
   AdvisedValue<std::optional<Vector3>> shift_;
   std::optional<Vector3> p_chosen_, p_shifted_, p_refused_;

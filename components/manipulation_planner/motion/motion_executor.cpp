@@ -17,8 +17,6 @@ constexpr double kSameGoal = 1e-6;    // [rad]
 constexpr double kMaxDuration = 600;  // a motion this long has been forgotten by everybody [s]
 constexpr double kYieldRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
 
-constexpr double kTiltNoise = 0.01;  // the start of a path may be tilted by this more [rad]
-
 double tilt_of(const Vector3& axis) { return std::acos(std::clamp(axis.z(), -1.0, 1.0)); }
 
 /// Returns the sum of the max norms of the segments [rad].
@@ -43,7 +41,8 @@ std::optional<TiltBound> tilt_bound(const Parts& parts, const MotionSpec& motion
   const Vector3 axis = parts.held.attachment().T_tool_object.linear() * Vector3::UnitZ();
   const double now = tilt_of(parts.arm.T_world_tool().linear() * axis);
   if (now > model->max_tilt) return std::nullopt;
-  return TiltBound{axis, std::max(model->max_tilt - parts.settings.tilt_margin, now + kTiltNoise)};
+  return TiltBound{axis, std::max(model->max_tilt - parts.settings.tilt_margin,
+                                  now + parts.settings.tilt_noise)};
 }
 
 PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion) {

@@ -12,7 +12,6 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kReachStep = 0.1;  // or within this more, as often as braking needs it [rad]
 constexpr double kSameTime = 1e-6;  // [s]
 constexpr double kAtRest = 1e-9;    // [rad/s, m/s]
 
@@ -175,7 +174,8 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   Switched along;
   along.trajectory = reply.trajectory;
   for (double reach = parts_.settings.live_same_path;
-       !point.at_rest && reach <= parts_.settings.live_reach; reach += kReachStep) {
+       !point.at_rest && reach <= parts_.settings.live_reach;
+       reach += parts_.settings.live_same_path_step) {
     candidate->max_reach = reach;
     along = planner.join(point.from, reply.trajectory, *candidate);
     if (along.ok() && !turns_back(along, reply.trajectory)) break;

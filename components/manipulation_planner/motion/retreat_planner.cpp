@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kDamping = 1e-3;   // of the least-squares solution
 constexpr double kRounding = 1e-9;  // of the number of steps
-constexpr double kMaxTurn = 0.1;    // of one axis for a step [rad, m]
 
 struct Placed {
   Vector3 a, b;
@@ -139,7 +138,7 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
                                                   rates.rows(), settings_.retreat_step));
     Vector next = q;
     for (Eigen::Index i = 0; i < n; ++i) next[arm_.axes[static_cast<std::size_t>(i)]] += change[i];
-    if (change.cwiseAbs().maxCoeff() > kMaxTurn || !within_limits(next) ||
+    if (change.cwiseAbs().maxCoeff() > settings_.retreat_max_turn || !within_limits(next) ||
         !leads_away(q, next, T_world_base, people))
       break;
     q = next;

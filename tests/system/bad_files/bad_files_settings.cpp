@@ -88,6 +88,7 @@ void add_components(BadFiles& table) {
       .key("cone_edges", "3", "is 3, must be");
   Settings(table, "manipulation_planner", "manipulation_planner.txtpb")
       .key("otp_max_ahead", "0.3", "otp_max_ahead: must be at least otp_min_ahead")
+      .text("short_trail", "offer_trail: 1.0\n", "offer_trail: must be above offer_rest")
       .key("planning_time", "nan", "is nan, must be")
       .key("carry_speed", "7", "is 7, must be")
       .key("hand_timeout", "-1", "is -1, must be");
