@@ -24,6 +24,10 @@ settings::SparkSettings load_settings(const std::filesystem::path& folder) {
       text.refuse("contact_zone", "the zones must grow: contact, danger, interaction, social");
     inner = limit;
   }
+  if (settings.trunk_sudden_acceleration < settings.trunk_acceleration)
+    text.refuse("trunk_sudden_acceleration", "must be at least trunk_acceleration");
+  if (settings.joint_sudden_acceleration < settings.joint_acceleration)
+    text.refuse("joint_sudden_acceleration", "must be at least joint_acceleration");
   std::set<std::string> clocks;
   for (const settings::SourceClock& clock : settings.clocks)
     if (clock.source.empty() || !clocks.insert(clock.source).second)

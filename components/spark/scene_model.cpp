@@ -10,11 +10,7 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kRevisionMove = 0.005;        // min motion of an object for a new revision [m]
-constexpr double kRevisionUncertainty = 0.02;  // min change of uncertainty for a new revision [m]
-constexpr double kRefusalTime = 5;             // duration for which a refusal is reported [s]
-
-bool differs(const Scene& a, const Scene& b) {
+bool differs(const Scene& a, const Scene& b, const settings::SparkSettings& settings) {
   if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() ||
       a.robot_known != b.robot_known)
     return true;
@@ -25,10 +21,10 @@ bool differs(const Scene& a, const Scene& b) {
     if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id)
       return true;
     if (x.primitive.kind != y.primitive.kind || x.primitive.size != y.primitive.size) return true;
-    if (std::abs(x.uncertainty - y.uncertainty) > kRevisionUncertainty) return true;
+    if (std::abs(x.uncertainty - y.uncertainty) > settings.revision_uncertainty) return true;
     const bool carried = x.holder == Holder::robot;  // the pose follows from the hand's
-    if (!carried &&
-        (x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove)
+    if (!carried && (x.T_world_object.translation() - y.T_world_object.translation()).norm() >
+                        settings.revision_move)
       return true;
   }
   return false;
@@ -129,7 +125,7 @@ std::string SceneModel::left_out_in_reach() const {
 
 std::string SceneModel::trouble(TimePoint now) const {
   std::string left_out = left_out_in_reach();
-  if (refused_ == 0 || to_seconds(now - refused_at_) > kRefusalTime) return left_out;
+  if (refused_ == 0 || to_seconds(now - refused_at_) > settings_.refusal_time) return left_out;
   return refusal_ + ": refused, " + std::to_string(refused_) + " so far" +
          (left_out.empty() ? "" : "; ") + left_out;
 }
@@ -167,7 +163,7 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
     return Rank{0, distance_to_arm(box, reach())};
   });
   out.left_out = objects_left_out_.count + boxes_left_out_.count;
-  if (revision_ == 0 || differs(out, last_)) {
+  if (revision_ == 0 || differs(out, last_, settings_)) {
     ++revision_;
     last_ = out;
   }

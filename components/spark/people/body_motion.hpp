@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/human/human_body.hpp"
 #include "components/spark/people/joint_motion.hpp"
@@ -25,20 +26,19 @@ class BodyMotion {
   /// writes their velocities to `body`. `noise`: standard deviation of each coordinate [m]; 0: no
   /// new observation of the joint.
   void update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise,
-              TimePoint at);
+              TimePoint at, const settings::SparkSettings& settings);
 
  private:
   struct Point {
-    explicit Point(const JointMotion::Accelerations& accelerations) : motion(accelerations) {}
-    void add(const Vector3& position, double noise, TimePoint at);
+    /// Restarts where the last sample is more than `max_gap` ago [s].
+    void add(const Vector3& position, double noise, TimePoint at, const JointMotion::Model& model,
+             double max_gap);
     JointMotion motion;
     std::optional<TimePoint> sampled;
   };
-  // Accelerations of trunk, and of joints relative to the trunk, usual and sudden [m/s^2].
-  static constexpr JointMotion::Accelerations kTrunk{2, 10}, kFromTrunk{1, 20};
 
-  Point trunk_{kTrunk};
-  std::vector<Point> joints_{kBodyJoints.size(), Point(kFromTrunk)};  // relative to the trunk
+  Point trunk_;
+  std::vector<Point> joints_{kBodyJoints.size()};  // relative to the trunk
 };
 
 }  // namespace handsel::spark

@@ -11,11 +11,6 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kMinJointConfidence = 0.3;             // min confidence of a measuring joint
-constexpr int kMaxAveraged = 60;                        // max number of averaged samples
-constexpr double kMinCorrection = 0.02;                 // min change of the stature [m]
-constexpr double kMinStature = 0.6, kMaxStature = 2.2;  // bounds of a sample [m]
-
 constexpr std::array<std::pair<const char*, const char*>, 13> kBones = {
     {{"l_shoulder", "l_elbow"},
      {"r_shoulder", "r_elbow"},
@@ -54,11 +49,11 @@ const std::array<Bone, kBones.size()>& bones() {
 
 }  // namespace
 
-void BodySize::add_sample(const ObservedPerson& body) {
+void BodySize::add_sample(const ObservedPerson& body, const settings::SparkSettings& settings) {
   std::array<const ObservedJoint*, kBodyJoints.size()> seen{};
   for (const ObservedJoint& joint : body.joints)
     if (const int i = body_joint_index(joint.name);
-        i >= 0 && joint.confidence >= kMinJointConfidence && joint.position.allFinite())
+        i >= 0 && joint.confidence >= settings.stature_min_confidence && joint.position.allFinite())
       seen[static_cast<std::size_t>(i)] = &joint;
   std::vector<double> statures;
   for (const Bone& bone : bones()) {
@@ -70,10 +65,10 @@ void BodySize::add_sample(const ObservedPerson& body) {
   if (statures.empty()) return;
   const auto median = statures.begin() + static_cast<std::ptrdiff_t>(statures.size() / 2);
   std::nth_element(statures.begin(), median, statures.end());
-  if (!(*median >= kMinStature && *median <= kMaxStature)) return;
-  samples_ = std::min(samples_ + 1, kMaxAveraged);
+  if (!(*median >= settings.min_stature && *median <= settings.max_stature)) return;
+  samples_ = std::min(samples_ + 1, static_cast<int>(settings.stature_samples));
   mean_ += (*median - mean_) / samples_;
-  if (std::abs(mean_ - stature_) > kMinCorrection) stature_ = mean_;
+  if (std::abs(mean_ - stature(settings)) > settings.stature_step) stature_ = mean_;
 }
 
 }  // namespace handsel::spark

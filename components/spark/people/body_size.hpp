@@ -2,23 +2,30 @@
 // Estimates a person's stature from the distances between joints. Pure.
 #pragma once
 
+#include <optional>
+
+#include "common/config/settings/spark.hpp"
 #include "common/messages/perception.hpp"
 
 namespace handsel::spark {
 
-/// Averages, over about 60 samples, the median of the statures that follow from each observed bone
+/// Averages, over `stature_samples`, the median of the statures that follow from each observed bone
 /// and the proportions of standing_body. Own method: independent of the configuration, as people
 /// bend and sit.
 class BodySize {
  public:
-  /// Takes a sample of all bones with two joints of a confidence of at least 0.3; ignores a stature
-  /// outside [0.6, 2.2] m.
-  void add_sample(const ObservedPerson& body);
-  /// Returns the stature [m]; 1.75 before the first sample; changes in steps above 0.02.
-  double stature() const { return stature_; }
+  /// Takes a sample of all bones with two joints of a confidence of at least
+  /// `stature_min_confidence`; ignores a stature outside `min_stature` and `max_stature`.
+  void add_sample(const ObservedPerson& body, const settings::SparkSettings& settings);
+  /// Returns the stature [m]; `assumed_stature` before the first sample; changes in steps above
+  /// `stature_step`.
+  double stature(const settings::SparkSettings& settings) const {
+    return stature_.value_or(settings.assumed_stature);
+  }
 
  private:
-  double mean_{}, stature_{1.75};
+  double mean_{};
+  std::optional<double> stature_;
   int samples_{0};
 };
 

@@ -6,10 +6,6 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kMaxInnovation = 2;  // max innovation of usual motion [standard deviations]
-constexpr double kSuddenFactor = 3;   // increase of the acceleration at a larger innovation
-constexpr double kInitialSpeed = 1;   // standard deviation of the first velocity [m/s]
-
 /// Returns the effect of a present acceleration after `h` [s] on position, velocity and
 /// acceleration.
 Vector3 response(const FadingModel& m, double h) {
@@ -40,11 +36,12 @@ Eigen::Matrix3d process_noise(const FadingModel& m, double h, double acceleratio
 
 }  // namespace
 
-void FadingMotion::reset(const Vector3& position, double noise) {
+void FadingMotion::reset(const FadingModel& model, const Vector3& position, double noise) {
+  model_ = model;
   position_ = position;
   velocity_.setZero();
   acceleration_.setZero();
-  covariance_ = Vector3(noise * noise, kInitialSpeed * kInitialSpeed,
+  covariance_ = Vector3(noise * noise, model_.initial_speed * model_.initial_speed,
                         model_.acceleration * model_.acceleration)
                     .asDiagonal();
 }
@@ -58,8 +55,9 @@ void FadingMotion::update(const Vector3& seen, double dt, double noise) {
                 innovation = seen - position;
   const Eigen::Matrix3d propagated = A * covariance_ * A.transpose();
   Eigen::Matrix3d P = propagated + process_noise(model_, dt, acceleration);
-  if (innovation.squaredNorm() > 3 * kMaxInnovation * kMaxInnovation * (P(0, 0) + noise * noise))
-    P = propagated + process_noise(model_, dt, kSuddenFactor * acceleration);
+  const double usual = model_.usual_deviations;
+  if (innovation.squaredNorm() > 3 * usual * usual * (P(0, 0) + noise * noise))
+    P = propagated + process_noise(model_, dt, model_.sudden_factor * acceleration);
   const Vector3 gain = P.col(0) / (P(0, 0) + noise * noise);
   position_ = position + gain.x() * innovation;
   velocity_ = velocity + gain.y() * innovation;

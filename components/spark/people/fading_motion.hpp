@@ -13,6 +13,9 @@ struct FadingModel {
   double acceleration_time{};       ///< time constant of the acceleration [s]
   double acceleration{};            ///< standard deviation on each axis [m/s^2]
   double acceleration_per_speed{};  ///< increase per speed [1/s]
+  double usual_deviations{};        ///< max innovation of usual motion [standard deviations]
+  double sudden_factor{};           ///< of the acceleration at a larger innovation
+  double initial_speed{};           ///< standard deviation of the first velocity [m/s]
 };
 
 /// Filters with Singer's model of manoeuvring points (1970), extended by a decaying velocity, in a
@@ -25,9 +28,9 @@ class FadingMotion {
     double deviation{};                 ///< standard deviation on each axis [m]
   };
 
-  explicit FadingMotion(const FadingModel& model) : model_(model) {}
-  /// Restarts at a position with standard deviation `noise` on each axis [m], at rest.
-  void reset(const Vector3& position, double noise);
+  /// Restarts at a position with standard deviation `noise` on each axis [m], at rest. Must come
+  /// before update() and at().
+  void reset(const FadingModel& model, const Vector3& position, double noise);
   /// Takes a sample. `dt`: time since the last sample, > 0 [s]; `noise`: standard deviation [m].
   void update(const Vector3& seen, double dt, double noise);
   /// Predicts the point at `horizon` >= 0 after the last sample [s].

@@ -7,20 +7,29 @@
 namespace handsel::spark {
 namespace {
 
-constexpr FadingModel kHandModel{0.15, 0.04, 1.2, 4};
-constexpr FadingModel kTrunkModel{1, 0.04, 1, 0};
-constexpr double kCheckHorizon = 0.2;        // horizon of the predictions that are checked [s]
 constexpr std::size_t kMaxPredictions = 64;  // max number of predictions waiting for comparison
 
-}  // namespace
+FadingModel hand_model(const HandPredictor::Settings& s) {
+  return {s.predicted_hand_velocity_time, s.predicted_hand_acceleration_time,
+          s.predicted_hand_acceleration,  s.predicted_hand_acceleration_per_speed,
+          s.predicted_usual_deviations,   s.predicted_sudden_factor,
+          s.predicted_initial_speed};
+}
 
-HandPredictor::HandPredictor() : hand_(kHandModel), trunk_(kTrunkModel) {}
+FadingModel trunk_model(const HandPredictor::Settings& s) {
+  return {s.predicted_trunk_velocity_time, s.predicted_trunk_acceleration_time,
+          s.predicted_trunk_acceleration,  0,
+          s.predicted_usual_deviations,    s.predicted_sudden_factor,
+          s.predicted_initial_speed};
+}
+
+}  // namespace
 
 void HandPredictor::reset(const Vector3& hand, const Vector3& trunk, double noise,
                           const Settings& settings) {
   settings_ = settings;
-  trunk_.reset(trunk, settings_.trunk_noise * noise);
-  hand_.reset(hand - trunk, noise);
+  trunk_.reset(trunk_model(settings_), trunk, settings_.trunk_noise * noise);
+  hand_.reset(hand_model(settings_), hand - trunk, noise);
   clock_ = 0;
   predictions_.clear();
 }
@@ -37,7 +46,8 @@ void HandPredictor::update(const Vector3& hand, const Vector3& trunk, double dt,
         error_factor_, settings_.hand_error_margin * (ball.centre - p_hand).norm() / ball.radius);
   }
   if (predictions_.size() < kMaxPredictions)
-    predictions_.push_back({clock_ + kCheckHorizon, at(kCheckHorizon, 1)});
+    predictions_.push_back(
+        {clock_ + settings_.prediction_check_horizon, at(settings_.prediction_check_horizon, 1)});
 }
 
 HandPredictor::Ball HandPredictor::at(double horizon, double factor) const {

@@ -16,7 +16,6 @@ namespace handsel::spark {
 /// inaccurate model.
 class HandPredictor {
  public:
-  HandPredictor();
   using Settings = settings::SparkSettings::HandPrediction;
   /// Restarts with a first sample, or after a gap. `trunk`: mean of several trunk joints, world
   /// [m]; `noise`: standard deviation of a joint [m].

@@ -13,19 +13,23 @@ namespace handsel::spark {
 
 class JointMotion {
  public:
-  /// Standard deviations of the acceleration on each axis [m/s^2].
-  struct Accelerations {
-    double usual, sudden;  ///< for small and for large innovations
+  struct Model {
+    /// Standard deviations of the acceleration on each axis [m/s^2], for small and for large
+    /// innovations.
+    double usual{}, sudden{};
+    double usual_deviations{};  ///< max innovation of usual motion [standard deviations]
+    double initial_speed{};     ///< standard deviation of the first velocity on each axis [m/s]
   };
-  explicit JointMotion(const Accelerations& accelerations) : accelerations_(accelerations) {}
   const Vector3& velocity() const { return velocity_; }  ///< world [m/s]
-  /// Restarts at a position with standard deviation `noise` on each axis [m], at rest.
-  void reset(const Vector3& position, double noise) {
+  /// Restarts at a position with standard deviation `noise` on each axis [m], at rest. Must come
+  /// before update().
+  void reset(const Model& model, const Vector3& position, double noise) {
+    model_ = model;
     position_ = position;
     velocity_.setZero();
     pp_ = noise * noise;
     pv_ = 0;
-    vv_ = 1.0;
+    vv_ = model_.initial_speed * model_.initial_speed;
   }
   /// Takes a sample. `dt`: time since the last sample, > 0 [s]; `noise`: standard deviation [m].
   void update(const Vector3& seen, double dt, double noise) {
@@ -36,10 +40,10 @@ class JointMotion {
       return std::array<double, 3>{pp_ + 2 * dt * pv_ + dt * dt * vv_ + q * dt * dt / 4,
                                    pv_ + dt * vv_ + q * dt / 2, vv_ + q};
     };
-    auto p = predicted(accelerations_.usual);
+    auto p = predicted(model_.usual);
     const Vector3 innovation = seen - expected;
-    if (innovation.squaredNorm() > 3 * kMaxInnovation * kMaxInnovation * (p[0] + r))
-      p = predicted(accelerations_.sudden);
+    const double usual = model_.usual_deviations;
+    if (innovation.squaredNorm() > 3 * usual * usual * (p[0] + r)) p = predicted(model_.sudden);
     const double gain = p[0] / (p[0] + r), gain_velocity = p[1] / (p[0] + r);
     position_ = expected + gain * innovation;
     velocity_ += gain_velocity * innovation;
@@ -49,10 +53,9 @@ class JointMotion {
   }
 
  private:
-  static constexpr double kMaxInnovation = 2;  // of usual motion [standard deviations]
-  Accelerations accelerations_;
+  Model model_;
   Vector3 position_{Vector3::Zero()}, velocity_{Vector3::Zero()};
-  double pp_{0}, pv_{0}, vv_{1};
+  double pp_{0}, pv_{0}, vv_{0};
 };
 
 }  // namespace handsel::spark

@@ -10,7 +10,6 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kGridStep = 0.3;       // distance of the tested places of a lost person [m]
 constexpr double kMaxTestRadius = 5;    // max radius of the tested volume of a lost person [m]
 constexpr double kMaxBodyExtent = 4;    // max extent of a body; farther bodies are not compared [m]
 constexpr double kMaxInflation = 1000;  // max inflation, beyond any robot's reach [m]
@@ -116,10 +115,10 @@ bool PeopleTracker::seen_empty(const Track& track, TimePoint now,
     });
   };
   if (!is_observed_at(Vector3::Zero())) return false;
-  const int rings = std::max(1, static_cast<int>(std::ceil(radius / kGridStep)));
+  const int rings = std::max(1, static_cast<int>(std::ceil(radius / settings_.lost_grid)));
   for (int ring = rings; ring > 0; --ring) {
     const double r = radius * ring / rings;
-    const int count = std::max(8, static_cast<int>(std::ceil(2 * M_PI * r / kGridStep)));
+    const int count = std::max(8, static_cast<int>(std::ceil(2 * M_PI * r / settings_.lost_grid)));
     for (int i = 0; i < count; ++i) {
       const double angle = 2 * M_PI * i / count;
       if (!is_observed_at(r * Vector3(std::cos(angle), std::sin(angle), 0))) return false;

@@ -11,10 +11,6 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kMergeTime = 0.1;       // max time between observations merged to one body [s]
-constexpr double kMaxHandGap = 0.5;      // max gap of samples before a hand's motion restarts [s]
-constexpr int kPredictions = 5;          // number of predictions of a hand
-constexpr double kPredictionStep = 0.1;  // time between predictions [s]
 constexpr std::size_t kJoints = kBodyJoints.size();
 
 int index(const char* name) { return body_joint_index(name); }
@@ -82,8 +78,8 @@ void update_hands(Track& track, const std::array<bool, kJoints>& observed, TimeP
       continue;
     const Vector3& hand = joint_position(track.person, kHands[side]);
     std::optional<TimePoint>& last = track.hand_seen[side];
-    const double dt = last ? to_seconds(at - *last) : kMaxHandGap;
-    if (dt >= kMaxHandGap)
+    const double dt = last ? to_seconds(at - *last) : settings.motion_gap;
+    if (dt >= settings.motion_gap)
       track.hands[side].reset(hand, trunk, settings.joint_noise, settings.hand_prediction);
     else if (dt > 1e-4)
       track.hands[side].update(hand, trunk, dt, settings.joint_noise);
@@ -153,7 +149,7 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   // extrapolated to the present.
   const TimePoint at = known ? std::max(seen, track.seen) : seen;
   const double behind = to_seconds(at - seen);
-  if (behind > kMergeTime) return;
+  if (behind > settings.merge_time) return;
   ObservedPerson merged = body;
   merged.joints.clear();
   std::array<bool, kJoints> observed{};
@@ -171,15 +167,16 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
   const double dt = known ? to_seconds(at - track.seen) : 0.0;
   std::array<bool, kJoints> observed_recently{};  // observed by another recent observation
   for (std::size_t i = 0; known && i < kJoints; ++i) {
-    if (observed[i] || !track.joint_seen[i] || to_seconds(at - *track.joint_seen[i]) > kMergeTime)
+    if (observed[i] || !track.joint_seen[i] ||
+        to_seconds(at - *track.joint_seen[i]) > settings.merge_time)
       continue;
     merged.joints.push_back(
         {kBodyJoints[i], person.joints[i].position + dt * person.joints[i].velocity, 0.5});
     observed_recently[i] = true;
   }
-  track.size.add_sample(body);
+  track.size.add_sample(body, settings);
   const double known_height = height(settings, person.id);
-  person.stature = known_height > 0 ? known_height : track.size.stature();
+  person.stature = known_height > 0 ? known_height : track.size.stature(settings);
   const Person previous = person;
   std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
   if (fitted.empty()) return;
@@ -189,7 +186,7 @@ void update(Track& track, const ObservedPerson& body, TimePoint seen, double jum
     noise[i] = observed_recently[i]
                    ? 0.0
                    : settings.joint_noise * (observed[i] ? 1.0 : settings.unobserved_noise);
-  track.motion.update(fitted, noise, at);
+  track.motion.update(fitted, noise, at, settings);
   const auto inflate = [&](double by, double time) {
     track.extra_inflation = seen < track.extra_until ? track.extra_inflation + by : by;
     track.extra_until = std::max(track.extra_until, seen + from_seconds(time));
@@ -223,14 +220,15 @@ std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person
     if (!track.hand_seen[side]) continue;
     const double since = std::max(0.0, to_seconds(now - *track.hand_seen[side]));
     HandPrediction hand{kBodyJoints[static_cast<std::size_t>(kHands[side])], {}};
-    for (int k = 1; k <= kPredictions; ++k) {
-      const HandPredictor::Ball ball = track.hands[side].at(since + k * kPredictionStep);
+    for (int k = 1; k <= static_cast<int>(settings.hand_predictions); ++k) {
+      const HandPredictor::Ball ball =
+          track.hands[side].at(since + k * settings.hand_prediction_step);
       // The arm's length bounds the distance from the shoulder, which may have moved.
       const double arm = (ball.centre - joint_position(person, kShoulders[side])).norm() +
                          arm_length(person) +
-                         settings.person_max_speed * (since + k * kPredictionStep);
-      hand.ahead.push_back(
-          {k * kPredictionStep, ball.centre, std::min(ball.radius, arm) + person.inflation});
+                         settings.person_max_speed * (since + k * settings.hand_prediction_step);
+      hand.ahead.push_back({k * settings.hand_prediction_step, ball.centre,
+                            std::min(ball.radius, arm) + person.inflation});
     }
     out.push_back(std::move(hand));
   }

@@ -10,20 +10,17 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kMaxAveragedMove = 0.004;  // max distance of an averaged sample [m]
-constexpr double kMaxAveragedTurn = 0.06;   // max rotation of an averaged sample [rad]
-constexpr int kMaxAveragedSamples = 15;     // max number of averaged samples
-
 /// Averages the pose of an object at rest over several noisy samples. A moving object has its last
 /// observed pose, as does an object in a person's hand, where averaging would hide slow motions.
-Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
+Pose averaged(const Pose& estimate, const Pose& seen, int& samples,
+              const settings::SparkSettings& settings) {
   const Eigen::AngleAxisd turn(estimate.linear().transpose() * seen.linear());
-  if ((seen.translation() - estimate.translation()).norm() > kMaxAveragedMove ||
-      std::abs(turn.angle()) > kMaxAveragedTurn) {
+  if ((seen.translation() - estimate.translation()).norm() > settings.averaged_move ||
+      std::abs(turn.angle()) > settings.averaged_turn) {
     samples = 1;
     return seen;
   }
-  samples = std::min(samples + 1, kMaxAveragedSamples);
+  samples = std::min(samples + 1, static_cast<int>(settings.averaged_samples));
   Pose out = estimate;
   out.translation() += (seen.translation() - estimate.translation()) / samples;
   out.linear() =
@@ -116,9 +113,10 @@ void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint se
   track.object.model = observed.model;
   track.object.primitive = observed.primitive;
   if (track.object.holder == Holder::human) track.samples = 0;
-  track.object.T_world_object = track.samples > 0 ? averaged(track.object.T_world_object,
-                                                             observed.T_world_object, track.samples)
-                                                  : observed.T_world_object;
+  track.object.T_world_object =
+      track.samples > 0
+          ? averaged(track.object.T_world_object, observed.T_world_object, track.samples, settings)
+          : observed.T_world_object;
   track.samples = std::max(track.samples, 1);
   track.seen = seen;
   track.max_drift = 0;

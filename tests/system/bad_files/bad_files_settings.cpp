@@ -60,6 +60,8 @@ void add_components(BadFiles& table) {
       .key("human_period", "0", "is 0, must be")
       .key("joint_noise", "-1", "is -1, must be")
       .key("danger_zone", "0.05", "contact_zone: the zones must grow")
+      .key("trunk_acceleration", "11", "trunk_sudden_acceleration: must be at least")
+      .key("joint_acceleration", "21", "joint_sudden_acceleration: must be at least")
       .key("lost_speed", "1e400", "is inf, must be")
       .text("unknown_key", "speed: 1\n", "spark.txtpb:1")
       .text("binary", std::string("\0\377\1", 3), "spark.txtpb:1")
