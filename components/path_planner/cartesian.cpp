@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kSameConfiguration = 1e-4;  // max difference of equal configurations [rad]
 constexpr double kVerifyStep = 0.001;        // step of the check of the returned path [rad]
-constexpr int kMaxAttempts = 3;              // max searches whose path may fail the fine check
-constexpr int kBranchGoals = 24;             // configurations tried on another branch
-constexpr double kMaxBranchOffset = 1.0;     // max random offset of these from the start [rad]
-constexpr double kMinBend = 0.2;             // min bend of shoulder, elbow and wrist there [rad]
 constexpr double kJointSample = 0.05;        // step of the samples of a joint-space path [rad]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -55,7 +51,9 @@ class Search {
          const Vector3& center)
       : space_(space),
         random_(random),
-        accepts_(space.settings().initial_temperature, random_),
+        accepts_({space.settings().initial_temperature, space.settings().temperature_factor,
+                  space.settings().max_refusals},
+                 random_),
         problem_(problem),
         reach_(reach),
         center_(center) {}
@@ -194,24 +192,24 @@ bool verified(CollisionWorld& world, const std::vector<Vector>& samples) {
 /// Returns samples of a joint-space path from the start to a configuration on the branch of `like`,
 /// because no path segment passes a stretched shoulder, elbow or wrist; empty if none was found.
 std::vector<Vector> other_branch(const PlanningModels& models, const CartesianProblem& cartesian,
-                                 const Vector& like, std::uint64_t budget, Random& random,
-                                 const Hooks& hooks) {
+                                 const CartesianSettings& settings, const Vector& like,
+                                 Random& random, const Hooks& hooks) {
   const Group& arm = models.robot.require_group("arm");
   Problem problem;
   problem.axes = arm.axes;
   problem.start = cartesian.start;
   problem.seed = random.bits();
-  problem.budget = std::max<std::uint64_t>(1, budget);
-  for (int k = 0; k < kBranchGoals; ++k) {
+  problem.budget = std::max<std::uint64_t>(1, cartesian.budget);
+  for (int k = 0; k < settings.branch_goals; ++k) {
     Vector q = RobotModel::part(cartesian.start, arm);
-    const double offset = kMaxBranchOffset * k / kBranchGoals;
+    const double offset = settings.max_branch_offset * k / settings.branch_goals;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const Axis& axis =
           models.robot.axes()[static_cast<std::size_t>(arm.axes[static_cast<std::size_t>(i)])];
       const double q_like = like[arm.axes[static_cast<std::size_t>(i)]];
       const bool middle = i == 1 || i == 3 || i == 5;
       if (middle && q[i] * q_like < 0)
-        q[i] = std::copysign(std::max(kMinBend, std::abs(q[i])), q_like);
+        q[i] = std::copysign(std::max(settings.min_bend, std::abs(q[i])), q_like);
       const double moved = q[i] + offset * random.between(-1, 1);
       q[i] = middle && moved * q_like < 0 ? q[i] : std::clamp(moved, axis.lower, axis.upper);
     }
@@ -362,8 +360,10 @@ class CartesianPlanning {
   /// Changes to the branch of `ends` in joint space, then searches on this branch.
   bool change_branch(const std::vector<CartesianNode>& ends, std::uint64_t checks) {
     const ArmKinematics& arm = space_.arm();
+    CartesianProblem to_branch = problem_;
+    to_branch.budget = checks / 3;
     const std::vector<Vector> bridge =
-        other_branch(models_, problem_, ends.front().q, checks / 3, random_, hooks_);
+        other_branch(models_, to_branch, space_.settings(), ends.front().q, random_, hooks_);
     set_moving_axes();
     if (bridge.empty() || !search(arm.node_of(bridge.back()), ends)) return false;
     result_.in_joints = bridge.size() - 1;
@@ -377,7 +377,7 @@ class CartesianPlanning {
     const double reach = std::max((start.T_root_tool.translation() - shoulder_).norm(),
                                   (problem_.T_root_goal.translation() - shoulder_).norm()) +
                          0.2;
-    for (int attempt = 0; attempt < kMaxAttempts && !space_.exhausted(); ++attempt) {
+    for (int attempt = 0; attempt < space_.settings().attempts && !space_.exhausted(); ++attempt) {
       const std::vector<CartesianNode> found =
           Search(space_, problem_, random_, reach, shoulder_).run(start, ends);
       if (found.empty()) return false;

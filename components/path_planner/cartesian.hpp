@@ -35,6 +35,12 @@ struct CartesianSettings {
   int goal_elbows{48};               ///< number of elbow angles tried at the goal
   int shortcuts{60};                 ///< number of shortcuts tried on a found path
   double initial_temperature{0.02};  ///< of the transition test near people (T-RRT)
+  double temperature_factor{1.5};    ///< of a rise and a fall of the temperature
+  int max_refusals{3};               ///< in a row, after which it rises
+  int attempts{3};                   ///< max searches whose path may fail the fine check
+  int branch_goals{24};              ///< configurations tried on another branch
+  double max_branch_offset{1.0};     ///< max random offset of these from the start [rad]
+  double min_bend{0.2};              ///< min bend of shoulder, elbow and wrist there [rad]
 };
 
 /// A configuration in active variables, with the corresponding passive variables.

@@ -16,8 +16,6 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr double kSameGoal = 1e-6;       // max difference of equal goals [rad]
-constexpr double kMaxDropLoss = 0.01;    // max relative increase of the price by removed waypoints
-constexpr double kMaxDropGain = 0.3;     // or max fraction of the preceding reduction of the price
 constexpr double kMinReplanGain = 1e-6;  // min reduction of the price by a perturbation
 // Duration of an exact check of a state, divided by that of a batch check.
 constexpr std::uint64_t kExactCheckCost = 12;
@@ -268,7 +266,7 @@ class PathReplanner {
   /// Removes waypoints with little effect on the price, because each one requires a blend.
   void drop_nodes(std::vector<Vector>& path, double before) {
     const double now = space_.costs().price(path);
-    double allowed = std::max(kMaxDropLoss * now, kMaxDropGain * (before - now));
+    double allowed = std::max(live_.max_drop_loss * now, live_.max_drop_gain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
       const double loss = space_.costs().price(path[i - 1], path[i + 1]) -
                           space_.costs().price(path[i - 1], path[i]) -

@@ -32,6 +32,8 @@ struct ReplanSettings {
   /// Max distance from an end at which motions are checked exactly if the batch check is unclear
   /// [rad].
   double near_ends{0.3};
+  double max_drop_loss{0.01};  ///< max relative increase of the price by removed waypoints
+  double max_drop_gain{0.3};   ///< or max fraction of the preceding reduction of the price
 };
 
 struct ReplanResult {

@@ -12,9 +12,6 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr std::uint64_t kFirstTreeChecks = 40000;  // checks before the first restart of a search
-constexpr double kFineStepRatio = 0.1;             // fine step divided by the step of the settings
-
 std::string contact(const CollisionVerdict& verdict) {
   return verdict.first + " touches " + verdict.second;
 }
@@ -85,7 +82,7 @@ class Planning {
     if (problem_.straight) return straight_line();
     for (int attempt = 0; attempt < settings_.max_attempts && !space_.exhausted(); ++attempt) {
       const bool in_batches = attempt == 0;
-      space_.set_step(attempt < 2 ? settings_.step : kFineStepRatio * settings_.step);
+      space_.set_step(attempt < 2 ? settings_.step : settings_.fine_step_ratio * settings_.step);
       max_checks_ = in_batches ? static_cast<std::uint64_t>(settings_.first_budget_fraction *
                                                             static_cast<double>(problem_.budget))
                                : problem_.budget;
@@ -175,7 +172,7 @@ class Planning {
     const std::uint64_t limit = space_.limit();
     Found best;
     best.closest = std::numeric_limits<double>::infinity();
-    for (std::uint64_t tree_checks = kFirstTreeChecks;; tree_checks *= 2) {
+    for (std::uint64_t tree_checks = settings_.first_tree_checks;; tree_checks *= 2) {
       const std::uint64_t before = space_.checks();
       space_.limit(std::min(limit, before + tree_checks));
       Found found = search(space_, goals_, kind, heed_cost, seed);
@@ -257,7 +254,7 @@ class Planning {
   bool smoothed_finely() {
     if (space_.cancelled()) return false;
     space_.enter(Stage::smooth);
-    space_.set_step(kFineStepRatio * settings_.step);
+    space_.set_step(settings_.fine_step_ratio * settings_.step);
     result_.path = raw_;
     Random random(problem_.seed);
     smooth(space_, result_.path, random);

@@ -18,20 +18,28 @@ namespace handsel::path_planner {
 struct Settings {
   /// Max step of checked states along a motion during the search [rad, max norm].
   double step{0.02};
-  double verify_step{0.0002};         ///< max step on the returned path [rad]
-  double connect_range{0.7};          ///< max edge length of RRT and RRT-Connect [rad]
-  double transition_range{0.3};       ///< max edge length of T-RRT and BiT-RRT [rad]
-  double initial_temperature{0.002};  ///< of the transition test [unit of cost]
+  double verify_step{0.0002};           ///< max step on the returned path [rad]
+  double connect_range{0.7};            ///< max edge length of RRT and RRT-Connect [rad]
+  double transition_range{0.3};         ///< max edge length of T-RRT and BiT-RRT [rad]
+  double initial_temperature{0.002};    ///< of the transition test [unit of cost]
+  double temperature_factor{1.5};       ///< of a rise and a fall of the temperature
+  int max_refusals{3};                  ///< in a row, after which it rises
+  double goal_bias{0.1};                ///< fraction of samples of T-RRT that are goals
+  double max_refinement_fraction{0.1};  ///< max fraction of refining states in the tree of T-RRT
   /// Fraction of the budget for the first planner; the rest is for RRT-Connect if it fails.
   double search_fraction{0.7};
-  double cost_step{0.1};       ///< spacing of cost samples along a motion [rad]
-  double length_weight{0.05};  ///< price of a radian without human-aware cost
-  int smoothing_rounds{120};   ///< max number of shortcuts and perturbations
-  int max_idle_rounds{40};     ///< max number of successive ones without gain
+  double cost_step{0.1};        ///< spacing of cost samples along a motion [rad]
+  double length_weight{0.05};   ///< price of a radian without human-aware cost
+  int smoothing_rounds{120};    ///< max number of shortcuts and perturbations
+  int max_idle_rounds{40};      ///< max number of successive ones without gain
+  int perturbations{3};         ///< per shortcut, with human-aware cost
+  double max_prune_loss{0.02};  ///< max relative increase of the price by a removed waypoint
   /// Max number of searches for one path: the first with the batch check only, from the third on
   /// with a fine step, because the fine check may refuse a path that the coarse check accepted.
   int max_attempts{4};
-  double first_budget_fraction{0.3};  ///< fraction of the budget for the first of them
+  double fine_step_ratio{0.1};             ///< fine step divided by `step`
+  std::uint64_t first_tree_checks{40000};  ///< checks before the first restart of a search
+  double first_budget_fraction{0.3};       ///< fraction of the budget for the first of them
   double near_ends{0.3};  ///< distance from start or goals at which it checks exactly [rad]
   /// l_max: max length replaced by a perturbation on each side [rad].
   double max_edge{0.6};

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "components/path_planner/cartesian.hpp"
 #include "components/path_planner/head_room.hpp"
 #include "components/path_planner/request.hpp"
 
@@ -41,8 +40,11 @@ void cover_links(CollisionWorld& world, const RobotModel& robot) {
   world.set_moving_axes({});
 }
 
-Result plan_in_cartesian_space(const PlanningModels& models, const PathRequest& request,
-                               const Problem& problem, const PoseGoal& pose, const Hooks& hooks) {
+Result plan_in_cartesian_space(const PlanningModels& models, const PlanningTask& task,
+                               const PoseGoal& pose, const CartesianSettings& settings,
+                               const Hooks& hooks) {
+  const PathRequest& request = task.request;
+  const Problem& problem = task.problem;
   CartesianProblem cartesian;
   cartesian.start = problem.start;
   cartesian.T_root_goal = pose.T_root_tip;
@@ -52,8 +54,8 @@ Result plan_in_cartesian_space(const PlanningModels& models, const PathRequest& 
   cartesian.budget = problem.budget;
   std::vector<int> columns = problem.axes;
   columns.insert(columns.end(), cartesian.also.begin(), cartesian.also.end());
-  return in_joints(plan_cartesian(models.robot, models.world, models.cost, cartesian, {}, hooks),
-                   columns);
+  return in_joints(
+      plan_cartesian(models.robot, models.world, models.cost, cartesian, settings, hooks), columns);
 }
 
 }  // namespace
@@ -216,7 +218,7 @@ Result Solver::plan_new(const Selected& selected, PlanningTask& task, const Hook
   const auto& [robot, world, cost] = selected.models;
   const std::vector<PoseGoal> poses = pose_goals(task.request, task.T_world_root);
   if (task.request.space == PlanSpace::cartesian)
-    return plan_in_cartesian_space(selected.models, task.request, task.problem, poses.front(),
+    return plan_in_cartesian_space(selected.models, task, poses.front(), settings_.cartesian,
                                    hooks);
   if (poses.empty()) return plan(robot, world, cost, task.problem, settings_.search, hooks);
   return plan_to_poses(selected, poses, task, hooks);

@@ -12,17 +12,19 @@
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
+#include "components/path_planner/cartesian.hpp"
 #include "components/path_planner/driving.hpp"
 #include "components/path_planner/live_path.hpp"
 
 namespace handsel::path_planner {
 
 struct SolverSettings {
-  Settings search;          ///< Settings of every search.
-  ReplanSettings live;      ///< Settings of online replanning.
-  Margins replan_margins;   ///< Clearance of a running path to obstacles [m].
-  double roam{};            ///< Max distance of the platform's path around start and goals [m].
-  FurnitureRoom furniture;  ///< Horizontal clearance of the platform from furniture.
+  Settings search;              ///< Settings of every search.
+  ReplanSettings live;          ///< Settings of online replanning.
+  CartesianSettings cartesian;  ///< Settings of searches in Cartesian space.
+  Margins replan_margins;       ///< Clearance of a running path to obstacles [m].
+  double roam{};                ///< Max distance of the platform's path around start and goals [m].
+  FurnitureRoom furniture;      ///< Horizontal clearance of the platform from furniture.
   double driven_room_fraction{0.5};  ///< Fraction of this clearance in online replanning.
   double head_room{};                ///< Clearance of paths between configurations to heads [m].
   PlatformSampling sampling;         ///< Platform poses tried for a pose of the tip.

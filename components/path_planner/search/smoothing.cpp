@@ -7,9 +7,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kMinGain = 1e-6;       // min reduction of the price
-constexpr double kMaxPruneLoss = 0.02;  // max relative increase of the price by a removed waypoint
-constexpr int kPerturbations = 3;       // perturbations per shortcut, with human-aware cost
+constexpr double kMinGain = 1e-6;  // min reduction of the price
 
 /// A place on the path: the preceding waypoint and the fraction of the segment.
 struct Place {
@@ -85,7 +83,7 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
     const Line line(path);
     if (path.size() < 2 || line.length() < 1e-9) return;
     bool gained = false;
-    if (!people || round % (kPerturbations + 1) == 0) {
+    if (!people || round % (settings.perturbations + 1) == 0) {
       double a = random.between(0, line.length()), b = random.between(0, line.length());
       if (a > b) std::swap(a, b);
       const Place from = line.at(a), to = line.at(b);
@@ -113,7 +111,8 @@ void prune(SearchSpace& space, std::vector<Vector>& path) {
   for (std::size_t i = 1; i + 1 < path.size() && !space.exhausted();) {
     const double before =
         space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
-    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kMaxPruneLoss) &&
+    if (space.costs().price(path[i - 1], path[i + 1]) <=
+            before * (1 + space.settings().max_prune_loss) &&
         space.motion_free(path[i - 1], path[i + 1])) {
       path.erase(path.begin() + static_cast<long>(i));
       if (i > 1) --i;

@@ -15,13 +15,17 @@ namespace {
 
 constexpr double kMinStep = 0.02;  // min length of an extension [rad]
 
+TransitionSettings transition_of(const Settings& s) {
+  return {s.initial_temperature, s.temperature_factor, s.max_refusals};
+}
+
 class Search {
  public:
   Search(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_t seed)
       : space_(space),
         random_(seed),
-        test_{{space.settings().initial_temperature, random_},
-              {space.settings().initial_temperature, random_}},
+        test_{{transition_of(space.settings()), random_},
+              {transition_of(space.settings()), random_}},
         trees_{Tree(space.size()), Tree(space.size())} {
     trees_[0].add(space.start(), -1);
     for (const Vector& goal : goals) trees_[1].add(goal, -1);

@@ -9,17 +9,13 @@
 #include "components/path_planner/search/tree.hpp"
 
 namespace handsel::path_planner {
-namespace {
-
-constexpr double kGoalBias = 0.1;               // fraction of samples that are goals
-constexpr double kMaxRefinementFraction = 0.1;  // max fraction of refining states in the tree
-
-}  // namespace
 
 Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_t seed) {
   Random random(seed);
-  TransitionTest accepts(space.settings().initial_temperature, random);
-  const double range = space.settings().transition_range;
+  const Settings& settings = space.settings();
+  TransitionTest accepts(
+      {settings.initial_temperature, settings.temperature_factor, settings.max_refusals}, random);
+  const double range = settings.transition_range;
   Tree tree(space.size());
   tree.add(space.start(), -1);
   std::vector<double> costs = {space.costs().of(space.start())};
@@ -28,7 +24,7 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
   found.closest = std::numeric_limits<double>::infinity();
   while (!space.exhausted()) {
     space.charge(1);
-    const bool to_goal = random.unit() < kGoalBias;
+    const bool to_goal = random.unit() < settings.goal_bias;
     const std::size_t goal =
         static_cast<std::size_t>(random.unit() * static_cast<double>(goals.size()));
     const Vector target =
@@ -40,7 +36,7 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
     if (to_goal) found.closest = std::min(found.closest, distance);
     if (refines && !to_goal &&
         static_cast<double>(refinements) >
-            kMaxRefinementFraction * static_cast<double>(tree.size()))
+            settings.max_refinement_fraction * static_cast<double>(tree.size()))
       continue;
     const Vector q =
         refines ? target : Vector(tree[near] + (target - tree[near]) * (range / distance));

@@ -11,29 +11,34 @@
 
 namespace handsel::path_planner {
 
+struct TransitionSettings {
+  double temperature{};  ///< initial [unit of cost]
+  double factor{};       ///< of a rise and a fall of the temperature
+  int max_refusals{};    ///< in a row, after which it rises
+};
+
 class TransitionTest {
  public:
-  /// Temperature in units of cost.
-  TransitionTest(double temperature, Random& random) : temperature_(temperature), random_(random) {}
+  TransitionTest(const TransitionSettings& settings, Random& random)
+      : settings_(settings), temperature_(settings.temperature), random_(random) {}
   bool operator()(double from, double to) {
     if (to <= from) return true;
     if (random_.unit() < std::exp(-(to - from) / temperature_)) {
-      temperature_ = std::max(kMinTemperature, temperature_ / kTemperatureFactor);
+      temperature_ = std::max(kMinTemperature, temperature_ / settings_.factor);
       refusals_ = 0;
       return true;
     }
-    if (++refusals_ > kMaxRefusals) {
-      temperature_ *= kTemperatureFactor;
+    if (++refusals_ > settings_.max_refusals) {
+      temperature_ *= settings_.factor;
       refusals_ = 0;
     }
     return false;
   }
 
  private:
-  static constexpr double kTemperatureFactor = 1.5;
-  static constexpr int kMaxRefusals = 3;
   static constexpr double kMinTemperature = 1e-6;
 
+  TransitionSettings settings_;
   double temperature_;
   Random& random_;
   int refusals_{0};
