@@ -213,9 +213,8 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
                             : std::min(last_index, index_at(active.time + reach) + 1);
   sample_at(now, 0, forecast);
   // Robots that are too near to each other may move apart.
-  constexpr double kNearer = 1e-3;  // min decrease of the distance that counts as approach [m]
-  const double allowed =
-      std::min(0.0, other_robots_.approach(now, T_world_base_, 0).distance - kNearer);
+  const double allowed = std::min(
+      0.0, other_robots_.approach(now, T_world_base_, 0).distance - settings_.min_approach);
   Vector q = now;
   for (long k = first;; k += backward ? -1 : 1) {
     const double t = std::min(duration, static_cast<double>(k) * spacing);

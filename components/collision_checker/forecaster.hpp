@@ -23,6 +23,7 @@ struct ForecastSettings {
   double spacing{0.05};    ///< time between checked states on the trajectory [s]
   /// Max time for which other robots are expected to keep their velocity [s].
   double robot_ahead{0.5};
+  double min_approach{1e-3};  ///< min decrease of the distance of robots that counts [m]
 };
 
 /// The measured finger positions of all hands. Pure.

@@ -21,7 +21,7 @@ settings::CollisionCheckerSettings load(const NodeContext& context) {
 }
 
 ForecastSettings core_settings(const settings::CollisionCheckerSettings& s) {
-  return {s.horizon, s.min_speed, s.spacing, s.robot_ahead};
+  return {s.horizon, s.min_speed, s.spacing, s.robot_ahead, s.min_approach};
 }
 
 }  // namespace
