@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t kMaxBodies = 256;  // bound of an observation; SPARK tracks the nearest
 constexpr std::size_t kMinJoints = 3;    // min joints: other frames may be called e.g. "head_tilt"
-constexpr double kListAge = 2.0;         // max age of a list of tracked bodies [s]
 
 Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 
@@ -51,7 +50,7 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
   out.source = settings_.people_source;
   out.coverage = {corner(settings_.coverage_low), corner(settings_.coverage_high)};
   const Duration age = from_seconds(settings_.people_age);
-  const bool listed = tracked_ && to_seconds(now - tracked_at_) <= kListAge;
+  const bool listed = tracked_ && to_seconds(now - tracked_at_) <= settings_.tracked_age;
   for (auto body = bodies_.begin(); body != bodies_.end();) {
     const auto& [id, joints] = *body;
     ObservedPerson person;

@@ -7,7 +7,6 @@ namespace handsel::ros2_lane {
 namespace {
 
 constexpr double kAtRest = 1e-3;  // max speed of an axis at rest [rad/s]
-constexpr double kSilent = 0.3;   // max age of the controller's report [s]
 
 }  // namespace
 
@@ -16,8 +15,8 @@ void RobotActivity::on(const ActiveTrajectory& active, TimePoint arrival) {
   active_at_ = arrival;
 }
 
-std::string RobotActivity::why_not_ready(const Group& arm, TimePoint now) const {
-  if (!active_ || !execution_ || to_seconds(now - active_at_) > kSilent)
+std::string RobotActivity::why_not_ready(const Group& arm, TimePoint now, double max_age) const {
+  if (!active_ || !execution_ || to_seconds(now - active_at_) > max_age)
     return "no message of the trajectory controller arrives";
   if (action_ && action_->state == ActionState::running) return "a task runs; cancel it first";
   for (const int axis : arm.axes)

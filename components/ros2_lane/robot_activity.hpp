@@ -18,10 +18,11 @@ class RobotActivity {
   void on(const ActionStatus& status) { action_ = status; }
   /// Takes the newest status of the controller: epoch, and whether the command runs.
   void on(const ExecutionStatus& status) { execution_ = status; }
-  /// Takes the robot's motion now; when older than 0.3 s, motions are refused.
+  /// Takes the robot's motion now.
   void on(const ActiveTrajectory& active, TimePoint arrival);
-  /// Returns an empty text where a motion of `arm` may begin at `now`, else why not.
-  std::string why_not_ready(const Group& arm, TimePoint now) const;
+  /// Returns an empty text where a motion of `arm` may begin at `now`, else why not. `max_age`: of
+  /// the robot's motion [s].
+  std::string why_not_ready(const Group& arm, TimePoint now, double max_age) const;
   /// Returns the newest motion; there must have been one, as where why_not_ready() was empty.
   const ActiveTrajectory& active() const { return *active_; }
   /// Returns the newest status of the controller; there must have been one.

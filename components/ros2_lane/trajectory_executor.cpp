@@ -4,14 +4,6 @@
 #include <algorithm>
 
 namespace handsel::ros2_lane {
-namespace {
-
-constexpr double kRetry = 0.5;          // time between two attempts [s]
-constexpr double kAnswerTimeout = 5.0;  // max time until an answer [s]
-constexpr double kSlower = 1.05;  // ratio of min to requested duration that requires new timing
-constexpr double kMinSpeedScale = 0.02;  // ratio to the comfort velocities
-
-}  // namespace
 
 TrajectoryExecutor::TrajectoryExecutor(const settings::Ros2LaneSettings& settings,
                                        std::shared_ptr<const RobotModel> robot,
@@ -31,7 +23,8 @@ void TrajectoryExecutor::on(const TrajectoryReply& reply) {
 }
 
 std::string TrajectoryExecutor::prepare(const ros2::JointTrajectory& wanted, TimePoint now) {
-  if (std::string why = activity_.why_not_ready(arm_, now); !why.empty()) return why;
+  if (std::string why = activity_.why_not_ready(arm_, now, settings_.report_age); !why.empty())
+    return why;
   MotionRequest motion;
   if (std::string why = make_motion_request(wanted, *robot_, activity_.active(), settings_, motion);
       !why.empty())
@@ -82,9 +75,9 @@ void TrajectoryExecutor::refuse(const std::string& why, TrajectoryOutbox& out) {
 void TrajectoryExecutor::step(TimePoint now, TrajectoryOutbox& out) {
   if (phase_ == Phase::idle) return;
   if (fresh_) begun_ = now;
-  const bool due = fresh_ || to_seconds(now - asked_) >= kRetry;
+  const bool due = fresh_ || to_seconds(now - asked_) >= settings_.retry_period;
   fresh_ = false;
-  if (phase_ != Phase::running && to_seconds(now - begun_) > kAnswerTimeout) {
+  if (phase_ != Phase::running && to_seconds(now - begun_) > settings_.answer_timeout) {
     return refuse(std::string(phase_ == Phase::checking ? "the collision checker"
                               : phase_ == Phase::timing ? "the trajectory planner"
                                                         : "the trajectory controller") +
@@ -126,9 +119,9 @@ void TrajectoryExecutor::ask(TrajectoryOutbox& out) {
 void TrajectoryExecutor::hand_over(TrajectoryOutbox& out) {
   if (!reply_->solved) return refuse(reply_->reason, out);
   const double duration = reply_->trajectory.duration();
-  if (!slowed_ && min_duration_ > kSlower * duration) {
+  if (!slowed_ && min_duration_ > settings_.max_duration_ratio * duration) {
     slowed_ = true;
-    request_.speed_scale = std::clamp(duration / min_duration_, kMinSpeedScale, 1.0);
+    request_.speed_scale = std::clamp(duration / min_duration_, settings_.min_speed_scale, 1.0);
     request_.id = {client_, ++number_};
     reply_.reset();
     fresh_ = true;
