@@ -9,8 +9,8 @@
 
 namespace handsel::trajectory_controller {
 
-AxisGroups::AxisGroups(const RobotModel& robot)
-    : robot_(robot), parts_(static_cast<std::size_t>(robot.dof()), Part::arm) {
+AxisGroups::AxisGroups(const RobotModel& robot, const BoundNoise& noise)
+    : robot_(robot), noise_(noise), parts_(static_cast<std::size_t>(robot.dof()), Part::arm) {
   const auto mark = [&](const Group* group, Part part) {
     if (group == nullptr) return;
     for (int axis : group->axes) parts_[static_cast<std::size_t>(axis)] = part;
@@ -27,11 +27,10 @@ AxisGroups::AxisGroups(const RobotModel& robot)
 }
 
 double AxisGroups::inside(int axis, double position) const noexcept {
-  constexpr double kNoise = 0.02, kBent = 0.05;  // [rad, m]
   const Axis& bounds = robot_.axes()[static_cast<std::size_t>(axis)];
   if (!(bounds.lower < bounds.upper)) return position;
   const double within = std::clamp(position, bounds.lower, bounds.upper);
-  const double allowed = part(axis) == Part::hand ? kBent : kNoise;
+  const double allowed = part(axis) == Part::hand ? noise_.finger : noise_.axis;
   return std::abs(within - position) <= allowed ? within : position;
 }
 

@@ -11,12 +11,18 @@ namespace handsel::trajectory_controller {
 /// Part of the robot.
 enum class Part : char { arm, hand, head, platform };
 
+/// How far outside its bounds an axis may be measured [rad, m].
+struct BoundNoise {
+  double axis{0.02};    ///< by noise
+  double finger{0.05};  ///< by what presses on a finger
+};
+
 /// Robot groups "hand" and "head" may be missing. All other axes are moved by trajectories alone; a
 /// trajectory may move those of hands and head too.
 class AxisGroups {
  public:
   /// Keeps a reference to the robot.
-  explicit AxisGroups(const RobotModel& robot);
+  explicit AxisGroups(const RobotModel& robot, const BoundNoise& noise = {});
 
   /// Axes that trajectories alone move, in increasing order; of a robot that drives the last three
   /// are those of its platform.
@@ -37,6 +43,7 @@ class AxisGroups {
 
  private:
   const RobotModel& robot_;
+  BoundNoise noise_;
   std::vector<Part> parts_;  // of each axis
   std::vector<int> arm_, arm_joints_, platform_, head_;
 };

@@ -22,18 +22,27 @@ bool may_retreat_beside(const CommandQueue& path) noexcept {
 }
 
 ComplianceSettings compliance_settings(const ControllerSettings& s) {
-  return {s.yield_speed,   s.yield_reach,          s.retreat_speed,
-          s.retreat_reach, s.contact.yield_torque, s.yield_lead,
-          s.retreat_range, s.retreat_damping,      s.retreat_min_factor};
+  return {s.yield_speed,          s.yield_reach,       s.retreat_speed, s.retreat_reach,
+          s.contact.yield_torque, s.yield_lead,        s.retreat_range, s.retreat_damping,
+          s.retreat_min_factor,   s.retreat_aim_cycles};
 }
 
 LookaheadSettings lookahead_settings(const ControllerSettings& s) {
-  return {s.guard,          s.walls, s.look_ahead, s.look_far_ahead, s.rise, s.ahead_min_factor,
-          s.back_min_factor};
+  return {s.guard,
+          s.walls,
+          s.look_ahead,
+          s.look_far_ahead,
+          s.rise,
+          s.ahead_min_factor,
+          s.back_min_factor,
+          s.rest_check_cycles,
+          s.retreat_check_cycles,
+          s.too_fast_ratio,
+          s.too_fast_margin};
 }
 
 OutputCheckSettings output_settings(const ControllerSettings& s) {
-  return {s.period, s.dry_run, s.proof.max_rejoins, s.proof.shown_time};
+  return {s.period, s.dry_run, s.proof.max_rejoins, s.proof.shown_time, s.blind_check_cycles};
 }
 
 SpeedSettings speed_settings(const ControllerSettings& s) {
@@ -69,7 +78,7 @@ double contact_load(double held, double platform, const AxisGroups& groups, cons
 Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const RobotModel> robot)
     : settings_(settings),
       robot_(std::move(robot)),
-      groups_(*robot_),
+      groups_(*robot_, settings.bound_noise),
       inputs_{{}, ObservedPeople(settings.guard.unknown_after), {}, {}, {}},
       contact_(settings.contact, groups_.arm_joints()),
       set_points_(robot_->dof()),
@@ -77,12 +86,17 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       stop_space_(settings.view, proof_, *robot_),
       finger_limit_(proof_, *robot_, settings.guard),
       arm_({settings.period, settings.start_tolerance, settings.switch_reach, settings.join_time,
-            settings.rejoin_time},
+            settings.rejoin_time, settings.rejoin_tries, settings.alike_distance,
+            settings.alike_ratio},
            *robot_, groups_.arm()),
       compliance_(compliance_settings(settings), *robot_, groups_.arm_joints().size(), arm_),
-      follower_({settings.dry_run, settings.hand_rejoin, settings.timeouts.robot_state}, groups_),
+      follower_({settings.dry_run, settings.hand_rejoin, settings.timeouts.robot_state,
+                 settings.reference},
+                groups_),
       hands_(settings.hand, *robot_, settings.period),
-      head_(*robot_, groups_.head(), settings.head_dead_band, settings.period),
+      head_(*robot_, groups_.head(),
+            {settings.period, settings.head_dead_band, settings.head_min_target_motion,
+             settings.head_clearance}),
       lookahead_(lookahead_settings(settings), *robot_, proof_, stop_space_, hands_.axes()),
       deadline_(*robot_, groups_.arm(), settings.period),
       supervisor_(supervisor_settings(settings)),
@@ -255,7 +269,6 @@ void Controller::step_arm(TimePoint now) noexcept {
 }
 
 bool Controller::step(TimePoint now, bool late) noexcept {
-  constexpr int kFingerInterval = 10;  // cycles between evaluations of the finger limit
   inputs_.robot.begin_cycle(now);
   if (!inputs_.robot.ready()) return false;
   ++cycles_;
@@ -287,7 +300,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
                         arm_, set_points_);
   };
   const Vector& sent = set_points_.sent().position;
-  if (cycles_ % kFingerInterval == 0)
+  if (cycles_ % settings_.finger_check_cycles == 0)
     hands_.limit(finger_limit_.bounds(sent, robot.T_world_base, age, load(), people.capsules()));
   const bool new_state = inputs_.robot.has_new_state();
   if (new_state && !arm_.running()) lookahead_.place_links(sent);

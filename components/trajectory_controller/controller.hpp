@@ -7,6 +7,7 @@
 // no heap and never throws.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,20 +52,27 @@ struct ControllerSettings {
   double switch_reach{0.3};
   double join_time{0.5};    ///< in motion, one that begins as the arm moves: joined within this [s]
   double rejoin_time{0.4};  ///< a path is rejoined within this after a stop beside it [s]
-  double yield_speed{0.2};  ///< largest speed of complying with a push at rest [rad/s]
-  double yield_reach{0.3};  ///< largest travel of each axis while complying [rad]
-  double yield_lead{0.5};   ///< of motion that the target of an axis lies ahead then [s]
+  int rejoin_tries{10};     ///< max switch points that are tried then, in one cycle
+  double alike_distance{0.02};  ///< of a trajectory that begins as the arm moves [rad]
+  double alike_ratio{0.1};      ///< max fraction of the limits by which its motion then differs
+  double yield_speed{0.2};      ///< largest speed of complying with a push at rest [rad/s]
+  double yield_reach{0.3};      ///< largest travel of each axis while complying [rad]
+  double yield_lead{0.5};       ///< of motion that the target of an axis lies ahead then [s]
   /// Largest speed of each axis in a retreat from a person at rest, when attention asks for recoil
   /// [rad/s].
   double retreat_speed{1.0};
-  double retreat_reach{0.3};       ///< largest travel of each axis then; 0: never [rad]
-  double retreat_range{1.2};       ///< links farther from the person do not count then [m]
-  double retreat_damping{0.02};    ///< of the axes in the direction of a retreat [m^2]
-  double retreat_min_factor{0.1};  ///< speed factor that the guard must allow for a retreat
-  bool dry_run{};                  ///< no set-point is sent; everything else runs
+  double retreat_reach{0.3};               ///< largest travel of each axis then; 0: never [rad]
+  double retreat_range{1.2};               ///< links farther from the person do not count then [m]
+  double retreat_damping{0.02};            ///< of the axes in the direction of a retreat [m^2]
+  double retreat_min_factor{0.1};          ///< speed factor that the guard must allow for a retreat
+  std::uint32_t retreat_aim_cycles{10};    ///< between two choices of its direction
+  std::uint32_t retreat_check_cycles{10};  ///< between two evaluations of what is allowed then
+  bool dry_run{};                          ///< no set-point is sent; everything else runs
   /// A robot side that stands moves its fingers to set-points this near [rad; of a sliding one at
   /// its lever].
   double hand_rejoin{0.25};
+  ReferenceSettings reference;     ///< how the reference of the robot side is compared
+  BoundNoise bound_noise;          ///< how far outside its bounds an axis may be measured
   double tracking_tolerance{0.3};  ///< Fault: the arm is farther from its set-point [rad]
   double tracking_time{0.1};       ///< for this long [s]
   double forecast_hold{0.6};       ///< collision forecast within this time: Hold [s]
@@ -75,20 +83,27 @@ struct ControllerSettings {
   double slow_slack{0.02};       ///< the same where the guard asks for less speed [s]
   double cost_from{0.5};         ///< human-aware cost ahead from which the arm is slower, [0, 1)
   double cost_factor{0.4};       ///< speed factor at a cost of 1, (0, 1]
+  double too_fast_ratio{1.1};    ///< of an arm that is too fast to what is allowed
+  double too_fast_margin{0.02};  ///< and the speed factor above that
   double head_dead_band{0.03};   ///< the head turns only for more than this [rad]
-  double look_ahead{0.15};       ///< the guard also checks the path this much later [s]
-  double look_far_ahead{0.45};   ///< and this much later: about the time of a stop [s]
-  double ahead_min_factor{0.6};  ///< min speed factor assumed until then
-  double back_min_factor{0.02};  ///< min one back along the path for which it looks back
-  SpeedRiseSettings rise;        ///< of the speed factor after people have slowed the arm
-  int late_limit{5};             ///< late cycles in a row: Hold
-  std::vector<Wall> walls;       ///< never passed: virtual walls and the sides of the workspace
-  TimeoutSettings timeouts;      ///< of the inputs
-  GuardSettings guard;           ///< speed and separation
-  StopProofSettings proof;       ///< proof of a harmless stop
-  ViewSettings view;             ///< observation of the space of a stop
-  HandSettings hand;             ///< of every hand
-  ContactSettings contact;       ///< detection of contact of the arm
+  double head_min_target_motion{0.02};    ///< min motion of the gaze target for another aim [m]
+  double head_clearance{0.02};            ///< distance from other links that the head keeps [m]
+  double look_ahead{0.15};                ///< the guard also checks the path this much later [s]
+  double look_far_ahead{0.45};            ///< and this much later: about the time of a stop [s]
+  double ahead_min_factor{0.6};           ///< min speed factor assumed until then
+  double back_min_factor{0.02};           ///< min one back along the path for which it looks back
+  std::uint32_t rest_check_cycles{50};    ///< between two checks of the guard at rest
+  std::uint32_t blind_check_cycles{10};   ///< between two checks at rest that the arm is observed
+  std::uint32_t finger_check_cycles{10};  ///< between two evaluations of the speed of the fingers
+  SpeedRiseSettings rise;                 ///< of the speed factor after people have slowed the arm
+  int late_limit{5};                      ///< late cycles in a row: Hold
+  std::vector<Wall> walls;   ///< never passed: virtual walls and the sides of the workspace
+  TimeoutSettings timeouts;  ///< of the inputs
+  GuardSettings guard;       ///< speed and separation
+  StopProofSettings proof;   ///< proof of a harmless stop
+  ViewSettings view;         ///< observation of the space of a stop
+  HandSettings hand;         ///< of every hand
+  ContactSettings contact;   ///< detection of contact of the arm
 };
 
 class Controller {

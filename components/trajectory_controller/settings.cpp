@@ -93,6 +93,16 @@ void read_guard(const settings::TrajectoryControllerSettings& in, ControllerSett
   s.guard.finger_stop_speed = g.finger_stop_speed;
 }
 
+void read_checks(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
+  s.rest_check_cycles = in.rest_check_cycles;
+  s.blind_check_cycles = in.blind_check_cycles;
+  s.finger_check_cycles = in.finger_check_cycles;
+  s.retreat_check_cycles = in.retreat_check_cycles;
+  s.retreat_aim_cycles = in.retreat_aim_cycles;
+  s.reference = {in.reference_bent, in.reference_apart, in.reference_check_cycles};
+  s.bound_noise = {in.bound_noise, in.finger_bound_noise};
+}
+
 void read_view(const settings::TrajectoryControllerSettings& in, ControllerSettings& s) {
   const auto& v = in.view;
   s.view.require_view = v.require_view;
@@ -203,13 +213,20 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.switch_reach = in.switch_reach;
   s.join_time = in.join_time;
   s.rejoin_time = in.rejoin_time;
+  s.rejoin_tries = static_cast<int>(in.rejoin_tries);
+  s.alike_distance = in.alike_distance;
+  s.alike_ratio = in.alike_ratio;
   s.tracking_tolerance = in.tracking_tolerance;
   s.tracking_time = in.tracking_time;
   s.forecast_hold = in.forecast_hold;
   s.forecast_slow = in.forecast_slow;
   s.stop_slack = in.stop_slack;
   s.slow_slack = in.slow_slack;
+  s.too_fast_ratio = in.too_fast_ratio;
+  s.too_fast_margin = in.too_fast_margin;
   s.head_dead_band = in.head_dead_band;
+  s.head_min_target_motion = in.head_min_target_motion;
+  s.head_clearance = in.head_clearance;
   s.look_ahead = in.look_ahead;
   s.look_far_ahead = in.look_far_ahead;
   s.ahead_min_factor = in.ahead_min_factor;
@@ -217,6 +234,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.rise = {in.period, in.rise_rate, in.stop_proof.unproven_ratio, in.stop_proof.unproven_rate};
   s.hand_rejoin = in.hand_rejoin;
   s.late_limit = in.late_limit;
+  read_checks(in, s);
   read_timeouts(in, s);
   read_guard(in, s);
   s.proof = read_stop_proof(in.stop_proof, text);

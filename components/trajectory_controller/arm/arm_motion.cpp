@@ -50,7 +50,8 @@ ArmMotion::ArmMotion(const ArmSettings& settings, const RobotModel& robot,
     : settings_(settings),
       robot_(robot),
       movers_(robot, axes),
-      runner_(settings.period, settings.join_time, settings.rejoin_time) {}
+      runner_({settings.period, settings.join_time, settings.rejoin_time, settings.rejoin_tries,
+               settings.alike_distance, settings.alike_ratio}) {}
 
 bool ArmMotion::joins(const TrajectoryCommand& command) const noexcept {
   const bool on_path = running() && !runner_.finished();

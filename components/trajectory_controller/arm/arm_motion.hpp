@@ -43,6 +43,9 @@ struct ArmSettings {
   double switch_reach{0.3};      ///< in motion, from the switch point [rad]
   double join_time{0.5};         ///< in motion, one that begins nearly as the arm moves [s]
   double rejoin_time{0.4};       ///< of a path that is rejoined after a stop beside it [s]
+  int rejoin_tries{10};          ///< max switch points that are tried then
+  double alike_distance{0.02};   ///< of a trajectory that begins nearly as the arm moves [rad]
+  double alike_ratio{0.1};       ///< max fraction of the limits by which its motion then differs
 };
 
 class ArmMotion {

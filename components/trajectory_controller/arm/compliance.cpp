@@ -6,12 +6,6 @@
 
 namespace handsel::trajectory_controller {
 
-namespace {
-
-constexpr int kEvery = 10;  // cycles between two choices of the motion
-
-}  // namespace
-
 Compliance::Compliance(const ComplianceSettings& settings, const RobotModel& robot,
                        std::size_t joints, ArmMotion& arm)
     : settings_(settings),
@@ -111,7 +105,7 @@ void Compliance::move(int axis, double speed, double reach) noexcept {
 
 void Compliance::step(const ComplianceInputs& in) noexcept {
   wish_ = find_wish(in);
-  const bool chooses = in.cycle % kEvery == 0;
+  const bool chooses = in.cycle % settings_.aim_cycles == 0;
   if (wish_ == Wish::retreat && chooses) aim_away(in);
   const bool may_retreat =
       wish_ == Wish::retreat && in.retreat_factor >= settings_.retreat_min_factor;

@@ -26,6 +26,7 @@ struct ComplianceSettings {
   double retreat_range{1.2};       ///< links farther from the person do not count in a retreat [m]
   double retreat_damping{0.02};    ///< of the axes in the direction of a retreat [m^2]
   double retreat_min_factor{0.1};  ///< of the speed of a retreat that must be allowed
+  std::uint32_t aim_cycles{10};    ///< between two choices of the motion of a retreat
 };
 
 /// Inputs of one step.

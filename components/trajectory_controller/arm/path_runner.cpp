@@ -21,21 +21,21 @@ double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 /// Returns whether a trajectory begins close to the state `from`: then all of it is run, except for
 /// a short transition from that state.
 bool begins_alike(const MotionState3& from, const MotionState3& first,
-                  const KinematicLimits& limits) {
-  constexpr double kNear = 0.02, kMaxRatio = 0.1;  // [rad]; fraction of the limits
-  return apart(from.position, first.position) <= kNear &&
-         ((from.velocity - first.velocity).cwiseAbs().array() <=
-          kMaxRatio * limits.velocity.array())
+                  const KinematicLimits& limits, const PathRunnerSettings& settings) {
+  const double ratio = settings.alike_ratio;
+  return apart(from.position, first.position) <= settings.alike_distance &&
+         ((from.velocity - first.velocity).cwiseAbs().array() <= ratio * limits.velocity.array())
              .all() &&
          ((from.acceleration - first.acceleration).cwiseAbs().array() <=
-          kMaxRatio * limits.acceleration.array())
+          ratio * limits.acceleration.array())
              .all();
 }
 
 }  // namespace
 
 std::string PathRunner::start(const Trajectory& trajectory, const PathLimits& limits) {
-  if (std::string why = scaling_.init(trajectory, limits.motion, dt_); !why.empty()) return why;
+  if (std::string why = scaling_.init(trajectory, limits.motion, settings_.period); !why.empty())
+    return why;
   limits_ = limits;
   path_ = trajectory;
   stale_ = false;
@@ -52,12 +52,11 @@ const Trajectory& PathRunner::path() const {
 }
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
-  constexpr int kTries = 10;  // in this short window, limited by the time of a cycle
   if (finished_) return false;
   SwitchSettings settings;
   settings.first = std::max(0.0, scaling_.time());
-  settings.last = settings.first + rejoin_time_;
-  settings.tries = kTries;
+  settings.last = settings.first + settings_.rejoin_time;
+  settings.tries = settings_.rejoin_tries;
   if (scaling_.start_from(state, scaling_.path(), settings) != SwitchOutcome::ok) return false;
   shift_ = this->offset();
   state_ = state;
@@ -96,9 +95,10 @@ std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& ne
   if (std::string why = why_not_runnable(next, limits_.motion); !why.empty()) return why;
   SwitchSettings settings;
   MotionState3 there = next.at(0.0);
-  if (begins_alike(from, there, limits_.motion)) {
-    settings.last =
-        from_rest || same_motion(from, there) ? 0.0 : std::min(join_time_, next.duration());
+  if (begins_alike(from, there, limits_.motion, settings_)) {
+    settings.last = from_rest || same_motion(from, there)
+                        ? 0.0
+                        : std::min(settings_.join_time, next.duration());
   } else {
     constexpr int kSamples = 200;
     double nearest = std::numeric_limits<double>::infinity();
@@ -160,10 +160,10 @@ std::string PathRunner::start_from(const MotionState3& state, const Trajectory& 
 bool PathRunner::step(double wanted) noexcept {
   if (finished_) return true;
   scaling_.set_target(scaling_.time() <= 0.0 ? std::max(0.0, wanted) : wanted);
-  scaling_.advance(dt_);
+  scaling_.advance(settings_.period);
   const MotionState3& next = scaling_.state();
   for (Eigen::Index i = 0; i < next.position.size(); ++i)
-    if (!acceptable(state_, next, i, limits_.motion, dt_)) return false;
+    if (!acceptable(state_, next, i, limits_.motion, settings_.period)) return false;
   state_ = next;
   finished_ = scaling_.finished();
   return true;

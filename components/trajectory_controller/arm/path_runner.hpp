@@ -16,12 +16,19 @@ struct PathLimits {
   Eigen::VectorXd lower, upper;  ///< bounds of connecting motions; none where lower >= upper
 };
 
+/// How trajectories are joined.
+struct PathRunnerSettings {
+  double period{0.001};     ///< of control [s]
+  double join_time{0.5};    ///< a trajectory that begins nearly as the axes move: within this [s]
+  double rejoin_time{0.4};  ///< rejoin(): within this; later switch points cut corners [s]
+  int rejoin_tries{10};     ///< max switch points that it tries, limited by the time of a cycle
+  double alike_distance{0.02};  ///< of a trajectory that begins nearly as the axes move [rad]
+  double alike_ratio{0.1};      ///< max fraction of the limits by which its motion then differs
+};
+
 class PathRunner {
  public:
-  /// `join_time`: a trajectory that begins nearly as the axes move is joined within this time [s].
-  /// `rejoin_time`: rejoin() joins the path within this time: later switch points cut corners [s].
-  explicit PathRunner(double period, double join_time = 0.5, double rejoin_time = 0.4)
-      : dt_(period), join_time_(join_time), rejoin_time_(rejoin_time) {}
+  explicit PathRunner(const PathRunnerSettings& settings) : settings_(settings) {}
 
   /// From rest at its beginning, at once with factor 1. Empty, or why it cannot be run. May
   /// allocate.
@@ -75,7 +82,7 @@ class PathRunner {
                         bool from_rest, Switch&& go);
   std::string why_out_of_bounds() const;
 
-  double dt_, join_time_, rejoin_time_;
+  PathRunnerSettings settings_;
   PathLimits limits_;
   TimeScaling scaling_;
   mutable Trajectory path_;  // as law_ has it, unless stale

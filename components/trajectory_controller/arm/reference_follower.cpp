@@ -16,7 +16,7 @@ ReferenceFollower::ReferenceFollower(const ReferenceFollowerSettings& settings,
                                      const AxisGroups& groups)
     : settings_(settings),
       groups_(groups),
-      reference_(groups.arm(), groups.size()),
+      reference_(groups.arm(), groups.size(), settings.reference),
       adopted_(Vector::Zero(groups.size())),
       measured_before_(adopted_) {}
 
@@ -35,7 +35,7 @@ bool ReferenceFollower::rests(const RobotState& robot, int axis) const noexcept 
 /// Adopts the measured configuration of an arm at rest once, and again after the arm has moved.
 void ReferenceFollower::adopt(const RobotState& robot) noexcept {
   const auto far = [&](int axis) {
-    return std::abs(robot.position[axis] - adopted_[axis]) > RobotReference::kBent;
+    return std::abs(robot.position[axis] - adopted_[axis]) > settings_.reference.bent;
   };
   const std::vector<int>& arm = groups_.arm();
   if (has_adopted_ && !std::any_of(arm.begin(), arm.end(), far)) return;
@@ -80,7 +80,7 @@ void ReferenceFollower::step(const ReferenceInputs& in, ArmMotion& arm, AxisMove
   const RobotState& robot = in.robot.state();
   const bool stale = in.age > settings_.timeout;
   if (stale) reference_.set_stale();
-  const bool due = in.cycle % RobotReference::kInterval == 0 && !stale;
+  const bool due = in.cycle % settings_.reference.cycles == 0 && !stale;
   const Vector& set_point = in.set_points.sent().position;
   if (due) reference_.update(robot, set_point, in.robot.follows());
   apart_ = in.fault || !in.robot.follows();

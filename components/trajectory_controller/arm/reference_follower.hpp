@@ -13,9 +13,10 @@ namespace handsel::trajectory_controller {
 
 /// When set-points are brought to the robot.
 struct ReferenceFollowerSettings {
-  bool dry_run{};            ///< no robot follows the set-points
-  double hand_rejoin{0.25};  ///< fingers, where they are farther off than this [rad]
-  double timeout{0.02};      ///< an older robot state says nothing of the reference [s]
+  bool dry_run{};               ///< no robot follows the set-points
+  double hand_rejoin{0.25};     ///< fingers, where they are farther off than this [rad]
+  double timeout{0.02};         ///< an older robot state says nothing of the reference [s]
+  ReferenceSettings reference;  ///< how the reference is compared
 };
 
 /// Inputs of one step.
@@ -32,7 +33,8 @@ class ReferenceFollower {
   /// Keeps a reference to the groups.
   ReferenceFollower(const ReferenceFollowerSettings& settings, const AxisGroups& groups);
 
-  /// Sets arm, head and hands at rest in motion to where the robot is, every kInterval cycles.
+  /// Sets arm, head and hands at rest in motion to where the robot is, at each comparison of the
+  /// reference.
   void step(const ReferenceInputs& in, ArmMotion& arm, AxisMovers& head, Hands& hands) noexcept;
   /// Returns whether the robot side rests elsewhere, so that set-points do not move the robot.
   bool moves_nothing() const noexcept;

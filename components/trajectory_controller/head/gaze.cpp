@@ -68,8 +68,11 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
   return out;
 }
 
-HeadRoom::HeadRoom(const RobotModel& robot)
-    : robot_(robot), head_(robot.group("head")), capsules_(robot_capsules(robot)) {
+HeadRoom::HeadRoom(const RobotModel& robot, double min_clearance)
+    : robot_(robot),
+      min_clearance_(min_clearance),
+      head_(robot.group("head")),
+      capsules_(robot_capsules(robot)) {
   if (head_ == nullptr) return;
   const auto turns_head = [&](int axis) {
     return std::find(head_->axes.begin(), head_->axes.end(), axis) != head_->axes.end();
@@ -104,8 +107,8 @@ double HeadRoom::clearance(const Vector& q) {
 }
 
 double HeadRoom::min_clearance(const Vector& q) {
-  constexpr double kMargin = 0.02, kSame = 1e-3;  // [m]
-  return std::min(kMargin, clearance(q) - kSame);
+  constexpr double kSame = 1e-3;  // [m]
+  return std::min(min_clearance_, clearance(q) - kSame);
 }
 
 bool HeadRoom::lets_turn(const Vector& q, const std::vector<double>& target) {

@@ -20,10 +20,11 @@ std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector
 /// capsules, and only pairs of links that are tested against each other at all. Own method.
 class HeadRoom {
  public:
-  explicit HeadRoom(const RobotModel& robot);
+  /// `min_clearance`: distance that the head keeps [m].
+  HeadRoom(const RobotModel& robot, double min_clearance);
   /// Min distance between the head and the links moved by other axes [m]; +inf without one of both.
   double clearance(const Vector& q);
-  /// Returns whether the head keeps a distance of 2 cm, or the one it has if smaller, while its
+  /// Returns whether the head keeps `min_clearance`, or the distance it has if smaller, while its
   /// axes move from q to `target`.
   bool lets_turn(const Vector& q, const std::vector<double>& target);
   /// Returns whether the head at `target` keeps this distance with the other axes at `q`.
@@ -33,6 +34,7 @@ class HeadRoom {
   double min_clearance(const Vector& q);
 
   const RobotModel& robot_;
+  double min_clearance_;
   const Group* head_;
   std::vector<LinkCapsule> capsules_;
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of capsules_: head, rest

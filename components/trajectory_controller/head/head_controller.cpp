@@ -6,15 +6,14 @@
 namespace handsel::trajectory_controller {
 
 HeadController::HeadController(const RobotModel& robot, const std::vector<int>& axes,
-                               double dead_band, double period)
-    : robot_(robot), room_(robot), movers_(robot, axes), dead_band_(dead_band), period_(period) {
+                               const HeadSettings& settings)
+    : robot_(robot), room_(robot, settings.clearance), movers_(robot, axes), settings_(settings) {
   target_.reserve(axes.size());
 }
 
 bool HeadController::has_new_target(const AttentionAdvice& advice) const noexcept {
-  constexpr double kMoved = 0.02;  // [m]
   return !movers_.axes().empty() && advice.has_gaze_target &&
-         !((advice.gaze_target - aimed_at_).norm() < kMoved);
+         !((advice.gaze_target - aimed_at_).norm() < settings_.min_target_motion);
 }
 
 void HeadController::aim_at(const AttentionAdvice& advice, const Pose& T_world_base,
@@ -45,10 +44,10 @@ void HeadController::step(bool may_move, const std::vector<char>& on_path,
     if (!may_move && !paused_) {
       movers_.stop(axis);
     } else if (may_move && !target_.empty() &&
-               std::abs(target_[i] - movers_[axis].target()) > dead_band_) {
+               std::abs(target_[i] - movers_[axis].target()) > settings_.dead_band) {
       movers_.go_to(axis, target_[i]);
     }
-    movers_.step(axis, period_, next);
+    movers_.step(axis, settings_.period, next);
   }
   paused_ = !may_move;
 }

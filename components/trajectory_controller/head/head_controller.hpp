@@ -11,12 +11,19 @@
 
 namespace handsel::trajectory_controller {
 
+/// When the head turns.
+struct HeadSettings {
+  double period{0.001};            ///< of control [s]
+  double dead_band{0.03};          ///< the head turns only for more than this [rad]
+  double min_target_motion{0.02};  ///< min motion of the gaze target for another aim [m]
+  double clearance{0.02};          ///< distance from other links that the head keeps [m]
+};
+
 class HeadController {
  public:
-  /// Keeps a reference to the robot. `dead_band`: the head turns only for more than this [rad];
-  /// `period`: of control [s].
-  HeadController(const RobotModel& robot, const std::vector<int>& axes, double dead_band,
-                 double period);
+  /// Keeps a reference to the robot.
+  HeadController(const RobotModel& robot, const std::vector<int>& axes,
+                 const HeadSettings& settings);
 
   /// Turns to the gaze target of the advice if the target is new and the head collides with nothing
   /// there, with the other axes at `here` (present) and at each of `ahead` (along the path that the
@@ -38,7 +45,7 @@ class HeadController {
   const RobotModel& robot_;
   HeadRoom room_;
   AxisMovers movers_;
-  double dead_band_, period_;
+  HeadSettings settings_;
   std::vector<double> target_;  // of each axis of the head; empty: none
   Vector3 aimed_at_{Vector3::Constant(1e9)};
   bool paused_{};  // in Hold and above

@@ -6,8 +6,8 @@
 
 namespace handsel::trajectory_controller {
 
-RobotReference::RobotReference(std::vector<int> axes, int dof)
-    : axes_(std::move(axes)), seen_(Vector::Zero(dof)) {}
+RobotReference::RobotReference(std::vector<int> axes, int dof, const ReferenceSettings& settings)
+    : axes_(std::move(axes)), settings_(settings), seen_(Vector::Zero(dof)) {}
 
 double RobotReference::farthest(const Vector& a, const Vector& b) const noexcept {
   double out = 0.0;
@@ -17,12 +17,11 @@ double RobotReference::farthest(const Vector& a, const Vector& b) const noexcept
 
 bool RobotReference::reported(const RobotState& state) const noexcept {
   return state.reference.position.size() == seen_.size() && state.position.size() == seen_.size() &&
-         farthest(state.reference.position, state.position) < kBent;
+         farthest(state.reference.position, state.position) < settings_.bent;
 }
 
 void RobotReference::update(const RobotState& state, const Vector& set_point,
                             bool follows) noexcept {
-  constexpr double kApart = 0.01;  // larger than the lag of a following robot side at rest [rad]
   stale_ = false;
   if (!reported(state)) {
     state_ = State::unknown;
@@ -32,7 +31,7 @@ void RobotReference::update(const RobotState& state, const Vector& set_point,
   seen_ = state.reference.position;
   if (!rests)
     state_ = follows ? State::followed : State::moving;
-  else if (!follows || farthest(state.reference.position, set_point) > kApart)
+  else if (!follows || farthest(state.reference.position, set_point) > settings_.apart)
     state_ = State::resting;
   else if (state_ != State::resting)
     state_ = State::followed;

@@ -9,6 +9,13 @@
 
 namespace handsel::trajectory_controller {
 
+/// How the reference is compared.
+struct ReferenceSettings {
+  double bent{0.06};         ///< max bending by load and touch at rest [rad]
+  double apart{0.01};        ///< larger than the lag of a following robot side at rest [rad]
+  std::uint32_t cycles{20};  ///< between two comparisons
+};
+
 /// Decides whether set-points move the robot: they do not while its reference rests elsewhere. A
 /// robot side can stop without reporting it, so the reference decides, not the mode alone. Own
 /// method.
@@ -22,9 +29,9 @@ class RobotReference {
   };
 
   /// `axes`: of the arm. `dof`: number of axes of the robot.
-  RobotReference(std::vector<int> axes, int dof);
+  RobotReference(std::vector<int> axes, int dof, const ReferenceSettings& settings);
 
-  /// Evaluates the newest state, every `kInterval` cycles. `follows`: the robot side says so.
+  /// Evaluates the newest state, every `cycles` cycles. `follows`: the robot side says so.
   void update(const RobotState& state, const Vector& set_point, bool follows) noexcept;
   /// Notes that the newest state is too old: unknown until the next evaluation. A reference that
   /// is where it was before the gap counts as before.
@@ -34,13 +41,11 @@ class RobotReference {
   /// Returns whether the reference is reported and the measured arm may rest there.
   bool reported(const RobotState& state) const noexcept;
 
-  static constexpr double kBent = 0.06;  ///< [rad] largest bending by load and touch at rest
-  static constexpr int kInterval = 20;   ///< [cycles]
-
  private:
   double farthest(const Vector& a, const Vector& b) const noexcept;
 
   std::vector<int> axes_;
+  ReferenceSettings settings_;
   Vector seen_;
   State state_{State::unknown};
   bool stale_{};

@@ -81,8 +81,7 @@ bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts,
 /// allowed, as the person who pushes is there. Fingers alone are no reason: Hold stops them.
 void OutputCheck::check_observed(const OutputCheckInputs& in, MovingParts parts,
                                  SetPoints& set_points) noexcept {
-  constexpr int kEvery = 10;  // cycles between two checks at rest
-  if (!proof_.moving() && in.cycle % kEvery != 0) return;
+  if (!proof_.moving() && in.cycle % settings_.blind_cycles != 0) return;
   const Vector& position = set_points.next().position;
   blind_ = !stop_space_.observes_stops(position, in.T_world_base, in.age);
   if (!blind_ || !in.follows || in.moves_nothing || settings_.dry_run) return;

@@ -16,10 +16,11 @@ namespace handsel::trajectory_controller {
 
 /// What the checks do.
 struct OutputCheckSettings {
-  double period{0.001};    ///< of control [s]
-  bool dry_run{};          ///< no set-point is sent: what is not observed does not matter
-  int max_rejoins{4};      ///< attempts to rejoin a path before it is given up
-  double shown_time{0.5};  ///< an unproven set-point is shown for so long [s]
+  double period{0.001};            ///< of control [s]
+  bool dry_run{};                  ///< no set-point is sent: what is not observed does not matter
+  int max_rejoins{4};              ///< attempts to rejoin a path before it is given up
+  double shown_time{0.5};          ///< an unproven set-point is shown for so long [s]
+  std::uint32_t blind_cycles{10};  ///< between two checks at rest that the arm is observed
 };
 
 /// Inputs of one check.

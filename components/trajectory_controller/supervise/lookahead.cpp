@@ -8,13 +8,6 @@
 
 namespace handsel::trajectory_controller {
 
-namespace {
-
-constexpr int kEvery = 50;         // cycles between two evaluations at rest
-constexpr int kEveryRetreat = 10;  // cycles between two evaluations in a retreat
-
-}  // namespace
-
 Lookahead::Lookahead(const LookaheadSettings& settings, const RobotModel& robot,
                      const StopProof& proof, StopSpace& stop_space,
                      const std::vector<int>& finger_axes)
@@ -40,7 +33,7 @@ bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
     rise_.rest();
     now_.uncovered = in.uncovered;
     // At rest only the distance, the end of a handover and a possible retreat matter.
-    if (cycle % (in.retreat != nullptr ? kEveryRetreat : kEvery) != 0) {
+    if (cycle % (in.retreat != nullptr ? settings_.retreat_cycles : settings_.rest_cycles) != 0) {
       verdict_ = now_;
       if (in.retreat != nullptr) keep_retreat();
       return false;
@@ -166,10 +159,9 @@ void Lookahead::evaluate(double ahead, const LookaheadInputs& in, GuardVerdict& 
 }
 
 bool Lookahead::is_too_fast(double factor) const noexcept {
-  constexpr double kLag = 1.1, kMin = 0.02;
   const double allowed = factor < 0.0 ? -std::max(now_.backward, near_.backward)
                                       : std::min(now_.forward, near_.forward);
-  return std::abs(factor) > kLag * allowed + kMin;
+  return std::abs(factor) > settings_.too_fast_ratio * allowed + settings_.too_fast_margin;
 }
 
 }  // namespace handsel::trajectory_controller

@@ -4,6 +4,7 @@
 // Pure, no heap after construction, noexcept.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "common/model/robot_capsules.hpp"
@@ -18,13 +19,17 @@ namespace handsel::trajectory_controller {
 
 /// Limits of the evaluation, and how far ahead it is made.
 struct LookaheadSettings {
-  GuardSettings guard;           ///< speed and separation
-  std::vector<Wall> walls;       ///< never passed
-  double look_ahead{0.15};       ///< the path is also evaluated this much later [s]
-  double look_far_ahead{0.45};   ///< and this much later: about the time of a stop [s]
-  SpeedRiseSettings rise;        ///< of the speed factor
-  double min_factor{0.6};        ///< min speed factor assumed until then
-  double back_min_factor{0.02};  ///< min backward speed factor at which the path runs back
+  GuardSettings guard;               ///< speed and separation
+  std::vector<Wall> walls;           ///< never passed
+  double look_ahead{0.15};           ///< the path is also evaluated this much later [s]
+  double look_far_ahead{0.45};       ///< and this much later: about the time of a stop [s]
+  SpeedRiseSettings rise;            ///< of the speed factor
+  double min_factor{0.6};            ///< min speed factor assumed until then
+  double back_min_factor{0.02};      ///< min backward speed factor at which the path runs back
+  std::uint32_t rest_cycles{50};     ///< between two evaluations at rest
+  std::uint32_t retreat_cycles{10};  ///< between two evaluations in a retreat
+  double too_fast_ratio{1.1};        ///< of an arm that is too fast to what is allowed
+  double too_fast_margin{0.02};      ///< and the speed factor above that
 };
 
 /// Inputs of one evaluation.

@@ -209,7 +209,7 @@ TEST_F(PartsTest, hands_begin_with_what_the_robot_side_holds) {
 }
 
 TEST_F(PartsTest, the_head_turns_to_its_target_and_stops_in_hold) {
-  HeadController head(*robot_, groups_.head(), 0.03, kPeriod);
+  HeadController head(*robot_, groups_.head(), {.period = kPeriod});
   AttentionAdvice advice;
   advice.has_gaze_target = true;
   advice.gaze_target = Vector3(1.0, 1.0, 1.3);

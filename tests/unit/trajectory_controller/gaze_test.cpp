@@ -46,7 +46,7 @@ TEST(Gaze, stays_inside_the_bounds_for_points_out_of_view) {
 TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
   const RobotModel robot =
       RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
-  HeadRoom room(robot);
+  HeadRoom room(robot, HeadSettings{}.clearance);
   Vector q = robot.rest_configuration();
   q.head(7) << -0.286, 1.673, -0.285, -1.170, -1.204, 1.639, -1.292;
   const std::vector<int>& head = robot.require_group("head").axes;
@@ -83,9 +83,9 @@ TEST(HeadController, the_head_does_not_turn_to_where_the_arm_will_pass) {
         T_root_link[static_cast<std::size_t>(robot.gaze_link())] * Vector3(1.0, 0.1, -down);
     const std::vector<double> target =
         aim(robot, robot.require_group("head"), here, advice.gaze_target);
-    HeadRoom room(robot);
+    HeadRoom room(robot, HeadSettings{}.clearance);
     if (room.lets_turn(passing, target)) continue;
-    HeadController head(robot, axes, 0.03, 0.001);
+    HeadController head(robot, axes, {});
     head.aim_at(advice, Pose::Identity(), here, {passing, here});
     EXPECT_TRUE(head.has_new_target(advice)) << "refused, to be tried again";
     head.aim_at(advice, Pose::Identity(), here, {here});

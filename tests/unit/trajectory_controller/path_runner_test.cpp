@@ -25,7 +25,7 @@ TEST(PathRunner, a_path_rejoined_before_a_corner_does_not_cut_it) {
   for (const double before_corner : {0.5, 0.4, 0.3, 0.2, 0.1}) {  // [s]
     Trajectory path = solve(rest_at(0, 0), rest_at(0.4, 0), limits).trajectory;
     append(path, solve(rest_at(0.4, 0), rest_at(0.4, 0.4), limits).trajectory);
-    PathRunner runner(kPeriod);
+    PathRunner runner({.period = kPeriod});
     ASSERT_EQ(
         runner.start(path, {limits, Eigen::Vector2d::Constant(-3), Eigen::Vector2d::Constant(3)}),
         "");
