@@ -21,6 +21,21 @@ GraspListSettings taker_settings(const settings::GraspPlannerSettings& text) {
   return s;
 }
 
+TransferSettings transfer_settings(const settings::GraspPlannerSettings& text) {
+  TransferSettings s;
+  s.clearance = text.transfer_clearance;
+  s.palm_clearance = text.transfer_palm_clearance;
+  s.min_opposition = text.transfer_min_opposition;
+  s.max_of_each = text.transfer_grasps;
+  s.partners = text.transfer_partners;
+  s.pool = text.transfer_pool;
+  s.min_turn = text.transfer_turn;
+  s.max_aim = text.transfer_max_aim;
+  s.headings = static_cast<int>(text.transfer_headings);
+  s.max_tilt = text.transfer_max_tilt;
+  return s;
+}
+
 /// Returns the transfers from a hand of the robot to that of a person, described under `name`;
 /// nullptr: no such hand is known.
 std::shared_ptr<TransferCache> make_transfer_cache(const settings::GraspPlannerSettings& text,
@@ -29,7 +44,8 @@ std::shared_ptr<TransferCache> make_transfer_cache(const settings::GraspPlannerS
                                                    const GraspStore& store) {
   if (name.empty()) return nullptr;
   const auto taker = std::make_shared<const HandGeometry>(HandModel::load(hand_description(name)));
-  return std::make_shared<TransferCache>(robot, taker, taker_settings(text), store);
+  return std::make_shared<TransferCache>(robot, taker, taker_settings(text),
+                                         transfer_settings(text), store);
 }
 
 }  // namespace
@@ -42,6 +58,8 @@ settings::GraspPlannerSettings load_settings(const std::filesystem::path& folder
                 "is 0 as the other weights of the quality; one must be above 0");
   if (s.min_margin_held > s.min_margin)
     text.refuse("min_margin_held", "must be at most min_margin");
+  if (s.transfer_pool < s.transfer_partners)
+    text.refuse("transfer_pool", "must be at least transfer_partners");
   if (s.off_giver < s.off_fingers) text.refuse("off_giver", "must be at least off_fingers");
   return s;
 }

@@ -22,7 +22,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       regrasp_out_(bus.advertise<RegraspReply>()),
       candidates_out_(bus.advertise<GraspCandidates>()),
       holding_(context.objects, static_cast<int>(settings_.holding_samples)),
-      candidates_(settings_.candidates_time) {
+      candidates_(settings_.candidates_time, settings_.candidates_moved) {
   const auto platform = mobile(*robot_, context.description);
   for (const ArmGrasps& arm : arms_)
     choosers_.push_back(std::make_shared<const GraspChooser>(robot_, arm.hand_geometry, objects_,

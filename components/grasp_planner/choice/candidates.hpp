@@ -13,8 +13,9 @@ namespace handsel::grasp_planner {
 /// Decides when candidates have to be chosen again because the object was moved.
 class Candidates {
  public:
-  /// `lifetime`: after a request for which candidates are kept up [s].
-  explicit Candidates(double lifetime) : lifetime_(lifetime) {}
+  /// `lifetime`: after a request for which candidates are kept up [s]; `moved`: an object moved by
+  /// more needs new ones [m].
+  Candidates(double lifetime, double moved) : lifetime_(lifetime), moved_(moved) {}
 
   /// A choice for the object at this pose has begun.
   void on_choice(const Pose& T_world_object) { T_world_object_ = T_world_object; }
@@ -37,9 +38,8 @@ class Candidates {
   }
   /// Returns whether a new choice has to begin for the object at this pose, and counts it as begun.
   bool renew(const Pose& T_world_object) {
-    constexpr double kMoved = 0.01;  // [m] an object moved by more needs new candidates
     const double moved = (T_world_object.translation() - T_world_object_.translation()).norm();
-    if (!(moved > kMoved) || choosing_) return false;
+    if (!(moved > moved_) || choosing_) return false;
     choosing_ = true;
     return true;
   }
@@ -49,7 +49,7 @@ class Candidates {
   const GraspCandidates& message() const { return message_; }
 
  private:
-  double lifetime_;
+  double lifetime_, moved_;
   GraspRequest request_;
   TimePoint answered_at_{};
   bool active_{}, choosing_{};

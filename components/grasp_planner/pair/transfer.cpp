@@ -12,9 +12,6 @@ namespace {
 
 constexpr double kTiltStep = std::numbers::pi / 12;  // [rad]
 constexpr int kTiltAxes = 4;                         // tilt axes tried
-constexpr double kDifferent = 0.5;  // [rad] min rotation between the hands of two partners
-// Best double grasps of one robot grasp from which partners are selected.
-constexpr std::size_t kPlaced = 120;
 
 double promise_of(const TransferPartner& p) {
   return 0.6 * p.opposition / std::numbers::pi + 0.4 * p.quality;
@@ -57,14 +54,14 @@ TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const
                      [](const TransferPartner& a, const TransferPartner& b) {
                        return promise_of(a) > promise_of(b);
                      });
-    if (all[i].size() > kPlaced) all[i].resize(kPlaced);
+    if (all[i].size() > settings.pool) all[i].resize(settings.pool);
     for (const TransferPartner& p : all[i]) {
       if (partners_[i].size() >= settings.partners) break;
       const bool alike =
           std::any_of(partners_[i].begin(), partners_[i].end(), [&](const TransferPartner& o) {
             return Eigen::AngleAxisd(Eigen::Matrix3d(o.T_object_wrist.linear().transpose() *
                                                      p.T_object_wrist.linear()))
-                       .angle() < kDifferent;
+                       .angle() < settings.min_turn;
           });
       if (!alike) partners_[i].push_back(p);
     }

@@ -19,6 +19,8 @@ struct TransferSettings {
   std::size_t max_of_each{400};  ///< best grasps taken from each list
   /// Max distinct grasps of the person per grasp of the robot.
   std::size_t partners{10};
+  std::size_t pool{120};  ///< best double grasps of one grasp of the robot that these are from
+  double min_turn{0.5};   ///< min rotation between the hands of two partners [rad]
   /// Strain of wrist and arm of the person; beyond it a pose is left out.
   double max_strain{kComfortableStrain};
   /// Angle between the person's hand and the level direction from their body to the object [rad].

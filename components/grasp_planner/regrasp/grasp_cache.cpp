@@ -35,10 +35,12 @@ std::shared_ptr<const CachedGrasps> GraspCache::page(const ObjectModel& object,
 
 TransferCache::TransferCache(std::shared_ptr<const HandGeometry> robot,
                              std::shared_ptr<const HandGeometry> taker,
-                             const GraspListSettings& taker_settings, GraspStore store)
+                             const GraspListSettings& taker_settings,
+                             const TransferSettings& settings, GraspStore store)
     : robot_(std::move(robot)),
       taker_(taker),
-      cache_(std::move(taker), taker_settings, std::move(store)) {}
+      cache_(std::move(taker), taker_settings, std::move(store)),
+      settings_(settings) {}
 
 std::shared_ptr<const TransferTable> TransferCache::table(const ObjectModel& object,
                                                           const CachedGrasps& page,
@@ -48,7 +50,8 @@ std::shared_ptr<const TransferTable> TransferCache::table(const ObjectModel& obj
   if (!taken) return nullptr;
   auto& entry = tables_[object.name];
   entry = std::make_shared<const TransferTable>(HandSide{robot_.get(), &page.list},
-                                                HandSide{taker_.get(), &taken->list}, *page.object);
+                                                HandSide{taker_.get(), &taken->list}, *page.object,
+                                                settings_);
   return entry;
 }
 

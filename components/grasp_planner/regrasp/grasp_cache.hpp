@@ -43,7 +43,7 @@ class TransferCache {
  public:
   TransferCache(std::shared_ptr<const HandGeometry> robot,
                 std::shared_ptr<const HandGeometry> taker, const GraspListSettings& taker_settings,
-                GraspStore store);
+                const TransferSettings& settings, GraspStore store);
 
   /// `page`: of the robot's hand. nullptr when cancelled.
   std::shared_ptr<const TransferTable> table(const ObjectModel& object, const CachedGrasps& page,
@@ -57,6 +57,7 @@ class TransferCache {
  private:
   std::shared_ptr<const HandGeometry> robot_, taker_;
   GraspCache cache_;
+  TransferSettings settings_;
   std::map<std::string, std::shared_ptr<const TransferTable>> tables_;
 };
 

@@ -87,6 +87,7 @@ void add_components(BadFiles& table) {
   Settings(table, "grasp_planner", "grasp_planner.txtpb")
       .key("positions", "4000000000", "is 4e+09, must be")
       .key("grip_friction", "1.1", "is 1.1, must be")
+      .text("small_pool", "transfer_pool: 9\n", "transfer_pool: must be at least transfer_partners")
       .key("cone_edges", "3", "is 3, must be");
   Settings(table, "manipulation_planner", "manipulation_planner.txtpb")
       .key("otp_max_ahead", "0.3", "otp_max_ahead: must be at least otp_min_ahead")
