@@ -59,8 +59,9 @@ std::string SimWorld::Impl::control(const SimControl& c) {
     bool any = false;
     for (std::size_t p = 0; p < people->size(); ++p) {
       if (!c.subject.empty() && people->model(p).id() != c.subject) continue;
-      const bool any_may =
-          c.action == SimAction::person_freeze || c.action == SimAction::person_unfreeze;
+      const bool any_may = c.action == SimAction::person_freeze ||
+                           c.action == SimAction::person_unfreeze ||
+                           c.action == SimAction::person_hand;
       if (!any_may && !people->model(p).source().empty()) continue;
       act(people->model(p));
       any = true;
@@ -79,6 +80,10 @@ std::string SimWorld::Impl::control(const SimControl& c) {
       return for_each_subject([](PersonModel& p) { p.leave(); });
     case SimAction::person_refuse:
       return for_each_subject([](PersonModel& p) { p.refuse(); });
+    case SimAction::person_hand:
+      return for_each_subject([&](PersonModel& p) { p.guide_hand(c.side, c.point, c.value); });
+    case SimAction::person_look_away:
+      return for_each_subject([&](PersonModel& p) { p.look_away(c.value); });
     case SimAction::robot_stop:
       return stop_robot(c.subject);
     case SimAction::emergency_stop:

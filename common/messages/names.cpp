@@ -31,7 +31,7 @@ static_assert(ends_with(kActionFailureNames, ActionFailure::cancelled));
 static_assert(ends_with(kSideNames, Side::right));
 static_assert(ends_with(kHolderNames, Holder::human));
 static_assert(ends_with(kHealthStateNames, HealthState::stopping));
-static_assert(ends_with(kSimActionNames, SimAction::wheel_slip));
+static_assert(ends_with(kSimActionNames, SimAction::person_look_away));
 
 }  // namespace
 

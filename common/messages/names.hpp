@@ -106,7 +106,9 @@ inline constexpr const char* kSimActionNames[] = {"pause",
                                                   "emergency_stop",
                                                   "localisation_lost",
                                                   "localisation_jump",
-                                                  "wheel_slip"};
+                                                  "wheel_slip",
+                                                  "person_hand",
+                                                  "person_look_away"};
 
 // clang-format off
 inline constexpr const char* kActionPhaseTexts[] = {

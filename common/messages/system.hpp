@@ -106,7 +106,11 @@ enum class SimAction : std::uint8_t {
   emergency_stop,     ///< the red button
   localisation_lost,  ///< the place of the platform is not found for `value` seconds
   localisation_jump,  ///< the place of the platform is found `value` m beside it, along x
-  wheel_slip          ///< the wheels roll on by `value` m without the platform
+  wheel_slip,         ///< the wheels roll on by `value` m without the platform
+  /// The hand `side` of the person goes to `point` and stays there, at most for `value` seconds; 0:
+  /// it goes back.
+  person_hand,
+  person_look_away  ///< the person looks away for `value` seconds
 };
 
 /// Topic SimControl, profile goal: disturbances and control of the simulator.
@@ -115,6 +119,9 @@ struct SimControl {
   SimAction action{};   ///< disturbance or control wanted
   std::string subject;  ///< person or source
   double value{};       ///< dart: speed [m/s]; silence: duration [s]
+  Side side{};          ///< the hand that person_hand moves
+  /// Where person_hand moves the centre of the hand, world [m].
+  Vector3 point{Vector3::Zero()};
 };
 
 /// A note of the operator of a study, for the record; no component reads it but the bridge. Topic

@@ -73,6 +73,8 @@ void describe(WireIo& io, SimControl& m, handsel_SimControl& w) {
   io.choice("action", m.action, w.action, kSimActionNames);
   io.text("subject", m.subject, w.subject, Text::maybe_empty);
   io.number("value", m.value, w.value, {-1e9, 1e9});
+  io.choice("side", m.side, w.side, kSideNames);
+  io.point("point", m.point, w.point);
 }
 
 void describe(WireIo& io, StudyMark& m, handsel_StudyMark& w) {

@@ -10,7 +10,7 @@ namespace handsel::sim {
 const char* name(PersonPhase phase) {
   static constexpr const char* kNames[] = {"arriving", "watching",    "reaching", "closing",
                                            "pulling",  "withdrawing", "keeping",  "retracting",
-                                           "offering", "darting",     "leaving"};
+                                           "offering", "darting",     "leaving",  "guided"};
   return kNames[static_cast<int>(phase)];
 }
 
@@ -104,9 +104,12 @@ void PersonModel::step(double dt, const PersonView& view) {
     held_by_robot_before_ = view.held_by_robot;
     if (settings_.kind == PersonKind::external) {
       run_external_person(dt, view);
+    } else if (phase_ == PersonPhase::guided) {
+      if (view.grip_broke) wants_grip_ = false;
     } else if (settings_.kind != PersonKind::still) {
       run_phase(dt, view);
     }
+    move_guided_hands(dt);
     if (settings_.steps_in.speed > 0)
       feet_ = home_ - distance_from_place(settings_.steps_in, settings_.approach_from, clock_,
                                           settings_.manners.person_max_step_acceleration) *
@@ -122,6 +125,7 @@ void PersonModel::step(double dt, const PersonView& view) {
     bend_arm(hand_index(), hand_target_);
     hand_target_ = points_[kHand[hand_index()]];
   }
+  bend_guided_arms();
   command_hands(dt);
   for (int s = 0; s < 2; ++s) {
     if (!view.hand_pushed[s].isZero(0)) bend_arm(s, points_[kHand[s]] + view.hand_pushed[s]);
@@ -237,6 +241,8 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
       if (wants_grip_) hand_target_ = carry_position();
       break;
     }
+    case PersonPhase::guided:
+      break;
   }
 }
 

@@ -16,6 +16,7 @@
 #include "common/model/human/human_body.hpp"
 #include "common/model/object_model.hpp"
 #include "sim/people/followed_body.hpp"
+#include "sim/people/guided_hand.hpp"
 #include "sim/people/moving_offer.hpp"
 #include "sim/people/person_settings.hpp"
 #include "sim/people/recording.hpp"
@@ -113,7 +114,8 @@ enum class PersonPhase {
   retracting,
   offering,
   darting,
-  leaving
+  leaving,
+  guided
 };
 const char* name(PersonPhase);  ///< Returns the name as in the enumeration.
 
@@ -133,6 +135,12 @@ class PersonModel {
   void dart(double speed);
   /// Starts a walk backward; a held object stays in the hand.
   void leave();
+  /// Moves a hand toward `point`, world [m], within its reach, for `duration` [s] from now; then it
+  /// goes back and the person continues. 0 s: it goes back now. A hand that exchanges an object
+  /// continues with that; people who are frozen or follow a source ignore the call.
+  void guide_hand(Side side, const Vector3& point, double duration);
+  /// Averts the gaze for `duration` [s] from now.
+  void look_away(double duration);
   /// Ends all reaching for objects and all offers.
   void refuse() { refusing_ = true; }
   /// Chooses how the handover hand holds an object from the beginning, the object's end toward the
@@ -197,6 +205,12 @@ class PersonModel {
   void retract(double dt);
   void continue_dart(double dt, const PersonView&);
   void give_up();
+  bool may_guide(Side side) const;
+  bool leaves_handover_to_guide(Side side) const;
+  Vector3 within_reach(int side, const Vector3& point) const;
+  void move_guided_hands(double dt);
+  void end_guide();
+  void bend_guided_arms();
   void become_partner();
   void hold_object(const PersonView&);
   bool is_to_offer() const;
@@ -247,7 +261,8 @@ class PersonModel {
   Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
   double hand_to_surface(const PersonView&) const;
   Vector3 carry_position() const;
-  Vector3 rest_position() const;
+  Vector3 rest_position() const { return rest_position(hand_index()); }
+  Vector3 rest_position(int side) const;
   double height_above_furniture(const Vector3& hand) const;
   void keep_above_furniture(const Vector3& robot_hand);
   double extent_below_hand(const PersonView&) const;
@@ -289,12 +304,13 @@ class PersonModel {
       walk_direction_{1}, waited_for_robot_{0};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()},
       side_of_object_{Vector3::UnitX()}, warp_{Vector3::Zero()}, step_{Vector3::Zero()};
-  std::optional<FollowedBody> followed_;          // body of an external person
-  std::optional<MovingOffer> moving_;             // motion of the offer; nullopt: not begun
-  Vector3 p_hand_object_{Vector3::Zero()};        // the moved object in the hand frame [m]
-  std::optional<Vector3> p_hand_object_to_give_;  // as p_hand_object_to_give()
-  std::vector<Pose> held_in_vain_;                // hand in the frame of the object offered
-  TakingHand taking_;                             // place of the hand on an object that is taken
+  std::optional<FollowedBody> followed_;             // body of an external person
+  std::array<std::optional<GuidedHand>, 2> guided_;  // hands dragged from outside
+  std::optional<MovingOffer> moving_;                // motion of the offer; nullopt: not begun
+  Vector3 p_hand_object_{Vector3::Zero()};           // the moved object in the hand frame [m]
+  std::optional<Vector3> p_hand_object_to_give_;     // as p_hand_object_to_give()
+  std::vector<Pose> held_in_vain_;                   // hand in the frame of the object offered
+  TakingHand taking_;                                // place of the hand on an object that is taken
   std::optional<HandConfiguration> hand_configuration_;  // of the handover hand; nullopt: a fist
   // Orientation of the handover hand before a reach.
   Eigen::Quaterniond R_world_rest_{Eigen::Quaterniond::Identity()};

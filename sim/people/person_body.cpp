@@ -92,10 +92,9 @@ Vector3 PersonModel::carry_position() const {
          Vector3(0, 0, manners.person_carry_below);
 }
 
-/// Returns the position of the handover hand at rest, world [m].
-Vector3 PersonModel::rest_position() const {
-  return feet_ + aside_ +
-         Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[hand_index()]];
+/// Returns the position of a hand at rest, world [m].
+Vector3 PersonModel::rest_position(int side) const {
+  return feet_ + aside_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[side]];
 }
 
 Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }
