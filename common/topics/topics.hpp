@@ -59,7 +59,7 @@ struct TopicRow {
   X(Facts, "facts", state, 20, 0.3, 98312, "spark", "supervisor attention manipulation_planner") \
   X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", \
     "collision_checker path_planner trajectory_planner manipulation_planner") \
-  X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor spark") \
+  X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel bridge", "supervisor spark") \
   X(TaskStatus, "task_status", state, 0, 0, 167936, "supervisor", "handsel") \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner") \
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", \
@@ -104,7 +104,7 @@ struct TopicRow {
   X(ClockReached, "clock_reached", advice, 100, 0, 192, \
     "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller bridge driver ros2_lane", "sim") \
-  X(SimControl, "sim_control", goal, 0, 0, 160, "handsel", "sim") \
+  X(SimControl, "sim_control", goal, 0, 0, 160, "handsel bridge", "sim") \
   X(StudyMark, "study_mark", goal, 0, 0, 448, "handsel", "bridge") \
   X(GroundTruth, "ground_truth", state, 50, 0.06, 12288, "sim", "handsel")
 // clang-format on

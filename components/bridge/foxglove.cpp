@@ -128,11 +128,7 @@ void Viewer::refuse(const std::string& why) {
 }
 
 bool Viewer::flooding(TimePoint now) {
-  if (now - window_ > std::chrono::seconds(1)) {
-    window_ = now;
-    in_window_ = 0;
-  }
-  if (++in_window_ <= kMaxMessages) return false;
+  if (limit_.admit(now)) return false;
   ++refused_;
   cut_ = "more than " + std::to_string(kMaxMessages) + " messages in a second";
   return true;

@@ -16,6 +16,7 @@
 
 #include "common/base/time.hpp"
 #include "components/bridge/outbox.hpp"
+#include "components/bridge/rate_limit.hpp"
 
 namespace handsel::bridge {
 
@@ -147,8 +148,7 @@ class Viewer {
   std::optional<Graph> reported_graph_;  // set while it wants the graph
   std::uint64_t refused_{0};
   unsigned errors_{0};
-  TimePoint window_{};
-  unsigned in_window_{0};
+  RateLimit limit_{kMaxMessages};
   std::string cut_;
 };
 

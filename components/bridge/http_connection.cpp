@@ -4,6 +4,7 @@
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/bus/executor.hpp"
 #include "components/bridge/web_socket_client.hpp"
 
 namespace handsel::bridge {
@@ -19,19 +20,42 @@ constexpr const char* kPolicy =
     "img-src 'self' data: blob:; "
     "worker-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
+constexpr std::size_t kMaxBody = 4096;  // of a command [bytes]
+
 std::string text(beast::string_view view) { return {view.data(), view.size()}; }
+std::string_view plain(beast::string_view view) { return {view.data(), view.size()}; }
+
+http::status status_of(CommandGate::Verdict verdict) {
+  switch (verdict) {
+    case CommandGate::Verdict::admitted:
+      return http::status::accepted;
+    case CommandGate::Verdict::closed:
+      return http::status::not_found;
+    case CommandGate::Verdict::foreign:
+      return http::status::forbidden;
+    case CommandGate::Verdict::no_token:
+    case CommandGate::Verdict::wrong_token:
+      return http::status::unauthorized;
+    case CommandGate::Verdict::too_many:
+      return http::status::too_many_requests;
+  }
+  return http::status::forbidden;
+}
 
 }  // namespace
 
 void HttpConnection::read() {
   parser_.emplace();
   parser_->header_limit(8192);
-  parser_->body_limit(0);
+  parser_->body_limit(kMaxBody);
   expire();
   http::async_read(
       stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
-        if (error && error != http::error::end_of_stream &&
-            error.category() == http::make_error_code(http::error::bad_target).category()) {
+        if (error == http::error::body_limit) {
+          self->refuse(http::status::payload_too_large,
+                       "a request may have at most " + std::to_string(kMaxBody) + " bytes\n", 11);
+        } else if (error && error != http::error::end_of_stream &&
+                   error.category() == http::make_error_code(http::error::bad_target).category()) {
           self->refuse(http::status::bad_request,
                        "this is no HTTP request served here: " + error.message() + "\n", 11);
         } else if (error) {
@@ -117,6 +141,8 @@ void HttpConnection::answer(const Request& request) {
   if (!state_.hosts.contains(text(request[http::field::host])))
     return refuse(http::status::forbidden, "this page is for this machine only\n", version);
   if (websocket::is_upgrade(request)) return upgrade(request);
+  if (request.method() == http::verb::post && request.target() == "/command")
+    return command(request);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return refuse(http::status::method_not_allowed, "read-only\n", version);
   const bool body = request.method() == http::verb::get;
@@ -157,6 +183,34 @@ void HttpConnection::file(const std::string& path, const Request& request, bool 
        request.keep_alive());
 }
 
+/// Takes a command of a holder of the token; answers 202 with the id of a task.
+void HttpConnection::command(const Request& request) {
+  const unsigned version = request.version();
+  const auto refused = [&](Status status, const std::string& sentence) {
+    state_.report("command " + std::to_string(static_cast<unsigned>(status)),
+                  "a command is refused: " + sentence);
+    refuse(status, sentence + "\n", version);
+  };
+  const CommandGate::Answer answer =
+      state_.gate.admit({.authorization = plain(request[http::field::authorization]),
+                         .origin = plain(request[http::field::origin]),
+                         .host = plain(request[http::field::host])},
+                        monotonic_now());
+  if (answer.verdict != CommandGate::Verdict::admitted)
+    return refused(status_of(answer.verdict), answer.refusal);
+  CommandReading reading = read_command(request.body());
+  if (!reading.command) return refused(http::status::bad_request, reading.refusal);
+  const CommandQueue::Receipt receipt = state_.queue.put(std::move(*reading.command));
+  if (receipt.outcome == CommandQueue::Outcome::too_many)
+    return refused(http::status::too_many_requests, receipt.refusal);
+  if (receipt.outcome == CommandQueue::Outcome::nobody_takes_it)
+    return refused(http::status::service_unavailable, receipt.refusal);
+  ++state_.counters.commands;
+  send(make<http::string_body>(http::status::accepted, version, "application/json",
+                               nlohmann::json{{"task", receipt.task}}.dump()),
+       request.keep_alive());
+}
+
 void HttpConnection::upgrade(const Request& request) {
   const unsigned version = request.version();
   const std::string origin = text(request[http::field::origin]);
@@ -186,6 +240,7 @@ std::string HttpConnection::counters() {
                         {"requests", c.requests},
                         {"refused_connections", c.refused_connections},
                         {"refused_requests", c.refused_requests},
+                        {"commands", c.commands},
                         {"refused_messages", c.refused_messages},
                         {"cut_clients", c.cut_clients},
                         {"sent_messages", c.sent_messages},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One HTTP connection of the server: answers GET and HEAD, and upgrades to a WebSocketClient.
+// One HTTP connection of the server: answers GET and HEAD, takes commands by POST, and upgrades to
+// a WebSocketClient.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -28,7 +29,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
  private:
   using Error = boost::beast::error_code;
-  using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+  using Request = boost::beast::http::request<boost::beast::http::string_body>;
   using Status = boost::beast::http::status;
   template <class Body>
   using Response = std::shared_ptr<boost::beast::http::response<Body>>;
@@ -45,13 +46,14 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void answer(const Request& request);
   void json(const std::string& content, const Request& request, bool body);
   void file(const std::string& path, const Request& request, bool body);
+  void command(const Request& request);
   void upgrade(const Request& request);
   std::string counters();
 
   boost::beast::tcp_stream stream_;
   ServerState& state_;
   boost::beast::flat_buffer buffer_{16384};
-  std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
+  std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
 };
 
 }  // namespace handsel::bridge

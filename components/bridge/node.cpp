@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "components/bridge/node.hpp"
 
-#include <charconv>
 #include <cstdio>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "common/config/resources.hpp"
 #include "common/config/settings/bridge.hpp"
 #include "common/messages/system.hpp"
 #include "components/bridge/catalogue.hpp"
+#include "components/bridge/environment.hpp"
 
 namespace handsel::bridge {
 namespace {
@@ -17,18 +16,6 @@ namespace {
 constexpr Duration kRetry = std::chrono::seconds(5);
 constexpr Duration kClock = std::chrono::milliseconds(100);
 constexpr Duration kGraphPeriod = std::chrono::seconds(1);
-
-std::uint16_t port_of(const settings::BridgeSettings& settings) {
-  if (const char* text = std::getenv("HANDSEL_WEB_PORT"); text && *text) {
-    const std::string value = text;
-    std::uint16_t port = 0;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), port);
-    if (error != std::errc() || end != value.data() + value.size())
-      throw ConfigError("HANDSEL_WEB_PORT is \"" + value + "\"; it must be a port, 0..65535");
-    return port;
-  }
-  return static_cast<std::uint16_t>(settings.port);
-}
 
 }  // namespace
 
@@ -39,11 +26,8 @@ Node::Node(Bus& bus, const NodeContext& context)
       readers_(topics().size()),
       drawing_(context.robot, context.objects) {
   const auto settings = settings::read_bridge_settings(context.settings / "bridge.txtpb");
-  settings_.port = port_of(settings);
-  if (const char* address = std::getenv("HANDSEL_WEB_ADDRESS"); address && *address)
-    settings_.address = address;
-  settings_.max_clients = settings.max_clients;
-  settings_.allowed_origins = settings.allowed_origins;
+  settings_ = server_settings(settings);
+  if (!settings_.token.empty()) steering_.emplace(bus);
 
   const SystemFacts facts{.scenario = context.scenario.stem(),
                           .domain = raw_ ? raw_->domain() : 0,
@@ -59,7 +43,10 @@ Node::Node(Bus& bus, const NodeContext& context)
       {.period = kGraphPeriod});
   start_server();
   bus_.every(kRetry, [this](TimePoint) { start_server(); });
-  bus_.every(from_seconds(1.0 / settings.rate), [this](TimePoint) { publish_samples(); });
+  bus_.every(from_seconds(1.0 / settings.rate), [this](TimePoint) {
+    publish_samples();
+    if (steering_ && server_) steering_->run(server_->commands());
+  });
   bus_.every(kClock, [this](TimePoint) {
     if (!server_ || !server_->any_client()) return;
     server_->set_time(bus_.stamp_now());

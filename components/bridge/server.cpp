@@ -151,6 +151,8 @@ void Server::set_graph(Graph graph) {
   });
 }
 
+CommandQueue& Server::commands() { return impl_->state.queue; }
+
 Counters Server::counters() const {
   const std::lock_guard lock(impl_->state.mutex);
   Counters counters = impl_->state.published;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "components/bridge/commands/command_queue.hpp"
 #include "components/bridge/foxglove.hpp"
 #include "components/bridge/site.hpp"
 
@@ -25,6 +26,7 @@ struct ServerSettings {
   std::vector<std::string> allowed_origins;
   /// IPv4, of the interface it listens on; pages still name this machine as 127.0.0.1 or localhost.
   std::string address{"127.0.0.1"};
+  std::string token{};  ///< secret that a command must present; empty: no commands
 };
 
 struct Counters {
@@ -32,6 +34,7 @@ struct Counters {
   std::uint64_t requests{};                     ///< answered over HTTP
   std::uint64_t refused_connections{};          ///< too many at once
   std::uint64_t refused_requests{};             ///< HTTP and upgrades
+  std::uint64_t commands{};                     ///< accepted
   std::uint64_t refused_messages{};             ///< of WebSocket clients
   std::uint64_t cut_clients{};                  ///< stalled, flooding, sent too much
   std::uint64_t sent_messages{}, sent_bytes{};  ///< over WebSocket; bytes also over HTTP
@@ -66,6 +69,8 @@ class Server {
   void set_graph(Graph graph);
   /// Returns the counters as of the last set_time(), connection or request of /counters.json.
   Counters counters() const;
+  /// Returns the accepted commands of visitors; who carries them out is set there.
+  CommandQueue& commands();
 
   struct Impl;
 

@@ -2,10 +2,17 @@
 #include "components/bridge/server_state.hpp"
 
 #include <cstdio>
+#include <random>
 
 #include "components/bridge/web_socket_client.hpp"
 
 namespace handsel::bridge {
+
+namespace {
+
+constexpr std::uint64_t kOfPage = 2;  // low byte of the id of a task that the page has given
+
+}  // namespace
 
 std::chrono::milliseconds milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
@@ -15,7 +22,9 @@ ServerState::ServerState(ServerSettings s, Site where, Catalogue catalogue, std:
     : settings(std::move(s)),
       site(std::move(where)),
       hub(std::move(catalogue), [this](const std::string& uri) { return site.fetch(uri); }),
-      config(std::move(json)) {}
+      config(std::move(json)),
+      gate(settings.token),
+      queue((std::uint64_t{std::random_device{}()} << 8U) | kOfPage) {}
 
 void ServerState::report(const std::string& kind, const std::string& what) {
   if (reported_kinds.insert(kind).second)

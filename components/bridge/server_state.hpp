@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "components/bridge/commands/command_gate.hpp"
 #include "components/bridge/server.hpp"
 
 namespace handsel::bridge {
@@ -31,6 +32,8 @@ struct ServerState {
   Site site;                ///< Files that are served.
   Hub hub;                  ///< Protocol state of all viewers.
   std::string config;       ///< JSON of /config.json.
+  CommandGate gate;         ///< Who may command.
+  CommandQueue queue;       ///< Commands that other threads take.
   /// Host names with port that a request may address; any other is another site's name for this
   /// machine.
   std::set<std::string> hosts;

@@ -4,6 +4,8 @@
 #include <array>
 #include <boost/asio/ip/tcp.hpp>
 
+#include "common/bus/executor.hpp"
+
 namespace handsel::bridge {
 namespace {
 
@@ -16,11 +18,6 @@ using tcp = asio::ip::tcp;
 constexpr std::size_t kMaxMessage = 65536;  // max size of a message of a client [bytes]
 constexpr int kSendBuffer = 512 * 1024;     // kernel buffer [bytes]; stale if a client is slow
 
-TimePoint monotonic() {
-  return TimePoint(
-      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()));
-}
-
 }  // namespace
 
 WebSocketClient::WebSocketClient(beast::tcp_stream&& stream, ServerState& state)
@@ -30,7 +27,7 @@ WebSocketClient::WebSocketClient(beast::tcp_stream&& stream, ServerState& state)
       viewer_(state.hub),
       buffer_(kMaxMessage) {}
 
-void WebSocketClient::open(const http::request<http::empty_body>& request,
+void WebSocketClient::open(const http::request<http::string_body>& request,
                            const std::string& subprotocol) {
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = milliseconds(state_.settings.request_timeout);
@@ -104,10 +101,10 @@ void WebSocketClient::read() {
   ws_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
     if (error) return self->end_after_error(error);
     if (self->ws_.got_binary()) {
-      self->viewer_.binary(monotonic());
+      self->viewer_.binary(monotonic_now());
     } else {
       const auto data = self->buffer_.cdata();
-      self->viewer_.text({static_cast<const char*>(data.data()), data.size()}, monotonic());
+      self->viewer_.text({static_cast<const char*>(data.data()), data.size()}, monotonic_now());
     }
     self->buffer_.consume(self->buffer_.size());
     self->state_.update_wanted();

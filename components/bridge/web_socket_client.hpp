@@ -20,7 +20,7 @@ class WebSocketClient : public std::enable_shared_from_this<WebSocketClient> {
   WebSocketClient(boost::beast::tcp_stream&& stream, ServerState& state);
 
   /// Accepts the upgrade with the given subprotocol, then reads and sends.
-  void open(const boost::beast::http::request<boost::beast::http::empty_body>& request,
+  void open(const boost::beast::http::request<boost::beast::http::string_body>& request,
             const std::string& subprotocol);
   /// Returns the protocol state of this client.
   Viewer& viewer() { return viewer_; }

@@ -11,6 +11,7 @@
 
 #include "common/config/resources.hpp"
 #include "components/bridge/catalogue.hpp"
+#include "components/bridge/commands/command_gate.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/processes/websocket_client.hpp"
 
@@ -31,6 +32,7 @@ double resident_mb() {
 }
 
 struct BridgeServer : testing::Test {
+  static constexpr const char* kToken = "0123456789abcdef0123456789abcdef";
   test::TemporaryFolder folder;
   std::unique_ptr<Server> server;
 
@@ -50,7 +52,8 @@ struct BridgeServer : testing::Test {
             .max_clients = 4,
             .request_timeout = 0.5,
             .stall_timeout = 0.5,
-            .allowed_origins = {}};
+            .allowed_origins = {"https://example.org"},
+            .token = kToken};
   }
   static Catalogue catalogue() {
     Catalogue c;
@@ -72,6 +75,16 @@ struct BridgeServer : testing::Test {
   std::string ask(const std::string& method, const std::string& target) {
     HttpClient client(server->port());
     client.request(method, target);
+    return client.read();
+  }
+  /// Sends a command; `more`: further headers.
+  std::string command(const std::string& json, const std::string& token = kToken,
+                      const std::string& more = {}, const std::string& path = "/command") {
+    HttpClient client(server->port());
+    client.send("POST " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server->port()) +
+                "\r\nConnection: close\r\n" +
+                (token.empty() ? "" : "Authorization: Bearer " + token + "\r\n") + more +
+                "Content-Length: " + std::to_string(json.size()) + "\r\n\r\n" + json);
     return client.read();
   }
   Json counters() {
@@ -188,8 +201,51 @@ TEST_F(BridgeServer, a_handshake_without_its_subprotocol_path_or_place_is_refuse
   EXPECT_THAT(WebSocketClient(server->port(), "foxglove.sdk.v1", own).read("serverInfo"),
               HasSubstr("101"));
   EXPECT_THAT(
-      WebSocketClient(server->port(), "foxglove.sdk.v1", "Origin: https://example.org\r\n").read(),
+      WebSocketClient(server->port(), "foxglove.sdk.v1", "Origin: https://example.com\r\n").read(),
       StartsWith("HTTP/1.1 403"));
+}
+
+TEST_F(BridgeServer, takes_commands_with_the_token_only_and_counts_the_refusals) {
+  server->commands().set_takers({.supervisor = true, .simulator = true});
+  const std::string give = R"({"task":"give","object":"mug"})";
+  EXPECT_THAT(command(give), testing::AllOf(StartsWith("HTTP/1.1 202"), HasSubstr("\"task\":")));
+  const std::string own = "Origin: http://127.0.0.1:" + std::to_string(server->port()) + "\r\n";
+  EXPECT_THAT(command(R"({"person":"anna","action":"leave"})", kToken, own),
+              StartsWith("HTTP/1.1 202"));
+  EXPECT_THAT(command(give, ""), StartsWith("HTTP/1.1 401"));
+  EXPECT_THAT(command(give, "0123456789abcdef0123456789abcdee"), StartsWith("HTTP/1.1 401"));
+  // Who may only look from elsewhere may not command.
+  EXPECT_THAT(command(give, kToken, "Origin: https://example.org\r\n"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(command("{}"), testing::AllOf(StartsWith("HTTP/1.1 400"), HasSubstr("either")));
+  EXPECT_THAT(command(std::string(5000, ' ') + give), StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(command(give, kToken, {}, "/commands"), StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(ask("GET", "/command"), StartsWith("HTTP/1.1 404"));
+  EXPECT_EQ(server->commands().take().size(), 2u);
+  EXPECT_EQ(counters()["commands"], 2);
+  EXPECT_GE(counters()["refused_requests"], 7);
+}
+
+TEST_F(BridgeServer, refuses_commands_that_nobody_takes_and_too_many) {
+  EXPECT_THAT(command(R"({"task":"pause"})"),
+              testing::AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("the supervisor is not there")));
+  unsigned admitted = 0;
+  std::string last;
+  for (unsigned i = 0; i < 3 * CommandGate::kMaxPerSecond; ++i) {
+    last = command("{}");
+    if (!last.starts_with("HTTP/1.1 400")) break;
+    ++admitted;
+  }
+  EXPECT_THAT(last, testing::AllOf(StartsWith("HTTP/1.1 429"), HasSubstr("in a second")));
+  EXPECT_GE(admitted, CommandGate::kMaxPerSecond - 1);
+}
+
+TEST_F(BridgeServer, without_a_token_only_shows) {
+  ServerSettings shows = settings();
+  shows.token.clear();
+  server = std::make_unique<Server>(shows, Site({}, resource_root()), catalogue(), "{}");
+  EXPECT_THAT(command(R"({"task":"pause"})", ""),
+              testing::AllOf(StartsWith("HTTP/1.1 404"), HasSubstr("without a token")));
+  EXPECT_THAT(command(R"({"task":"pause"})"), StartsWith("HTTP/1.1 404"));
 }
 
 TEST_F(BridgeServer, passes_samples_on_and_gives_what_is_kept_to_who_comes_late) {
