@@ -5,7 +5,7 @@ import { mkdir } from "node:fs/promises";
 import { dirname } from "node:path";
 import test, { after, before } from "node:test";
 import { setTimeout as delay } from "node:timers/promises";
-import { difference, kNoGl, launchBrowser, pixels, Program, startSystem } from "./stage.mjs";
+import { difference, kNoGl, launchBrowser, pixels, Program, settled, startSystem, until } from "./stage.mjs";
 
 const kDomain = process.env.HANDSEL_TEST_DOMAIN ?? "38";
 const kAngle = 1e-3;       // [rad] what is shown may differ from DDS by so much
@@ -35,16 +35,6 @@ after(async () => {
   await browser?.close();
   await echo?.end();
   await system?.end();
-});
-
-// Waits for a condition in the page.
-const until = (where, condition, argument) => where.waitForFunction(condition, argument, { polling: 50, timeout: kPatience });
-
-// Waits until the browser has compiled what it draws with: from then on it draws several pictures a second.
-const settled = (where) => until(where, async () => {
-  const begin = performance.now();
-  for (let i = 0; i < 5; ++i) await new Promise(requestAnimationFrame);
-  return performance.now() - begin < 1000;
 });
 
 async function open(where, size = kFull) {

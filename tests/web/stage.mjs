@@ -56,12 +56,22 @@ async function freePort() {
   return String(port);
 }
 
-// `handsel <command> …` with its page, once it is ready; `address` is where the page is.
+// `handsel <command> …` with its page, once it is ready; `address` is where the page is, `token` who may command.
 export async function startSystem(command, domain, ...options) {
   const system = new Program("handsel", [command, "--scenario", "give_mug", "--headless", "--domain", domain, "--port", await freePort(), ...options]);
-  const [, address] = await system.line(/watch it at (http:\S+)/);
-  return { system, address };
+  const [, address, token] = await system.line(/watch it at (http:[^#\s]+)#token=(\S+)/);
+  return { system, address, token };
 }
+
+// Waits for a condition in the page.
+export const until = (page, condition, argument, timeout = 60_000) => page.waitForFunction(condition, argument, { polling: 50, timeout });
+
+// Waits until the browser has compiled what it draws with: from then on it draws several pictures a second.
+export const settled = (page) => until(page, async () => {
+  const begin = performance.now();
+  for (let i = 0; i < 5; ++i) await new Promise(requestAnimationFrame);
+  return performance.now() - begin < 1000;
+});
 
 export function launchBrowser(gl = kSoftwareGl) {
   return chromium.launch({ executablePath: join(root, "tests/web/niced_chromium.sh"), args: [...flags, ...gl] });

@@ -19,6 +19,8 @@
 #include "common/base/errors.hpp"
 #include "common/bus/dds/dds_defaults.hpp"
 
+extern char** environ;
+
 namespace handsel {
 namespace {
 
@@ -124,6 +126,13 @@ void Launcher::start(Child& child) {
   for (const std::string& argument : child.spec.arguments)
     arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
+  // Of two entries of one name the first counts.
+  std::vector<char*> environment;
+  for (const std::string& variable : child.spec.environment)
+    environment.push_back(const_cast<char*>(variable.c_str()));
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    environment.push_back(*variable);
+  environment.push_back(nullptr);
   const std::string log = (options_.log_directory / (child.spec.name + ".log")).string();
   const pid_t launcher = getpid();
 
@@ -140,7 +149,7 @@ void Launcher::start(Child& child) {
     dup2(in, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
     dup2(out, STDERR_FILENO);
-    execv(arguments[0], arguments.data());
+    execve(arguments[0], arguments.data(), environment.data());
     _exit(3);
   }
   child.since = monotonic_now();

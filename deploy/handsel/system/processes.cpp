@@ -75,6 +75,8 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
     if (process == "supervisor")
       spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
+    if (process == "bridge" && !options.web_token.empty())
+      spec.environment.push_back("HANDSEL_WEB_TOKEN=" + options.web_token);
     if (sim_time) spec.arguments.emplace_back("--sim-time");
     const std::vector<std::string> overlays = overlay_arguments();
     spec.arguments.insert(spec.arguments.end(), overlays.begin(), overlays.end());

@@ -23,6 +23,8 @@ struct ProcessSpec {
   std::string name;                    ///< the component, as ComponentHealth names it
   std::filesystem::path binary;        ///< beside the running program
   std::vector<std::string> arguments;  ///< without argv[0]
+  /// "NAME=value", beside the environment of this process.
+  std::vector<std::string> environment{};
 };
 
 /// What the whole system is started with.
@@ -33,6 +35,7 @@ struct SystemOptions {
   std::uint64_t seed{1};             ///< of the simulation
   bool ros2{false};                  ///< with the process that connects to ROS 2
   int web_port{-1};                  ///< of the bridge; 0: any free one; -1: as its settings say
+  std::string web_token;             ///< secret of the page, for the bridge; empty: no commands
   std::string record;                ///< file to record into; empty: none
   std::map<std::string, std::string> notes;  ///< of a study, for the record's metadata
   /// Of kProcesses, when the others run on another host; both empty: all.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/handsel/system/system.hpp"
 
+#include <sys/random.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -17,6 +20,24 @@ namespace {
 
 constexpr Duration kStarvedCheck = std::chrono::milliseconds(200);
 
+/// Returns HANDSEL_WEB_TOKEN, which then leaves the environment so that only the bridge receives
+/// it; else 128 random bits in hexadecimal digits.
+std::string page_token() {
+  constexpr const char* kVariable = "HANDSEL_WEB_TOKEN";
+  if (const char* given = std::getenv(kVariable); given != nullptr && *given != '\0') {
+    std::string token = given;
+    unsetenv(kVariable);
+    return token;
+  }
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw MissingError("the system gives no random numbers for the token of the page");
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string token;
+  for (const unsigned char byte : bytes) token.append({kDigits[byte >> 4U], kDigits[byte & 15U]});
+  return token;
+}
+
 SystemOptions checked(SystemOptions options) {
   check_system(options);
   system_processes(options);
@@ -25,6 +46,7 @@ SystemOptions checked(SystemOptions options) {
   // Large pages: reading meshes fills buffers of 16 MB; page by page this takes a third of the
   // start.
   setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
+  options.web_token = page_token();
   return options;
 }
 
@@ -159,7 +181,8 @@ std::string System::web_address() const {
       address = text.substr(at, text.find_first_of(" \n", at) - at);
   }
   std::fclose(file);
-  return address;
+  return address.empty() || options_.web_token.empty() ? address
+                                                       : address + "#token=" + options_.web_token;
 }
 
 }  // namespace handsel

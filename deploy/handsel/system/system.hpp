@@ -35,7 +35,8 @@ class System {
   const SystemOptions& options() const { return options_; }  ///< as given to the constructor
   /// Of this run, one <process>.log each.
   const std::filesystem::path& log_directory() const { return log_directory_; }
-  /// Address of the bridge's page; empty while it has not said so.
+  /// Address of the bridge's page, with the token for commands; empty while the bridge has not
+  /// said so.
   std::string web_address() const;
 
   /// Listens until every component started here is ready; returns the time it took, or nullopt on

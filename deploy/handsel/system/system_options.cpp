@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/handsel/system/system_options.hpp"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -68,6 +70,24 @@ void add_help_hold_option(CLI::App& command) {
       "a grasp constraint helps to hold what the robot grasps (default: contact alone)");
 }
 
+namespace {
+
+/// Writes a file, readable by this user only, that sends a browser on to the address; returns its
+/// path. On the command line of a browser every user of this machine could read the token.
+std::string forwarding_file(const std::string& address, const std::filesystem::path& folder) {
+  const std::string path = (folder / "page.html").string();
+  const std::string text =
+      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0;url=" + address + "\"><a href=\"" +
+      address + "\">Handsel</a>\n";
+  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const bool written =
+      fd >= 0 && write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  if (fd >= 0) close(fd);
+  return written ? path : address.substr(0, address.find('#'));
+}
+
+}  // namespace
+
 void announce_page(System& system, bool headless) {
   const std::string address = system.web_address();
   if (address.empty()) {
@@ -81,7 +101,7 @@ void announce_page(System& system, bool headless) {
   std::fprintf(stderr, "watch it at %s\n", address.c_str());
   const bool display = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   if (headless || !display) return;
-  std::string opener = "xdg-open", argument = address;
+  std::string opener = "xdg-open", argument = forwarding_file(address, system.log_directory());
   char* arguments[] = {opener.data(), argument.data(), nullptr};
   pid_t pid = -1;
   if (posix_spawnp(&pid, opener.c_str(), nullptr, nullptr, arguments, environ) == 0)
