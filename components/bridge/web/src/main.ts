@@ -4,6 +4,8 @@
 import { Config, loadConfig } from "./config";
 import { Link } from "./link";
 import { Panels } from "./panels";
+import { Steering } from "./steering";
+import { TakePart } from "./take_part";
 import { Part, Region, World } from "./world";
 
 const kFrame = 33, kTables = 200;  // min time between pictures, between updates of the tables [ms]
@@ -19,6 +21,8 @@ export interface PageState {
   stamp: string;    // [ns] of the RobotState drawn
   angles: Record<string, number>;  // [rad] of the drawn model, by axis
   region(part: Part): Region | undefined;
+  pixel(point: [number, number, number]): { x: number; y: number } | undefined;
+  hand(person: string, side: string): [number, number, number] | undefined;  // world [m]
   hide(parts: Part[]): void;
 }
 
@@ -63,6 +67,7 @@ async function start(): Promise<void> {
     else requestAnimationFrame(frame);
   };
   const link = new Link(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, wake);
+  const steering = new Steering(), takePart = new TakePart(link, steering);
   const panels = new Panels(link, config.groups.arm ?? config.axes);
   const angleOf = (axis: string): number =>
     world ? (world.robot.angles()[axis] ?? NaN) : (link.newest("handsel/robot_state")?.position[config.axes.indexOf(axis)] ?? NaN);
@@ -75,11 +80,13 @@ async function start(): Promise<void> {
     if (begin - tablesAt >= kTables) {
       tablesAt = begin;
       panels.show(angleOf);
+      takePart.show();
     }
   };
   try {
     const stage = document.getElementById("stage");
     if (stage) world = new World(stage, urdf, config, wake, notice);
+    world?.letDrag(steering, (refusal) => takePart.answer(refusal));
   } catch (error) {
     notice((error as Error).message === "no WebGL" ? kNoWebGl : `The robot cannot be drawn: ${(error as Error).message}.`);
   }
@@ -97,6 +104,8 @@ async function start(): Promise<void> {
     get stamp() { return String(world ? world.robot.stamp : (link.newest("handsel/robot_state")?.stamp ?? 0n)); },
     get angles() { return Object.fromEntries(config.axes.map((axis) => [axis, angleOf(axis)])); },
     region: (part) => world?.region(part),
+    pixel: (point) => world?.pixel(point),
+    hand: (person, side) => world?.hand(person, side),
     hide: (parts) => world?.hide(parts),
   };
 }

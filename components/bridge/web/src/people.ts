@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // People as rounded limbs between their REP-155 joints, with their gaze.
 import * as THREE from "three";
+import { Hand } from "./hand_drag";
 import { Person } from "./messages";
 import { dispose, kCylinder, kSphere, Rod, span, vector } from "./shapes";
 
@@ -27,6 +28,7 @@ const kBalls: [string, number, number][] = [
 class Body {
   readonly group = new THREE.Group();
   readonly head = new THREE.Vector3();
+  readonly hands = new Map<"left" | "right", THREE.Vector3>();
   readonly box = new THREE.Box3();
   private readonly material = new THREE.MeshLambertMaterial({ transparent: true });
   private readonly tubes = new THREE.InstancedMesh(kCylinder, this.material, kLimbs.length);
@@ -44,6 +46,11 @@ class Body {
     const opacity = person.age > kLost ? 0.35 : 1;
     const joints = new Map(person.joints.map((joint) => [joint.name, vector(joint.position)]));
     const points = [...joints.values()];
+    for (const side of ["left", "right"] as const) {
+      const hand = joints.get(`${side[0]}_hand`);
+      if (hand) this.hands.set(side, hand);
+      else this.hands.delete(side);
+    }
     if (person.gaze_known) points.push(vector(person.gaze_direction).multiplyScalar(0.1));
     const still = points.length === this.drawn.length && points.every((p, i) => p.distanceToSquared(this.drawn[i]) < kSeen * kSeen);
     if (still && opacity === this.material.opacity) return false;
@@ -113,6 +120,9 @@ export class People {
   // [id, top of the head]
   *labels(): Iterable<[string, THREE.Vector3]> {
     for (const [id, body] of this.bodies) yield [id, body.head.clone().add(new THREE.Vector3(0, 0, 0.16))];
+  }
+  *hands(): Iterable<Hand> {
+    for (const [person, body] of this.bodies) for (const [side, at] of body.hands) yield { person, side, at };
   }
   first(): Body | undefined {
     return [...this.bodies.values()][0];

@@ -3,6 +3,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Config } from "./config";
+import { HandDrag } from "./hand_drag";
 import { Labels } from "./labels";
 import { Link } from "./link";
 import { nearness } from "./nearness";
@@ -10,6 +11,7 @@ import { OtherRobots } from "./other_robots";
 import { People } from "./people";
 import { Robot } from "./robot";
 import { kSphere, Rod, vector } from "./shapes";
+import { Steering } from "./steering";
 import { Things } from "./things";
 
 const kNobody = 1e8;  // larger distances mean that no person is present [m]
@@ -73,6 +75,12 @@ export class World {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.theme());
     this.resize();
     this.theme();
+  }
+
+  // Lets the visitor drag hands of people; `say` shows why that was refused.
+  letDrag(steering: Steering, say: (refusal: string) => void): void {
+    const drag = new HandDrag(this.renderer.domElement, this.camera, this.controls, steering, () => this.people.hands(), () => this.touch(), say);
+    this.scene.add(drag.marker);
   }
 
   // Takes the newest samples; returns true if the picture would change.
@@ -155,6 +163,18 @@ export class World {
     flat.intersect(new THREE.Box2(new THREE.Vector2(0, 0), new THREE.Vector2(view.width, view.height)));
     if (flat.isEmpty()) return undefined;
     return { x: view.x + flat.min.x, y: view.y + flat.min.y, width: flat.max.x - flat.min.x, height: flat.max.y - flat.min.y };
+  }
+
+  // Returns the position in the page of a point in the world [CSS pixels].
+  pixel(point: [number, number, number]): { x: number; y: number } {
+    const p = new THREE.Vector3(...point).project(this.camera), view = this.renderer.domElement.getBoundingClientRect();
+    return { x: view.x + ((p.x + 1) / 2) * view.width, y: view.y + ((1 - p.y) / 2) * view.height };
+  }
+
+  // Returns the position of a person's hand as drawn, world [m].
+  hand(person: string, side: string): [number, number, number] | undefined {
+    for (const hand of this.people.hands()) if (hand.person === person && hand.side === side) return hand.at.toArray();
+    return undefined;
   }
 
   // Hides parts, so that a test can distinguish them from their background.

@@ -1,0 +1,102 @@
+// The card with which a visitor takes part: tasks, requests, and actions of simulated people.
+import { Link } from "./link";
+import { Command, Steering } from "./steering";
+
+type Field = "object" | "human" | "surface" | "onto";
+// Tasks and their fields; "?" marks a field that may be empty.
+const kTasks: Record<string, string[]> = {
+  give: ["object", "human?"], receive: ["object?", "human?", "onto?"], pick: ["object"], place: ["object", "surface"],
+  clear: ["surface", "onto?"], lift: ["object"], regrasp: ["object"], "go to": [],
+};
+const kEmpty: Record<Field, string> = { object: "what is offered", human: "anybody", surface: "", onto: "where there is room" };
+const kSilent = 1;    // max time without a heartbeat of the simulator [s]
+const kNobody = 1e8;  // larger distances mean that no person is present [m]
+
+const byId = <T extends HTMLElement>(id: string): T => {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`the page has no #${id}`);
+  return element as T;
+};
+
+// Gives a list these values, and keeps what is chosen.
+function offer(list: HTMLSelectElement, values: string[], empty?: string): void {
+  const wanted = empty === undefined ? values : ["", ...values];
+  if (wanted.length === list.options.length && wanted.every((value, i) => list.options[i].value === value)) return;
+  const chosen = list.value;
+  list.replaceChildren(...wanted.map((value) => new Option(value || empty, value)));
+  if (wanted.includes(chosen)) list.value = chosen;
+}
+
+export class TakePart {
+  private readonly task = byId<HTMLSelectElement>("task-kind");
+  private readonly person = byId<HTMLSelectElement>("person-id");
+
+  constructor(private readonly link: Link, private readonly steering: Steering) {
+    offer(this.task, Object.keys(kTasks));
+    byId("task-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      void this.say(this.chosenTask(), `${this.task.value}: asked for`);
+    });
+    for (const button of document.querySelectorAll<HTMLButtonElement>("#requests button"))
+      button.addEventListener("click", () => void this.say({ task: button.value }, `${button.value}: asked for`));
+    for (const button of document.querySelectorAll<HTMLButtonElement>("#person-actions button"))
+      button.addEventListener("click", () => void this.say({ person: this.person.value, action: button.value }, `${this.person.value}: ${button.textContent}`));
+  }
+
+  show(): void {
+    const { link, steering } = this;
+    const scene = link.newest("handsel/scene"), people = (link.newest("handsel/human_state")?.people ?? []).map(({ id }) => id).sort();
+    const simulated = (performance.now() - (link.health.get("sim")?.at ?? -Infinity)) / 1000 < kSilent;
+    const fields = kTasks[this.task.value] ?? [];
+    const values: Record<Field, string[]> = {
+      object: (scene?.objects ?? []).map(({ id }) => id).sort(), human: people,
+      surface: (scene?.boxes ?? []).map(({ id }) => id).sort(), onto: (scene?.boxes ?? []).map(({ id }) => id).sort(),
+    };
+    for (const field of Object.keys(values) as Field[]) {
+      const may = fields.includes(`${field}?`), list = byId<HTMLSelectElement>(`task-${field}`);
+      list.hidden = !may && !fields.includes(field);
+      offer(list, values[field], may ? kEmpty[field] : undefined);
+    }
+    offer(this.person, people);
+    byId("steer-note").textContent = steering.note || "Drag a hand of a simulated person in the picture.";
+    byId("steer-note").hidden = steering.allowed && !(simulated && people.length > 0);
+    byId("steer-state").textContent = steering.allowed ? "" : "read-only";
+    for (const button of document.querySelectorAll<HTMLButtonElement>("#task-form button, #requests button")) button.disabled = !steering.allowed;
+    for (const button of document.querySelectorAll<HTMLButtonElement>("#person-actions button"))
+      button.disabled = !steering.allowed || !simulated || people.length === 0;
+    byId("person-actions").hidden = !simulated;
+    byId("reaction").textContent = this.reaction();
+  }
+
+  // Shows an answer of the bridge.
+  answer(text: string): void {
+    byId("steer-answer").textContent = text;
+  }
+
+  private async say(command: Command, done: string): Promise<void> {
+    const refusal = await this.steering.send(command);
+    this.answer(refusal || `${done}.`);
+    this.show();
+  }
+
+  private chosenTask(): Command {
+    const word = this.task.value, fields = kTasks[word] ?? [];
+    if (word === "go to") return { task: "go_to", surface: "rest" };
+    const chosen = (field: Field): Record<string, string> => {
+      const { value } = byId<HTMLSelectElement>(`task-${field}`);
+      return value && (fields.includes(field) || fields.includes(`${field}?`)) ? { [field]: value } : {};
+    };
+    return { task: word, ...chosen("object"), ...chosen("human"), ...chosen("surface"), ...chosen("onto") };
+  }
+
+  // Returns how the robot reacts to people now.
+  private reaction(): string {
+    const { link } = this;
+    const execution = link.newest("handsel/execution_status"), active = link.newest("handsel/active_trajectory");
+    if (!execution || execution.separation >= kNobody) return "";
+    const speed = !active || active.trajectory === 0n ? "at rest" : `at ${(100 * Math.abs(active.speed_factor)).toFixed(0)} %`;
+    const causes = link.enumeration("Cause").filter((_, bit) => execution.causes & (1 << bit)).map((cause) => cause.replaceAll("_", " "));
+    const limit = execution.separation_limit > 0 ? ` of at least ${execution.separation_limit.toFixed(2)} m` : "";
+    return [`Robot ${speed}`, `${execution.separation.toFixed(2)} m${limit}`, causes.join(", ")].filter(Boolean).join(" · ");
+  }
+}
