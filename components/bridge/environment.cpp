@@ -29,6 +29,7 @@ ServerSettings server_settings(const settings::BridgeSettings& settings) {
   if (const std::string address = variable("HANDSEL_WEB_ADDRESS"); !address.empty())
     out.address = address;
   out.token = variable("HANDSEL_WEB_TOKEN");
+  if (out.token == "none") out.token.clear();
   check_token(out.token);
   out.max_clients = settings.max_clients;
   out.allowed_origins = settings.allowed_origins;

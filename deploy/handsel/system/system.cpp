@@ -20,14 +20,14 @@ namespace {
 
 constexpr Duration kStarvedCheck = std::chrono::milliseconds(200);
 
-/// Returns HANDSEL_WEB_TOKEN, which then leaves the environment so that only the bridge receives
-/// it; else 128 random bits in hexadecimal digits.
+/// Returns HANDSEL_WEB_TOKEN (empty if it is "none"), which then leaves the environment so that
+/// only the bridge receives it; else 128 random bits in hexadecimal digits.
 std::string page_token() {
   constexpr const char* kVariable = "HANDSEL_WEB_TOKEN";
   if (const char* given = std::getenv(kVariable); given != nullptr && *given != '\0') {
     std::string token = given;
     unsetenv(kVariable);
-    return token;
+    return token == "none" ? "" : token;
   }
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
