@@ -4,7 +4,6 @@
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
 
-#include "common/bus/executor.hpp"
 #include "components/bridge/web_socket_client.hpp"
 
 namespace handsel::bridge {
@@ -195,7 +194,7 @@ void HttpConnection::command(const Request& request) {
       state_.gate.admit({.authorization = plain(request[http::field::authorization]),
                          .origin = plain(request[http::field::origin]),
                          .host = plain(request[http::field::host])},
-                        monotonic_now());
+                        monotonic());
   if (answer.verdict != CommandGate::Verdict::admitted)
     return refused(status_of(answer.verdict), answer.refusal);
   CommandReading reading = read_command(request.body());

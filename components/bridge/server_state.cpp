@@ -18,6 +18,11 @@ std::chrono::milliseconds milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
 }
 
+TimePoint monotonic() {
+  return TimePoint(
+      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()));
+}
+
 ServerState::ServerState(ServerSettings s, Site where, Catalogue catalogue, std::string json)
     : settings(std::move(s)),
       site(std::move(where)),

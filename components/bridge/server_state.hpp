@@ -24,6 +24,9 @@ constexpr std::size_t kMaxChannels = 64;
 /// Converts seconds to whole milliseconds.
 std::chrono::milliseconds milliseconds(double seconds);
 
+/// Returns the time of a clock that never jumps.
+TimePoint monotonic();
+
 /// State of the server's thread.
 struct ServerState {
   ServerState(ServerSettings s, Site where, Catalogue catalogue, std::string json);

@@ -4,8 +4,6 @@
 #include <array>
 #include <boost/asio/ip/tcp.hpp>
 
-#include "common/bus/executor.hpp"
-
 namespace handsel::bridge {
 namespace {
 
@@ -101,10 +99,10 @@ void WebSocketClient::read() {
   ws_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
     if (error) return self->end_after_error(error);
     if (self->ws_.got_binary()) {
-      self->viewer_.binary(monotonic_now());
+      self->viewer_.binary(monotonic());
     } else {
       const auto data = self->buffer_.cdata();
-      self->viewer_.text({static_cast<const char*>(data.data()), data.size()}, monotonic_now());
+      self->viewer_.text({static_cast<const char*>(data.data()), data.size()}, monotonic());
     }
     self->buffer_.consume(self->buffer_.size());
     self->state_.update_wanted();
