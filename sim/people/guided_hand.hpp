@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hand that goes where somebody outside wants it. Pure: time is an argument.
 #pragma once
 
@@ -5,6 +6,7 @@
 #include <cmath>
 
 #include "common/geometry/pose.hpp"
+#include "sim/people/person_settings.hpp"
 
 namespace handsel::sim {
 
@@ -12,9 +14,6 @@ namespace handsel::sim {
 /// the wanted velocity points at the goal and permits a stop there.
 class GuidedHand {
  public:
-  static constexpr double kMaxSpeed = 1.2;         ///< [m/s]
-  static constexpr double kMaxAcceleration = 8.0;  ///< [m/s^2]
-
   /// Begins at `position` with `velocity`, world [m], [m/s].
   GuidedHand(const Vector3& position, const Vector3& velocity)
       : position_(position), velocity_(velocity) {}
@@ -31,17 +30,18 @@ class GuidedHand {
   /// Returns where the hand is, world [m].
   const Vector3& position() const { return position_; }
 
-  /// Moves by dt [s] toward `goal`, world [m]. Returns whether the hand rests there.
-  bool step(double dt, const Vector3& goal) {
-    constexpr double kApproachTime = 0.05;  // time constant of the end of a motion [s]
-    constexpr double kArrived = 1e-6;       // [m]
+  /// Moves by dt [s] toward `goal`, world [m], within the max speed and acceleration given.
+  /// Returns whether the hand rests there.
+  bool step(double dt, const Vector3& goal, const PersonManners& manners) {
+    constexpr double kArrived = 1e-6;  // [m]
     const Vector3 to = goal - position_;
     const double distance = to.norm();
     // Half the acceleration is left for a goal that moves.
     const double speed =
-        std::min({kMaxSpeed, std::sqrt(kMaxAcceleration * distance), distance / kApproachTime});
+        std::min({manners.guided_max_speed, std::sqrt(manners.guided_max_acceleration * distance),
+                  distance / manners.guided_settle_time});
     const Vector3 change = speed * to.stableNormalized() - velocity_;
-    const double max_change = kMaxAcceleration * dt;
+    const double max_change = manners.guided_max_acceleration * dt;
     velocity_ += std::min(1.0, max_change / std::max(change.norm(), 1e-12)) * change;
     position_ += dt * velocity_;
     return distance < kArrived;

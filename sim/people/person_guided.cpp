@@ -1,19 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // A person whose hand goes where a visitor of the page drags it. Own method: the hand that is free
-// to leave what it does is guided; then it goes back, and the person goes on.
+// to leave what it does is guided; then it goes back, and the person continues.
 #include <algorithm>
 
 #include "sim/people/person.hpp"
 #include "sim/people/person_parts.hpp"
 
 namespace handsel::sim {
-
-namespace {
-
-constexpr double kMaxGuidedReach = 0.95;  // distance from the shoulder, divided by the arm's length
-constexpr double kMinGuidedReach = 0.25;  // same, min
-constexpr double kStraightenTime = 1.0;   // duration of straightening the trunk [s]
-
-}  // namespace
 
 void PersonModel::guide_hand(Side side, const Vector3& point, double duration) {
   if (followed_ || frozen_) return;
@@ -67,10 +60,12 @@ bool PersonModel::leaves_handover_to_guide(Side side) const {
 
 /// Returns the point nearest to `point` that the hand reaches, world [m].
 Vector3 PersonModel::within_reach(int side, const Vector3& point) const {
+  const PersonManners& manners = settings_.manners;
+  const double min_reach = manners.guided_min_reach * reach_;
   const Vector3 arm = point - shoulder(side);
   const double distance = arm.norm();
-  if (distance < 1e-6) return shoulder(side) + kMinGuidedReach * reach_ * forward();
-  const double reached = std::clamp(distance, kMinGuidedReach * reach_, kMaxGuidedReach * reach_);
+  if (distance < 1e-6) return shoulder(side) + min_reach * forward();
+  const double reached = std::clamp(distance, min_reach, manners.guided_max_reach * reach_);
   return shoulder(side) + reached / distance * arm;
 }
 
@@ -81,17 +76,18 @@ void PersonModel::move_guided_hands(double dt) {
     const bool interrupts = phase_ == PersonPhase::guided && s == hand_index();
     const bool is_over = !hand.is_guided(clock_);
     const Vector3 usual = interrupts && wants_grip_ ? carry_position() : rest_position(s);
-    const bool arrived = hand.step(dt, is_over ? usual : within_reach(s, hand.point()));
+    const bool arrived =
+        hand.step(dt, is_over ? usual : within_reach(s, hand.point()), settings_.manners);
     if (interrupts) hand_target_ = hand.position();
     if (!is_over || !arrived) continue;
     guided_[s].reset();
     if (interrupts) end_guide();
   }
   if (phase_ == PersonPhase::guided)
-    lean_ = (1 - min_jerk(phase_time() / kStraightenTime)) * lean_from_;
+    lean_ = (1 - min_jerk(phase_time() / settings_.manners.guided_straighten_time)) * lean_from_;
 }
 
-/// Goes on with what a person does who has, or has not, an object in the hand.
+/// Continues with what a person does with, or without, an object in the hand.
 void PersonModel::end_guide() {
   from_ = hand_target_;
   hand_active_ = wants_grip_;

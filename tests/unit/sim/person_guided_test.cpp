@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hand that somebody drags from outside.
 #include <gtest/gtest.h>
 
@@ -55,8 +56,8 @@ TEST(GuidedPerson, hand_goes_where_it_is_dragged_and_back_when_nobody_drags_it) 
     motion.live(nothing, 2.5);
     EXPECT_LT((motion.hand() - rest).norm(), 0.002);
     EXPECT_EQ(person.phase(), PersonPhase::watching);
-    EXPECT_LE(motion.max_speed(), 1.02 * GuidedHand::kMaxSpeed);
-    EXPECT_LE(motion.max_acceleration(), 2 * GuidedHand::kMaxAcceleration);
+    EXPECT_LE(motion.max_speed(), 1.02 * PersonManners{}.guided_max_speed);
+    EXPECT_LE(motion.max_acceleration(), 2 * PersonManners{}.guided_max_acceleration);
     EXPECT_GT(motion.max_speed(), 0.5);
   }
 }
@@ -68,6 +69,19 @@ TEST(GuidedPerson, hand_stays_within_reach_of_the_shoulder) {
   motion.live({}, 4);
   const Vector3 shoulder = person.body().joints[joint("r_shoulder")].position;
   EXPECT_NEAR((motion.hand() - shoulder).norm(), 0.95 * person.reach(), 0.02);
+}
+
+TEST(GuidedPerson, reach_and_speed_are_settings) {
+  PersonSettings settings = taker();
+  settings.manners.guided_max_reach = 0.6;
+  settings.manners.guided_max_speed = 0.2;
+  PersonModel person(settings);
+  Motion motion(person, 1);
+  person.guide_hand(Side::right, {-50, 20, 3}, 10);
+  motion.live({}, 8);
+  const Vector3 shoulder = person.body().joints[joint("r_shoulder")].position;
+  EXPECT_NEAR((motion.hand() - shoulder).norm(), 0.6 * person.reach(), 0.02);
+  EXPECT_LE(motion.max_speed(), 1.02 * 0.2);
 }
 
 TEST(GuidedPerson, goes_back_at_once_when_the_drag_ends) {
@@ -93,7 +107,7 @@ TEST(GuidedPerson, takes_what_is_offered_after_the_drag) {
   EXPECT_EQ(person.phase(), PersonPhase::pulling);
   person.guide_hand(Side::right, {1.1, -0.3, 1.2}, 0.5);
   person.step(0.001, view);
-  EXPECT_NE(person.phase(), PersonPhase::guided) << "a hand that exchanges an object goes on";
+  EXPECT_NE(person.phase(), PersonPhase::guided) << "a hand that exchanges an object continues";
   Motion other(person, 0);
   const Vector3 before = other.hand();
   person.guide_hand(Side::left, {1.1, 0.3, 1.2}, 0.5);
@@ -102,7 +116,7 @@ TEST(GuidedPerson, takes_what_is_offered_after_the_drag) {
   EXPECT_NE(person.phase(), PersonPhase::guided);
 }
 
-TEST(GuidedPerson, who_is_frozen_or_looks_away_does_so) {
+TEST(GuidedPerson, frozen_person_stays_and_averted_gaze_returns) {
   PersonModel person(taker());
   const PersonView view = offer({0.2, 0, 1.05});
   step_for(person, view, 1);
