@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings of the server: its file, and the variables of the environment that override it.
 #pragma once
 

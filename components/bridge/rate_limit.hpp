@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limit of how many messages one sender may send in a second. Pure.
 #pragma once
 

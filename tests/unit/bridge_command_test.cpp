@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page may command, who may, and where commands wait.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

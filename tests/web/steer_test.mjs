@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Taking part from the page over a running system: who may, tasks and requests, actions of the simulated person, and a dragged hand that slows the robot.
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a visitor of the page may ask for, as JSON: a task or a request, or an action of a simulated
 // person. Pure.
 #pragma once

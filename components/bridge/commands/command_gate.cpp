@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/bridge/commands/command_gate.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who may command: the holder of the token that `handsel up` creates, from this page, not too
 // often. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands that the thread of the server has accepted and the thread of the bus will publish.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "components/bridge/commands/steering.hpp"
 
 namespace handsel::bridge {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Publishes the commands of visitors of the page: tasks as `handsel task` sends them, and actions
 // of simulated people. Publishes nothing else.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends commands to the bridge, with the token at the end of the page's address. Without a token the
 // page only shows.
 const kToken = /^[\w-]{16,128}$/;

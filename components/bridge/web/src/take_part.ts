@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The card with which a visitor takes part: tasks, requests, and actions of simulated people.
 import { Link } from "./link";
 import { Command, Steering } from "./steering";
