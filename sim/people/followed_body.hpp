@@ -5,7 +5,7 @@
 #include "common/messages/perception.hpp"
 #include "common/messages/world.hpp"
 #include "sim/people/person_settings.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/recording.hpp"
 
 namespace handsel::sim {
 

@@ -19,10 +19,10 @@
 #include "sim/people/guided_hand.hpp"
 #include "sim/people/moving_offer.hpp"
 #include "sim/people/person_settings.hpp"
-#include "sim/people/recording.hpp"
 #include "sim/people/step_in.hpp"
 #include "sim/people/taking_hand.hpp"
 #include "sim/physics/grip.hpp"
+#include "sim/recordings/recording.hpp"
 
 namespace handsel::sim {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// For the sources of PersonModel: indices of joints, profiles of motion.
+// For the sources of PersonModel: profiles of motion.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "common/model/human/human_body.hpp"
 #include "sim/people/person_settings.hpp"
+#include "sim/recordings/body_joints.hpp"
 
 namespace handsel::sim {
 
@@ -23,12 +23,5 @@ inline double step_time(double length, const PersonManners& manners) {
   return std::max(length / manners.person_walk_speed,
                   std::sqrt(kPeak * length / manners.person_max_step_acceleration));
 }
-
-inline const int kShoulder[2] = {body_joint_index("l_shoulder"), body_joint_index("r_shoulder")};
-inline const int kElbow[2] = {body_joint_index("l_elbow"), body_joint_index("r_elbow")};
-inline const int kWrist[2] = {body_joint_index("l_wrist"), body_joint_index("r_wrist")};
-inline const int kHand[2] = {body_joint_index("l_hand"), body_joint_index("r_hand")};
-inline const int kHead = body_joint_index("head"), kTorso = body_joint_index("torso"),
-                 kWaist = body_joint_index("waist"), kNeck = body_joint_index("neck");
 
 }  // namespace handsel::sim

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/base/errors.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/recording.hpp"
 
 namespace handsel {
 

@@ -8,7 +8,7 @@
 
 #include "common/config/resources.hpp"
 #include "components/spark/people/people_tracker.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/recording.hpp"
 #include "tests/support/recorded_handover.hpp"
 
 namespace handsel::spark::hand_prediction_test {

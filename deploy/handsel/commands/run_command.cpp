@@ -17,7 +17,7 @@
 #include "deploy/handsel/system/performer.hpp"
 #include "deploy/handsel/system/system.hpp"
 #include "deploy/handsel/system/system_options.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/recording.hpp"
 #include "sim/scene/settings.hpp"
 
 namespace handsel {

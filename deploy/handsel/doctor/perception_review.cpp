@@ -11,7 +11,7 @@
 #include "common/model/human/palm.hpp"
 #include "common/topics/topics.hpp"
 #include "components/spark/sources.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/recording.hpp"
 
 namespace handsel {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "common/base/errors.hpp"
-#include "sim/people/bvh.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/bvh.hpp"
+#include "sim/recordings/recording.hpp"
 #include "tests/support/reference_data.hpp"
 
 namespace handsel::sim::recording_test {

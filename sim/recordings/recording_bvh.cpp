@@ -4,8 +4,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "sim/people/bvh.hpp"
-#include "sim/people/recording_parts.hpp"
+#include "sim/recordings/bvh.hpp"
+#include "sim/recordings/recording_parts.hpp"
 
 namespace handsel::sim {
 

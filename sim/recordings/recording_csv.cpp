@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/people/recording_parts.hpp"
+#include "sim/recordings/recording_parts.hpp"
 
 namespace handsel::sim {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/people/person_parts.hpp"
-#include "sim/people/recording.hpp"
+#include "sim/recordings/body_joints.hpp"
+#include "sim/recordings/recording.hpp"
 
 namespace handsel::sim::recording_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/people/bvh.hpp"
+#include "sim/recordings/bvh.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/people/recording.hpp"
+#include "sim/recordings/recording.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,7 +8,7 @@
 #include "common/base/errors.hpp"
 #include "common/config/text_file.hpp"
 #include "common/model/human/two_bones.hpp"
-#include "sim/people/recording_parts.hpp"
+#include "sim/recordings/recording_parts.hpp"
 
 namespace handsel::sim {
 
