@@ -96,10 +96,10 @@ test("robot, person and object are drawn where they are said to be", async () =>
     const shown = await pixels(page, region);
     await drawn([...others, part]);
     const background = await pixels(page, region);
-    const share = difference(shown, background);
-    console.log(`${part}: ${(100 * share).toFixed(0)} % of ${Math.round(region.width)}x${Math.round(region.height)} pixels are not background`);
+    const ratio = difference(shown, background);
+    console.log(`${part}: ${(100 * ratio).toFixed(0)} % of ${Math.round(region.width)}x${Math.round(region.height)} pixels are not background`);
     assert.ok(region.width > 8 && region.height > 8, `${part} is too small to see`);
-    assert.ok(share >= least, `${part}: only ${share} of its region`);
+    assert.ok(ratio >= least, `${part}: only ${ratio} of its region`);
   }
   await drawn([]);
 });
@@ -125,7 +125,7 @@ test("while it hands over, the angles drawn are those on DDS at the same stamp, 
   assert.ok(texts.phase.filter(Boolean).length >= 3, `phases shown: ${texts.phase}`);
   assert.ok(texts.speed.some((text) => /^\d+ %$/.test(text)), `speeds shown: ${texts.speed}`);
   assert.ok(texts.separation.some((text) => /^\d\.\d\d m$/.test(text)), `distances shown: ${texts.separation}`);
-  assert.ok(texts["separation-limit"].filter((text) => /^limit \d\.\d\d m$/.test(text)).length >= 2, `what the rule asks for, shown: ${texts["separation-limit"]}`);
+  assert.ok(texts["separation-limit"].filter((text) => /^limit \d\.\d\d m$/.test(text)).length >= 2, `limit of the separation as shown: ${texts["separation-limit"]}`);
 });
 
 test("at rest the angles drawn and written are those on DDS", async () => {
@@ -156,7 +156,7 @@ test("at rest the angles drawn and written are those on DDS", async () => {
   console.log(`at rest: largest difference ${sample.worst.toExponential(1)} rad`);
 });
 
-test("every process is listed and well", async () => {
+test("every process is listed and healthy", async () => {
   await until(page, (count) => document.querySelectorAll("#health .dot.ok").length === count, kProcesses);
   assert.equal(await page.textContent("#mode"), "normal");
   assert.equal(await page.textContent("#drive"), "drives on");

@@ -7,7 +7,7 @@ const kSilent = 0.6;    // max time without a heartbeat [s]
 const kNobody = 1e8;    // larger distances mean that no person is present [m]
 const kDrives: Record<string, string> = { enabled: "drives on", braked: "brakes closed", off: "drives off" };
 
-type Cell = string | { text: string; kind?: string; share?: number };
+type Cell = string | { text: string; kind?: string; ratio?: number };
 
 const byId = (id: string): HTMLElement => {
   const element = document.getElementById(id);
@@ -21,10 +21,10 @@ function put(id: string, text: string): void {
 }
 
 // Returns a bar from 0 to 1.
-function bar(element: HTMLElement, share: number, kind = ""): void {
+function bar(element: HTMLElement, ratio: number, kind = ""): void {
   const fill = (element.firstElementChild as HTMLElement | null) ?? element.appendChild(document.createElement("i"));
   element.className = `bar ${kind}`;
-  const text = `scaleX(${Math.min(1, Math.max(0, share)).toFixed(3)})`;
+  const text = `scaleX(${Math.min(1, Math.max(0, ratio)).toFixed(3)})`;
   if (fill.style.transform !== text) fill.style.transform = text;
 }
 
@@ -35,12 +35,12 @@ function rows(id: string, cells: Cell[][]): void {
     const line = body.children[i] ?? body.appendChild(document.createElement("tr"));
     row.forEach((cell, k) => {
       const element = (line.children[k] ?? line.appendChild(document.createElement("td"))) as HTMLElement;
-      const { text, kind = "", share } = typeof cell === "string" ? { text: cell } : cell;
+      const { text, kind = "", ratio } = typeof cell === "string" ? { text: cell } : cell;
       if (element.className !== kind) element.className = kind;
-      if (share !== undefined) {
+      if (ratio !== undefined) {
         const track = (element.firstElementChild as HTMLElement | null) ?? element.appendChild(document.createElement("div"));
         track.title = text;
-        bar(track, share);
+        bar(track, ratio);
       } else if (element.textContent !== text) {
         element.textContent = text;
       }
@@ -98,7 +98,7 @@ export class Panels {
       chip.textContent = cause.replaceAll("_", " ");
       return chip;
     }));
-    put("reason", silent && execution ? "The trajectory controller says nothing." : (execution?.reason ?? ""));
+    put("reason", silent && execution ? "The trajectory controller is silent." : (execution?.reason ?? ""));
   }
 
   private task(): void {
@@ -133,7 +133,7 @@ export class Panels {
     put("forecast", !forecast ? "unknown" : forecast.collides ? `${forecast.reason} in ${forecast.time_to_collision.toFixed(1)} s` : "clear");
     put("advice", !advice ? "none" : advice.speed_factor > 0.999 ? "full speed" : `${(100 * advice.speed_factor).toFixed(0)} %: ${advice.reason}`);
     const limits = execution && [execution.limit_ratio_velocity, execution.limit_ratio_acceleration, execution.limit_ratio_jerk];
-    put("limits", limits ? limits.map((share, i) => `${["v", "a", "j"][i]} ${(100 * share).toFixed(0)} %`).join(" · ") : "–");
+    put("limits", limits ? limits.map((ratio, i) => `${["v", "a", "j"][i]} ${(100 * ratio).toFixed(0)} %`).join(" · ") : "–");
     const late = execution && execution.cycles > 0n ? (100 * Number(execution.late_cycles)) / Number(execution.cycles) : 0;
     put("cycles", execution ? `${execution.cycles}, ${late.toFixed(2)} % late` : "");
   }
@@ -143,7 +143,7 @@ export class Panels {
     const forecast = this.link.newest("handsel/trajectory_forecast");
     const distance = execution?.separation ?? forecast?.clearance;
     if (distance === undefined || distance >= kNobody) {
-      put("separation", humans && humans.people.length === 0 ? (humans.covered ? "nobody near" : "nobody seen, not all in view") : "unknown");
+      put("separation", humans && humans.people.length === 0 ? (humans.covered ? "nobody present" : "nobody observed, not all of the space in view") : "unknown");
       put("separation-limit", "");
       byId("separation-mark").hidden = true;
       bar(byId("separation-bar"), 0);
@@ -162,15 +162,15 @@ export class Panels {
     const attention = this.link.newest("handsel/attention_state"), advice = this.link.newest("handsel/attention_advice");
     const limiting = advice && advice.speed_factor < 0.999 ? advice.limiting : "";
     rows("clocks", (attention?.behaviours ?? []).map((b) => {
-      const fastest = Number(b.activations_at_fastest), share = fastest > 0 ? Number(b.activations) / fastest : 0;
+      const fastest = Number(b.activations_at_fastest), ratio = fastest > 0 ? Number(b.activations) / fastest : 0;
       const kind = !b.released ? "quiet" : b.name === limiting ? "limiting" : "";
-      const leads = b.name === limiting ? b.reason : b.winner ? "looks" : "";
+      const leads = b.name === limiting ? b.reason : b.winner ? "activated" : "";
       return [{ text: b.name, kind }, { text: `${(1 / Math.max(b.period, 1e-3)).toFixed(1)} Hz`, kind: `number ${kind}` },
-        { text: `${b.activations} looks, ${(100 * share).toFixed(0)} % of what a fixed clock at its fastest would have taken`, share },
+        { text: `${b.activations} activations, ${(100 * ratio).toFixed(0)} % of those of a clock at its shortest period`, ratio },
         { text: b.stimulus.toFixed(2), kind: `number ${kind}` },
         { text: b.released ? `${(100 * b.speed_factor).toFixed(0)} %` : "–", kind: `number ${kind}` }, { text: leads, kind: b.name === limiting ? "why" : "quiet" }];
     }));
-    const work: [string, number | undefined][] = [["people", advice?.people_period], ["things", advice?.objects_period],
+    const work: [string, number | undefined][] = [["people", advice?.people_period], ["objects", advice?.objects_period],
       ["forecast", advice?.forecast_period], ["cost map", advice?.cost_map_period], ["running path", advice?.replan_period]];
     put("work", work.filter(([, period]) => period).map(([name, period]) => `${name} ${(1 / (period ?? 1)).toFixed(1)} Hz`).join(" · "));
   }
@@ -193,6 +193,6 @@ export class Panels {
         number(`${h.memory_mb.toFixed(0)} MB`), { text: [h.reason, ...leftOut].filter(Boolean).join("; "), kind: "why" }];
     }));
     const alive = sorted.filter(({ message, at }) => (now - at) / 1000 <= kSilent && this.link.word("HealthState", message.state) === "ok").length;
-    put("health-count", sorted.length > 0 ? `${alive} of ${sorted.length} well` : "");
+    put("health-count", sorted.length > 0 ? `${alive} of ${sorted.length} healthy` : "");
   }
 }
