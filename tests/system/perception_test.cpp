@@ -63,6 +63,10 @@ std::vector<Variant> issue_variants() {
        "writes the topic handsel/human_observations, which no process reads"},
       {"qos", own_writer("handsel/human_observation", "dds_qset_deadline(qos, DDS_INFINITY);"),
        "QoS", "its DEADLINE is none, asked for is 0.2 s"},
+      {"partition",
+       own_writer("handsel/human_observation",
+                  "const char *p = \"lab\"; dds_qset_partition(qos, 1, &p);"),
+       "QoS", "its PARTITION is \"lab\""},
       {"rate", {{"next += period", "next += 12 * period"}}, "rate", "times a second"},
       {"age", {{kStamp, "seen.stamp = things.stamp = dds_time() - DDS_MSECS(600);"}}, "age", "0.6"},
       {"jitter",
@@ -94,10 +98,6 @@ std::vector<Variant> issue_variants() {
 
 std::vector<Variant> more_variants() {
   return {
-      {"partition",
-       own_writer("handsel/human_observation",
-                  "const char *p = \"lab\"; dds_qset_partition(qos, 1, &p);"),
-       "QoS", "its PARTITION is \"lab\""},
       {"old_idl", own_writer("handsel/human_observation", "", "&handsel_HumanObservation_desc"),
        "IDL", "of another shape"},
       {"millimetres",

@@ -76,6 +76,8 @@ std::string in_seconds(dds_duration_t d) {
   return text;
 }
 
+}  // namespace
+
 std::vector<std::string> partitions(const dds_qos_t* qos) {
   std::vector<std::string> out;
   std::uint32_t n = 0;
@@ -88,8 +90,6 @@ std::vector<std::string> partitions(const dds_qos_t* qos) {
   dds_free(names);
   return out;
 }
-
-}  // namespace
 
 std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested) {
   std::vector<std::string> out;

@@ -32,6 +32,8 @@ Qos recorder_qos(const TopicRow& row);
 Qos writer_qos(const TopicRow& row);
 /// Returns the QoS of a topic entity: reliability only, the rest stands at readers and writers.
 Qos topic_qos(const TopicRow& row);
+/// Returns the names of the partitions that are not empty.
+std::vector<std::string> partitions(const dds_qos_t* qos);
 /// Returns whether an endpoint of a topic belongs to a system of another name: to a process that is
 /// a component, in another partition. `component`: of the process; empty: none.
 bool is_of_other_system(const dds_qos_t* endpoint, const TopicRow& row,
