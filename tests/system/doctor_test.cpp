@@ -234,7 +234,7 @@ TEST_F(Doctor, accepts_stamps_beside_a_simulator_that_has_halted_the_time) {
 }
 
 TEST_F(Doctor, finds_that_peers_do_not_answer) {
-  expect_finding(doctor("", settings(folder, "address=\"localhost\"", "address=\"192.0.2.1\"")), 1,
+  expect_finding(doctor("", settings(folder, "address=\"127.0.0.1\"", "address=\"192.0.2.1\"")), 1,
                  "bad", "DDS", "the peers 192.0.2.1 do not answer");
   expect_finding(doctor("", settings(folder, "<ParticipantIndex>auto", "<ParticipantIndex>none")),
                  1, "bad", "DDS", "but ParticipantIndex is none");

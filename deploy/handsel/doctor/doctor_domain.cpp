@@ -263,7 +263,7 @@ Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, s
     if (what.find("join") != std::string::npos) {
       return {"DDS", Verdict::bad,
               prefix + "it cannot join the multicast group of its settings (" + what + ")",
-              "set General/AllowMulticast to false and name <Peer address=\"localhost\"/> under "
+              "set General/AllowMulticast to false and name <Peer address=\"127.0.0.1\"/> under "
               "Discovery/Peers, as "
               "deploy/dds/loopback.xml does"};
     }
@@ -296,7 +296,7 @@ Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const
   if (dds.peers.empty()) {
     return {"DDS", Verdict::bad,
             text + ": no peer is named and multicast does not reach this machine's own processes",
-            "name a peer: <Peer address=\"localhost\"/> under Discovery/Peers"};
+            "name a peer: <Peer address=\"127.0.0.1\"/> under Discovery/Peers"};
   }
   if (dds.participant_index != "auto") {
     return {"DDS", Verdict::bad,
