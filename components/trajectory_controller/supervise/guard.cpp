@@ -125,8 +125,8 @@ class Evaluation {
     const bool nearest = !part.excepted && at.distance < verdict_.distance;
     if (!nearest && at.distance >= matters) return;
     if (axes_apart > 1e-9) at.toward = (on_person - on_robot) / axes_apart;
-    const double place = (on_robot - r.a).dot(link.axis) / link.length2;
-    const double ratio = link.length2 > 1e-12 ? std::clamp(place, 0.0, 1.0) : 0.0;
+    const double along = (on_robot - r.a).dot(link.axis);  // [m^2]
+    const double ratio = link.length2 > 1e-12 ? std::clamp(along / link.length2, 0.0, 1.0) : 0.0;
     at.closing = (r.va + ratio * (r.vb - r.va)).dot(at.toward);
     if (nearest) {
       note_nearest(link, part, at);
