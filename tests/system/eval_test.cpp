@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -102,28 +103,39 @@ TEST(Eval, shards_come_together_as_if_they_had_been_one) {
       shell(kHandsel + " eval --from" + files + " --report " + (folder.path() / "parts").string())
           .exit_code,
       0);
-  const auto looks = [&](const char* name) {
+  const auto runs = [&](const char* name) {
     std::ostringstream text;
     text << std::ifstream(folder.path() / name / "comparison.jsonl").rdbuf();
     for (const Json& row : lines_of(text.str()))
-      if (row["measure"] == "looks") return row;
+      if (row["measure"] == "runs") return row;
     throw std::logic_error("no row");
   };
-  EXPECT_EQ(looks("whole"), looks("parts"));
-  EXPECT_EQ(looks("whole")["pairs"], 3);
+  EXPECT_EQ(runs("whole"), runs("parts"));
+  EXPECT_EQ(runs("whole")["pairs"], 3);
 }
 
-TEST(Eval, a_scenario_that_cannot_be_performed_is_no_success) {
+TEST(Eval, a_scenario_that_cannot_be_performed_is_refused) {
   const TemporaryFolder folder;
   const fs::path scenario =
       folder.write("unable.txtpb",
                    "name: \"unable\" robot: \"jido\" people { id: \"ben\" behaviour: TAKER "
                    "approach_from: 1 steps_in { speed: 1 } }");
   const Outcome outcome = shell(kHandsel + " eval --trials 1 --scenario " + scenario.string());
-  EXPECT_EQ(outcome.exit_code, 1);
-  const Json line = lines_of(outcome.out).at(0);
-  EXPECT_EQ(line["failure"], "error");
-  EXPECT_THAT(line["reason"].get<std::string>(), HasSubstr("ben steps in but is not STILL"));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("ben steps in but is not STILL"));
+}
+
+TEST(Eval, settings_that_contradict_each_other_are_refused_and_lines_are_kept) {
+  const TemporaryFolder folder;
+  const fs::path lines = folder.write("lines.jsonl", "kept");
+  const Outcome outcome = shell(kHandsel + " eval --trials 3 --set sim.external_min_motion=0.2" +
+                                " --out " + lines.string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("external_min_motion: must be at most external_max_motion"));
+  std::ostringstream text;
+  text << std::ifstream(lines).rdbuf();
+  EXPECT_EQ(text.str(), "kept");
 }
 
 TEST(Eval, a_mode_that_cannot_be_is_refused) {
@@ -132,7 +144,7 @@ TEST(Eval, a_mode_that_cannot_be_is_refused) {
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(says));
   };
-  refused("--attention some", "is none of adaptive, max, mean, off, fixed:SHARE");
+  refused("--attention some", "is none of adaptive, max, mean, off, fixed:RATIO");
   refused("--attention fixed:2", "must be a number from 0 to 1");
   refused("--replay 4 --attention max off", "name one mode and one law");
   refused("--trials 2 --record x.mcap", "--record is for the one trial of --replay");

@@ -109,7 +109,7 @@ TEST(Trials, contact_alone_holds_what_is_given_and_received) {
   for (const char* scenario : {"give_mug", "receive_mug", "give_box_panda"}) {
     const nlohmann::json line = run_trial(system_context(scenario, "", 1), {.scenario = scenario});
     EXPECT_TRUE(line["success"].get<bool>()) << scenario << ": " << line["reason"];
-    EXPECT_EQ(line["contact_share"], 1.0) << scenario << ": a grasp constraint helped";
+    EXPECT_EQ(line["contact_ratio"], 1.0) << scenario << ": a grasp constraint helped";
     EXPECT_EQ(line["drops"], 0) << scenario;
   }
 }

@@ -47,7 +47,7 @@ struct EvalOptions {
 using Periods = std::map<std::string, double>;
 
 /// Returns the position of all clocks between p_min and p_max, on a logarithmic scale, in the mode
-/// "fixed:SHARE"; nullopt: another mode.
+/// "fixed:RATIO"; nullopt: another mode.
 std::optional<double> fixed_ratio(const std::string& mode) {
   if (!mode.starts_with("fixed:")) return std::nullopt;
   char* end = nullptr;
@@ -336,7 +336,7 @@ int evaluate(const EvalOptions& options) {
                   options.replay ? 1 : options.trials);
   std::ofstream out;
   if (!options.out.empty()) {
-    out.open(options.out);
+    out.open(options.out, std::ios::app);  // emptied when the first trial was performed
     if (!out) throw ConfigError("cannot write " + options.out);
   }
   const bool to_stdout = options.out.empty();
@@ -344,6 +344,13 @@ int evaluate(const EvalOptions& options) {
   Study study;
   std::size_t done = 0, successes = 0;
   const bool clean = run_trials(trials, jobs_of(options), [&](const nlohmann::json& line) {
+    // The same settings and scenario would be refused in each trial.
+    if (done == 0 && line["failure"] == "refused")
+      throw ConfigError(line["reason"].get<std::string>());
+    if (done == 0 && !to_stdout) {
+      out.close();
+      out.open(options.out);
+    }
     table.add(line);
     study.add(line);
     successes += line["success"].get<bool>();
@@ -371,38 +378,40 @@ int evaluate(const EvalOptions& options) {
 
 void add_eval_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvalOptions>();
-  CLI::App* command = app.add_subcommand(
-      "eval", "randomised trials in lock-step: one JSON line each, a table at the end");
+  CLI::App* command = app.add_subcommand("eval",
+                                         "performs randomised trials in lock-step; prints one line "
+                                         "of JSON for each and a table at the end");
   command->add_option("--scenario", options->scenarios, "scenarios: names or files")
       ->capture_default_str();
   add_overlay_options(*command);
   command->add_option("--robot", options->robot, "robot description (default: the scenario's)");
-  command->add_option("--trials", options->trials, "of each scenario")
+  command->add_option("--trials", options->trials, "number of trials of each scenario")
       ->check(kAboveZero)
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "of the first trial; each next has one more")
+  command
+      ->add_option("--seed", options->seed,
+                   "seed of the first trial; each following trial has the next number")
       ->check(kAboveZero)
       ->capture_default_str();
   command
       ->add_option("--replay", options->replay,
-                   "one trial with this seed, bit for bit, telling what happens")
+                   "performs the one trial with this seed, bit for bit, and prints the events")
       ->check(kAboveZero);
   command->add_option("--record", options->record,
-                      "with --replay: write everything that is said into this MCAP file");
+                      "with --replay: write all messages into this MCAP file");
   command
       ->add_option("--attention", options->modes,
-                   "how its clocks run: adaptive; max: all at their shortest period; mean: each at "
-                   "the mean period of the adaptive ones, "
-                   "found in a few trials before; fixed:SHARE: all at this fraction from their "
-                   "shortest to their longest period, 0 to 1; off: no "
-                   "attention. Several are compared, with the same seeds")
+                   "mode of the attention's clocks: adaptive; max: all at their shortest period; "
+                   "mean: each at its mean period in a few adaptive trials before; fixed:RATIO: "
+                   "all at this ratio, 0 to 1, between their shortest and longest period; off: no "
+                   "attention. Several modes are compared with the same seeds")
       ->check([](const std::string& mode) {
         for (const char* known : {"adaptive", "max", "mean", "off"})
           if (mode == known) return std::string();
         try {
           return fixed_ratio(mode)
                      ? std::string()
-                     : "\"" + mode + "\" is none of adaptive, max, mean, off, fixed:SHARE";
+                     : "\"" + mode + "\" is none of adaptive, max, mean, off, fixed:RATIO";
         } catch (const ConfigError& error) {
           return std::string(error.what());
         }
@@ -410,28 +419,31 @@ void add_eval_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--law", options->laws,
-                   "of the attention's clocks (default: as in its settings); several are compared. "
-                   "margin: only where the distance to people is observed, the others as set")
+                   "adaptation law of the attention's clocks (default: as in its settings); "
+                   "several laws are compared. margin applies only to behaviours that observe the "
+                   "distance to people; the others keep theirs")
       ->check(CLI::IsMember({"linear", "weber", "margin"}));
-  command->add_option(
-      "--report", options->report,
-      "folder for the comparison (JSON Lines, table), a CSV row a trial, and plots (SVG)");
-  command->add_option(
-      "--from", options->from,
-      "report on these files of lines instead of trials, e.g. on those of all shards");
+  command->add_option("--report", options->report,
+                      "folder for the comparison (JSON Lines, table), a CSV file with one row for "
+                      "each trial, and plots (SVG)");
+  command->add_option("--from", options->from,
+                      "report on these files with lines of trials, e.g. of all shards, instead of "
+                      "performing trials");
   command->add_option("--by", options->by,
-                      "tables by these draws only, e.g. object (default: by every draw)");
-  command->add_option("--participant", options->participant, "pseudonym that the lines carry");
+                      "tables by these random choices only, e.g. object (default: by all)");
+  command->add_option("--participant", options->participant, "pseudonym in the lines");
   add_help_hold_option(*command);
-  command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "number of trials at a time (default: one for each core)")
       ->check(kAboveZero);
   command->add_option("--shard", options->shard,
-                      "i/n: only every n-th trial, from the i-th (0 <= i < n)");
+                      "i/n: perform only every n-th trial, from the i-th (0 <= i < n)");
   command
       ->add_option("--timeout", options->timeout,
-                   "[s] of virtual time for all tasks (default: the scenario's)")
+                   "simulated time for all tasks [s] (default: the scenario's)")
       ->check(kAboveZero);
-  command->add_option("--out", options->out, "write the lines to this file");
+  command->add_option("--out", options->out, "write the lines of the trials to this file");
   command->callback([options, &exit_code] { exit_code = evaluate(*options); });
 }
 

@@ -46,7 +46,7 @@ Json oracle_json(const GroundTruth& ground_truth) {
       {"carrier", ground_truth.carrier},
       {"held_s", ground_truth.held_time},
       {"constraint_s", ground_truth.constraint_time},
-      {"contact_share", ground_truth.held_time > 0
+      {"contact_ratio", ground_truth.held_time > 0
                             ? Json(1 - ground_truth.constraint_time / ground_truth.held_time)
                             : Json(nullptr)},
       {"max_lifted_m", ground_truth.max_lifted},
@@ -133,7 +133,7 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
            {{"v", ground_truth.limit_ratio_velocity},
             {"a", ground_truth.limit_ratio_acceleration},
             {"j", ground_truth.limit_ratio_jerk}}},
-          {"limit_share_sent",
+          {"limit_ratio_sent",
            {{"v", execution.limit_ratio_velocity},
             {"a", execution.limit_ratio_acceleration},
             {"j", execution.limit_ratio_jerk}}},
@@ -145,7 +145,7 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"set_point_rate_hz", sim_time > 0 ? Json(set_points / sim_time) : Json(nullptr)},
           {"cycles", execution.cycles},
           {"late_cycles", execution.late_cycles},
-          {"late_share", execution.cycles ? static_cast<double>(execution.late_cycles) /
+          {"late_ratio", execution.cycles ? static_cast<double>(execution.late_cycles) /
                                                 static_cast<double>(execution.cycles)
                                           : 0.0},
           {"real_time_factor", ground_truth.real_time_factor},
@@ -177,9 +177,9 @@ std::string summary(const nlohmann::json& report) {
       "oracle  lifted %.2f m, person's hand on it %.2f s before release, person alone %.1f s\n",
       oracle["max_lifted_m"].get<double>(), oracle["human_contact_before_release_s"].get<double>(),
       oracle["human_alone_s"].get<double>());
-  if (!oracle["contact_share"].is_null())
+  if (!oracle["contact_ratio"].is_null())
     text += format("hold    %.1f s in the robot's hand, %.0f %% of it by contact alone\n",
-                   oracle["held_s"].get<double>(), 100 * oracle["contact_share"].get<double>());
+                   oracle["held_s"].get<double>(), 100 * oracle["contact_ratio"].get<double>());
   const Json& ratio = report["limit_ratio"];
   text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed",
                  100 * ratio["v"].get<double>(), 100 * ratio["a"].get<double>(),
@@ -194,7 +194,7 @@ std::string summary(const nlohmann::json& report) {
     text += format("timing  %.0f set-points/s, longest gap %.1f ms, %.3f %% of cycles late",
                    report["set_point_rate_hz"].get<double>(),
                    1e3 * report["set_point_gap_max_s"].get<double>(),
-                   100 * report["late_share"].get<double>());
+                   100 * report["late_ratio"].get<double>());
     text += format(", real-time factor %.3f\n", report["real_time_factor"].get<double>());
   }
   std::uint64_t misses = 0, rejected = 0;

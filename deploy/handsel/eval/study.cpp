@@ -25,9 +25,9 @@ struct Measure {
   int decimals;
   bool of_success;  // reported for successful trials only
 };
-constexpr Measure kMeasures[] = {{"activations_share", 3, false},
+constexpr Measure kMeasures[] = {{"activations_ratio", 3, false},
                                  {"cpu_chain_s", 3, false},
-                                 {"looks", 1, false},
+                                 {"runs", 1, false},
                                  {"min_separation_m", 4, false},
                                  {"below_separation_s", 3, false},
                                  {"ssm_violations", 2, false},
@@ -48,12 +48,12 @@ constexpr Measure kMeasures[] = {{"activations_share", 3, false},
 std::optional<double> value(const Json& line, const Measure& measure) {
   if (measure.of_success && !line.value("success", false)) return std::nullopt;
   const std::string name = measure.name;
-  if (name == "activations_share") {
+  if (name == "activations_ratio") {
     const double max_activations = line.value("activations_at_pmin", 0.0);
     return max_activations > 0 ? std::optional(line["activations"].get<double>() / max_activations)
                                : std::nullopt;
   }
-  if (name == "looks") {
+  if (name == "runs") {
     if (!line.contains("runs")) return std::nullopt;
     double sum = 0;
     for (const char* run : {"facts", "scene", "forecast", "cost_map", "paths"})

@@ -98,6 +98,13 @@ struct Worker {
   std::string text;
 };
 
+/// Returns the line of a trial that was not performed.
+Json failed_line(const Trial& trial, const char* failure, const std::string& reason) {
+  Json line = base_line(trial.context, trial.options);
+  line.update({{"success", false}, {"failure", failure}, {"reason", reason}});
+  return line;
+}
+
 Worker start_worker(const std::vector<Trial>& trials, std::size_t index) {
   int channel[2];
   if (pipe(channel) != 0)
@@ -115,10 +122,10 @@ Worker start_worker(const std::vector<Trial>& trials, std::size_t index) {
   std::string line;
   try {
     line = run_trial(trials[index].context, trials[index].options).dump();
+  } catch (const ConfigError& error) {
+    line = failed_line(trials[index], "refused", error.what()).dump();
   } catch (const std::exception& error) {
-    Json failed = base_line(trials[index].context, trials[index].options);
-    failed.update({{"success", false}, {"failure", "error"}, {"reason", error.what()}});
-    line = failed.dump();
+    line = failed_line(trials[index], "error", error.what()).dump();
   }
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t n = write(channel[1], line.data() + sent, line.size() - sent);
@@ -136,16 +143,12 @@ Json finish_worker(const Worker& worker, const std::vector<Trial>& trials, bool&
   waitpid(worker.pid, &status, 0);
   Json line = Json::parse(worker.text, nullptr, false);
   if (!line.is_discarded() && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-    clean = clean && line["failure"] != "error";
+    clean = clean && line["failure"] != "error" && line["failure"] != "refused";
     return line;
   }
   clean = false;
-  line = base_line(trials[worker.trial].context, trials[worker.trial].options);
-  line.update(
-      {{"success", false},
-       {"failure", "crash"},
-       {"reason", WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "ended without an answer"}});
-  return line;
+  return failed_line(trials[worker.trial], "crash",
+                     WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "ended without an answer");
 }
 
 }  // namespace
@@ -211,7 +214,7 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
                {"drops", ground_truth.dropped ? 1 : 0},
                {"lifted_m", ground_truth.max_lifted},
-               {"contact_share", report["oracle"]["contact_share"]},
+               {"contact_ratio", report["oracle"]["contact_ratio"]},
                {"taken_with", report["oracle"]["taken_with"]},
                {"wrist_strain", report["oracle"]["wrist_strain"]},
                {"arm_strain", report["oracle"]["arm_strain"]},

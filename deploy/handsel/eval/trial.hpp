@@ -38,7 +38,8 @@ struct Trial {
 
 /// Each trial in an operating-system process of its own, `jobs` at a time, so that no state is
 /// carried over and a crash is one failed trial (failure "crash"). Calls on_line in the order of
-/// the trials. False when one crashed or could not be performed (failure "error").
+/// the trials. False when one crashed or was not performed: scenario or settings were refused
+/// (failure "refused"), or another error (failure "error").
 bool run_trials(const std::vector<Trial>& trials, int jobs,
                 const std::function<void(const nlohmann::json&)>& on_line);
 
