@@ -137,11 +137,14 @@ void run_benchmarks(const std::string& filter, bool as_json, int& exit_code) {
 
 void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "bench", "The benchmarks, with the peer's figure and the ratio beside each");
+      "bench",
+      "runs the benchmarks; prints each figure beside the figure of a peer, and their ratio");
   auto filter = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false);
-  command->add_option("FILTER", *filter, "part of a benchmark's or a program's name (tests/bench)");
-  command->add_flag("--json", *as_json, "JSON Lines, also on a terminal");
+  command->add_option(
+      "FILTER", *filter,
+      "run only benchmarks whose name, or whose program's name, contains this text (tests/bench)");
+  command->add_flag("--json", *as_json, "print JSON Lines also on a terminal");
   command->callback(
       [filter, as_json, &exit_code] { run_benchmarks(*filter, json_wanted(*as_json), exit_code); });
 }

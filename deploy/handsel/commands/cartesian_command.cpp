@@ -64,10 +64,10 @@ CartesianRequest request_of(const json& line, const RobotModel& robot) {
           number(also, robot.axes()[static_cast<std::size_t>(request.also[i])].name.c_str());
     request.nodes.push_back(node);
   }
-  if (const auto level = line.find("level"); level != line.end()) {
+  if (const auto level = line.find("upright"); level != line.end()) {
     request.level.emplace();
     request.level->axis_tool = vector3(*level, "axis");
-    request.level->bound = positive(*level, "most");
+    request.level->bound = positive(*level, "max_angle");
   }
   return request;
 }
@@ -181,32 +181,32 @@ int run(const Options& options) {
 void add_cartesian_command(CLI::App& trajectory, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = trajectory.add_subcommand(
-      "cartesian", "From poses of the tool to soft motion of an arm of seven axes");
+      "cartesian",
+      "computes the jerk-limited motion of an arm with seven axes through poses of its tool");
   command->footer(
-      R"(A line: {"start"?: {joint: rad}, "nodes": [{"p": [x, y, z], "q": [x, y, z, w] of the tool
-in the root frame, "elbow"?: rad, "also"?: {joint: rad} of hand and head}], "obstacles"?:
-[{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}], "level"?: {"axis":
-[x, y, z] of the tool, upright, "most": rad}}.
-An answer: "active" the smoothed trajectory of position, rotation vector, elbow and further axes;
-"axes" that of the joints.
-Where a node cannot be reached the motion ends at the one before, "reached" counts them, and the
-exit code is 1.)");
+      R"(Input line: {"start"?: {joint: rad}, "nodes": [{"p": [x, y, z], "q": [x, y, z, w] of the
+tool in the root frame, "elbow"?: rad, "also"?: {joint: rad} of hand and head}], "obstacles"?:
+[{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}], "upright"?: {"axis":
+[x, y, z] of the tool frame, "max_angle": rad from up}}; ? marks
+fields that may be missing.
+Output line: "active": smoothed trajectory of position, rotation vector, elbow and further axes;
+"axes": trajectory of the joints; "reached": number of nodes reached. If a node cannot be reached,
+the motion ends at the node before, and the exit code is 1.)");
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
       ->required();
-  command->add_option("--group", options->group, "of the arm")->capture_default_str();
-  command->add_option("--tip", options->tip,
-                      "link that carries the tool, where the group names none");
-  command->add_option("--period", options->period, "the joints are computed this often [s]")
+  command->add_option("--group", options->group, "group of the arm")->capture_default_str();
+  command->add_option("--tip", options->tip, "link that carries the tool, if the group names none");
+  command->add_option("--period", options->period, "time between two computed configurations [s]")
       ->check(kAboveZero)
       ->capture_default_str();
   command->add_flag(
       "--platform", options->platform,
       "\"also\" may name platform_x, platform_y and platform_heading; poses are in the world");
-  command->add_option("--png", options->png, "file to draw the first motion to");
-  command->add_option("--size", options->size, "of the picture's sides")
+  command->add_option("--png", options->png, "file for a picture of the first motion");
+  command->add_option("--size", options->size, "width and height of the picture [pixels]")
       ->check(CLI::Range(100, 4000))
       ->capture_default_str();
-  command->add_flag("--json")->description("JSON Lines (always so)");
+  command->add_flag("--json")->description("has no effect: the output is always JSON Lines");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -17,7 +17,7 @@ namespace handsel {
 namespace {
 
 struct CostOptions {
-  std::string posture{"standing"}, settings, svg;
+  std::string stance{"standing"}, settings, svg;
   double stature{1.75}, cell{0.04};
 };
 
@@ -25,8 +25,8 @@ Person person_of(const CostOptions& options) {
   Person person;
   person.id = "person";
   person.stature = options.stature;
-  person.joints = options.posture == "standing" ? standing_body(Vector3::Zero(), 0, options.stature)
-                                                : sitting_body(Vector3::Zero(), 0, options.stature);
+  person.joints = options.stance == "standing" ? standing_body(Vector3::Zero(), 0, options.stature)
+                                               : sitting_body(Vector3::Zero(), 0, options.stature);
   person.gaze_known = true;
   person.gaze_origin = person.joints[static_cast<std::size_t>(body_joint_index("head"))].position;
   person.gaze_direction = Vector3(1, 0, -0.25).normalized();
@@ -42,7 +42,7 @@ int run(const CostOptions& options) {
     std::snprintf(
         title, sizeof title,
         "Costs around a %s person of %.2f m, weights %g safety, %g visibility, %g comfort",
-        options.posture.c_str(), options.stature, settings.w_safety, settings.w_visibility,
+        options.stance.c_str(), options.stature, settings.w_safety, settings.w_visibility,
         settings.w_comfort);
     std::ofstream file(options.svg);
     file << cost_picture(person, settings, options.cell, title);
@@ -66,20 +66,20 @@ int run(const CostOptions& options) {
 void add_cost_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CostOptions>();
   CLI::App* command = app.add_subcommand(
-      "cost", "The human-aware costs of points around a person, or a picture of them");
+      "cost", "computes the human-aware costs of points around a person, or draws them");
   command->footer(
-      R"(Without --svg: a line on stdin {"p": [x, y, z]} in m; the person stands or sits at the
-origin and faces +x.)");
-  command->add_option("--posture", options->posture, "of the person")
+      R"(Without --svg the points are read from stdin, one line {"p": [x, y, z]} [m] for each; the
+person stands or sits at the origin and faces +x.)");
+  command->add_option("--stance", options->stance, "stance of the person")
       ->check(CLI::IsMember({"standing", "sitting"}))
       ->capture_default_str();
-  command->add_option("--stature", options->stature, "[m]")
+  command->add_option("--stature", options->stature, "stature of the person [m]")
       ->check(CLI::Range(1.0, 2.2))
       ->capture_default_str();
   command->add_option("--settings", options->settings,
                       "folder with cost.txtpb (default: the shipped one)");
-  command->add_option("--svg", options->svg, "file to draw the three costs and their sum to");
-  command->add_option("--cell", options->cell, "[m] of the picture")
+  command->add_option("--svg", options->svg, "file for a picture of the three costs and their sum");
+  command->add_option("--cell", options->cell, "size of a cell of the picture [m]")
       ->check(CLI::Range(0.005, 0.2))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run(*options); });

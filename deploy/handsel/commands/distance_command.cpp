@@ -43,12 +43,13 @@ json measure_pair(const json& pair) {
 }  // namespace
 
 void add_distance_command(CLI::App& app, int& exit_code) {
-  CLI::App* distance = app.add_subcommand(
-      "distance", "Contact and distance [m] of pairs of shapes, one JSON line a pair on stdin");
+  CLI::App* distance = app.add_subcommand("distance",
+                                          "computes contact and distance [m] of pairs of shapes; "
+                                          "reads one line of JSON for each pair from stdin");
   distance->footer(
-      R"(A line: {"a": {"type": "sphere|box|cylinder|capsule", "r", "l", "xyz"}, "Ta": {"xyz",
+      R"(Input line: {"a": {"type": "sphere|box|cylinder|capsule", "r", "l", "xyz"}, "Ta": {"xyz",
 "quat_xyzw"}, "b": ..., "Tb": ...})");
-  distance->add_flag("--json")->description("JSON Lines (always so)");
+  distance->add_flag("--json")->description("has no effect: the output is always JSON Lines");
   distance->callback(
       [&exit_code] { exit_code = for_each_line(std::cin, std::cout, measure_pair); });
 }

@@ -71,9 +71,9 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
     bool json{false};
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "doctor",
-      "what would stop it from working here; exit 1: something would, 3: something is missing");
+  CLI::App* command = app.add_subcommand("doctor",
+                                         "checks whether the system can work on this machine; exit "
+                                         "code 1: a check failed, 3: something is missing");
   add_domain_option(*command, options->doctor.domain);
   command->add_option("--robot", options->doctor.robot,
                       "robot description (default: the scenario's)");
@@ -82,17 +82,19 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--port", options->doctor.web_port,
-                   "of the page (default: as in the bridge's settings)")
+                   "port of the page (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
   command->add_flag("--perception", options->doctor.perception,
-                    "people and objects must be measured on the domain, and rightly");
+                    "check that people and objects are observed on the domain, and that the "
+                    "observations are valid");
   command->add_flag("--inputs-only", options->doctor.inputs_only,
-                    "with --perception: look at nothing else (3 s)");
-  command->add_flag("--driver", options->doctor.driver, "a robot must be connected on the domain");
+                    "with --perception: check nothing else (3 s)");
+  command->add_flag("--driver", options->doctor.driver,
+                    "check that a robot is connected on the domain");
   command->add_flag("--json", options->json, "print JSON Lines");
   command->callback([options, &exit_code] {
     if (options->doctor.inputs_only && !options->doctor.perception)
-      throw ConfigError("--inputs-only goes with --perception");
+      throw ConfigError("--inputs-only needs --perception");
     exit_code = examine(options->doctor, json_wanted(options->json));
   });
 }

@@ -136,42 +136,44 @@ int choose(const ChooseOptions& o) {
 }  // namespace
 
 void add_grasp_choose(CLI::App& grasp, int& exit_code) {
-  CLI::App* choosing = grasp.add_subcommand("choose",
-                                            "Grasps of the list that serve a robot before a table, "
-                                            "best first, and why the others do not");
+  CLI::App* choosing =
+      grasp.add_subcommand("choose",
+                           "chooses the grasps that a robot in front of a table can use, best "
+                           "first; prints why the others are rejected");
   auto o = std::make_shared<ChooseOptions>();
   add_stage_options(*choosing, *o);
-  choosing->add_option("--at", o->at, "where the object stands on the table, x,y [m]")
+  choosing->add_option("--at", o->at, "position of the object on the table, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
   choosing
       ->add_option("--goal", o->goal,
-                   "where it will be put on the table, x,y [m], perhaps a heading [deg]: the grasp "
-                   "must serve there too")
+                   "position x,y [m], and optionally heading [deg], where the object will be put "
+                   "on the table; the grasp must be usable there too")
       ->delimiter(',')
       ->expected(2, 3);
   choosing
-      ->add_option("--person", o->person,
-                   "it is for a person who stands at x,y [m], facing the robot")
+      ->add_option(
+          "--person", o->person,
+          "position x,y [m] of a person, facing the robot, to whom the object will be given")
       ->delimiter(',')
       ->expected(2);
-  choosing->add_option("--stature", o->stature, "of the person [m]")
+  choosing->add_option("--stature", o->stature, "stature of the person [m]")
       ->check(CLI::Range(0.8, 2.4))
       ->capture_default_str();
   choosing
-      ->add_option(
-          "--least-visible", o->min_visible,
-          "fraction of the object that the person, else the robot's head, must see past the hand")
+      ->add_option("--min-visible", o->min_visible,
+                   "min fraction of the object that is visible past the hand, to the person or "
+                   "else to the robot's head")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   choosing->add_flag("--move-platform", o->move_platform,
-                     "where no grasp is in reach, look for places the platform may drive to");
+                     "if no grasp is in reach, search for places of the platform");
   choosing
       ->add_option("--obstacle", o->obstacles,
-                   "a box: middle x,y,z and size x,y,z [m]; may be repeated")
+                   "box: centre x,y,z and size x,y,z [m]; may be repeated")
       ->delimiter(',');
-  choosing->add_option("--number", o->number, "of grasps")
+  choosing->add_option("--number", o->number, "max number of grasps printed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   choosing->callback([o, &exit_code] { exit_code = choose(*o); });

@@ -212,48 +212,54 @@ int table(const TableOptions& o) {
 }  // namespace
 
 void add_grasp_commands(CLI::App& app, int& exit_code) {
-  CLI::App* grasp = app.add_subcommand("grasp", "Grasps of a hand on an object");
+  CLI::App* grasp = app.add_subcommand("grasp", "computes grasps of a hand on an object");
   grasp->require_subcommand(1);
 
-  CLI::App* scoring = grasp->add_subcommand(
-      "score", "Force closure and epsilon of sets of contacts, one JSON line a set on stdin");
+  CLI::App* scoring =
+      grasp->add_subcommand("score",
+                            "computes force closure and epsilon quality of sets of contacts; reads "
+                            "one line of JSON for each set from stdin");
   scoring->footer(
-      R"(A line: {"points": [[3]...], "inward_normals": [[3]...], "mu", "edges", "com",
+      R"(Input line: {"points": [[3]...], "inward_normals": [[3]...], "mu", "edges", "com",
 "torque_scale"} or {"wrenches": [[...]...]})");
-  scoring->add_flag("--json")->description("JSON Lines (always so)");
+  scoring->add_flag("--json")->description("has no effect: the output is always JSON Lines");
   scoring->callback([&exit_code] { exit_code = for_each_line(std::cin, std::cout, score); });
 
-  CLI::App* listing = grasp->add_subcommand(
-      "list", "All grasps found, best first; what was rejected and why goes to stderr");
+  CLI::App* listing = grasp->add_subcommand("list",
+                                            "prints all grasps found, best first, and to stderr "
+                                            "the numbers of rejected candidates with the reasons");
   auto o = std::make_shared<ListOptions>();
   add_list_options(*listing, *o);
   listing->callback([o, &exit_code] { exit_code = list(*o); });
 
-  CLI::App* tabling = grasp->add_subcommand(
-      "table",
-      "Hands against objects: numbers of grasps, best quality, time and reasons, a line each");
+  CLI::App* tabling = grasp->add_subcommand("table",
+                                            "prints for each pair of hand and object the number of "
+                                            "grasps, best quality, time and reasons of rejection");
   auto t = std::make_shared<TableOptions>();
   tabling->add_option("--hand", t->hands, "hand description: name or file; may be repeated")
       ->capture_default_str();
   tabling->add_option("--object", t->objects, "mesh file or object description; may be repeated")
       ->required();
-  tabling->add_flag("--fit", t->fit, "scale an object that is too large or too small for the hand");
-  tabling->add_option("--positions", t->positions, "grasp frames: positions in the object's box")
+  tabling->add_flag("--fit", t->fit, "scale objects that are too large or too small for the hand");
+  tabling
+      ->add_option("--positions", t->positions,
+                   "number of positions of grasp frames in the object's box")
       ->check(kAboveZero)
       ->capture_default_str();
-  tabling->add_option("--orientations", t->orientations, "and orientations at each")
+  tabling->add_option("--orientations", t->orientations, "number of orientations at each position")
       ->check(kAboveZero)
       ->capture_default_str();
-  tabling->add_flag("--json", t->as_json, "JSON Lines also on a terminal");
+  tabling->add_flag("--json", t->as_json, "print JSON Lines also on a terminal");
   tabling->callback([t, &exit_code] { exit_code = table(*t); });
 
-  CLI::App* standing = grasp->add_subcommand(
-      "placements",
-      "How an object stands by itself, hardest to tip over first, and how its mass is spread");
+  CLI::App* standing =
+      grasp->add_subcommand("placements",
+                            "prints the stable placements of an object, the one that is hardest to "
+                            "tip over first, and its mass and inertia");
   auto s = std::make_shared<ListOptions>();
   standing->add_option("--object", s->object, "mesh file or object description")->required();
-  standing->add_option("--scale", s->scale, "of the mesh")->check(kAboveZero);
-  standing->add_flag("--json", s->as_json, "JSON Lines also on a terminal");
+  standing->add_option("--scale", s->scale, "factor on the size of the mesh")->check(kAboveZero);
+  standing->add_flag("--json", s->as_json, "print JSON Lines also on a terminal");
   standing->callback([s, &exit_code] { exit_code = placements(*s); });
 
   add_grasp_choose(*grasp, exit_code);

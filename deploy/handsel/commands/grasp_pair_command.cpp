@@ -265,81 +265,98 @@ int regrasp(const RegraspOptions& o) {
   return plan.solved ? 0 : 1;
 }
 
-}  // namespace
-
-void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
+void add_double(CLI::App& grasp, int& exit_code) {
   CLI::App* doubling = grasp.add_subcommand(
-      "double", "Pairs of grasps of two hands that do not collide, best first");
+      "double", "computes pairs of grasps of two hands that do not collide, best first");
   auto d = std::make_shared<PairOptions>();
   add_list_options(*doubling, *d);
   doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")
       ->capture_default_str();
-  doubling->add_option("--best", d->max_of_each, "grasps taken from each list")
+  doubling
+      ->add_option("--best", d->max_of_each, "number of grasps taken from the list of each hand")
       ->check(kAboveZero)
       ->capture_default_str();
-  doubling->add_flag("--spread", d->spread,
-                     "take the best of every orientation and side in turn, not the best of all");
-  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")
+  doubling->add_flag(
+      "--spread", d->spread,
+      "take the best grasp of each orientation and side in turn instead of the best of all");
+  doubling->add_option("--clearance", d->clearance, "min distance between the hands [m]")
       ->check(kNotNegative)
       ->capture_default_str();
-  doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")
+  doubling
+      ->add_option("--opposed", d->opposition,
+                   "min angle between the directions of the two wrists [deg]")
       ->check(CLI::Range(0.0, 180.0));
-  doubling->add_flag("--pass", d->passed,
-                     "only those in which either hand can come and leave while the other holds");
-  doubling->add_option("--png", d->png, "draws one of them into this file, from three sides");
-  doubling->add_option("--number", d->number, "which one, 1: the best")
+  doubling->add_flag(
+      "--pass", d->passed,
+      "only pairs in which either hand can approach and retreat while the other one holds");
+  doubling->add_option("--png", d->png, "file for a picture of one pair from three sides");
+  doubling->add_option("--number", d->number, "rank of the pair to draw; 1: the best")
       ->check(kAboveZero)
       ->capture_default_str();
-  doubling->add_option("--size", d->size, "of one of its pictures")
+  doubling->add_option("--size", d->size, "size of each view of the picture [pixels]")
       ->check(CLI::Range(64, 2000))
       ->capture_default_str();
   doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
+}
 
-  CLI::App* giving = grasp.add_subcommand(
-      "transfer",
-      "Grasps from which a person can take the object comfortably, and where it is offered");
+void add_transfer(CLI::App& grasp, int& exit_code) {
+  CLI::App* giving =
+      grasp.add_subcommand("transfer",
+                           "computes grasps from which a person can take the object comfortably, "
+                           "and the pose in which the object is offered");
   auto t = std::make_shared<TransferOptions>();
   add_stage_options(*giving, *t);
-  giving
-      ->add_option("--taker", t->taker, "the person's right hand: name or file of its description")
+  giving->add_option("--taker", t->taker, "description of the person's right hand: name or file")
       ->capture_default_str();
-  giving->add_option("--at", t->at, "where the object stands on the table, x,y [m]")
+  giving->add_option("--at", t->at, "position of the object on the table, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  giving->add_option("--person", t->person, "where the person stands, facing the robot, x,y [m]")
+  giving->add_option("--person", t->person, "position of the person, facing the robot, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  giving->add_option("--stature", t->stature, "of the person [m]")
+  giving->add_option("--stature", t->stature, "stature of the person [m]")
       ->check(CLI::Range(0.8, 2.4))
       ->capture_default_str();
-  giving->add_option("--tilt", t->tilt, "the object may be tilted by this [deg]")
+  giving->add_option("--tilt", t->tilt, "max tilt of the object [deg]")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
-  giving->add_option("--number", t->number, "of grasps")
+  giving->add_option("--number", t->number, "max number of grasps printed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   giving->callback([t, &exit_code] { exit_code = transfer(*t); });
+}
 
-  CLI::App* changing = grasp.add_subcommand(
-      "regrasp",
-      "The fewest picks, passes from hand to hand and placings that bring an object somewhere");
+void add_regrasp(CLI::App& grasp, int& exit_code) {
+  CLI::App* changing =
+      grasp.add_subcommand("regrasp",
+                           "computes the shortest sequence of picks, passes from hand to hand and "
+                           "placements that brings an object to a goal");
   auto r = std::make_shared<RegraspOptions>();
   add_stage_options(*changing, *r);
-  changing->add_option("--from", r->from, "where the object stands on the table, x,y [m]")
+  changing->add_option("--from", r->from, "position of the object on the table, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  changing->add_option("--to", r->to, "where it shall stand")
+  changing->add_option("--to", r->to, "position of the object on the table at the end, x,y [m]")
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  changing->add_option("--hold-with", r->to_arm,
-                       "instead of that: the arm that shall hold it in the end, counted from 0");
+  changing->add_option(
+      "--hold-with", r->to_arm,
+      "instead of --to: number of the arm that holds the object at the end, from 0");
   changing->add_flag("--put-down", r->again,
-                     "it may be put down half way, any way it stands by itself");
+                     "permit to put the object down in between, in any stable placement");
   changing->callback([r, &exit_code] { exit_code = regrasp(*r); });
+}
+
+}  // namespace
+
+void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
+  add_double(grasp, exit_code);
+  add_transfer(grasp, exit_code);
+  add_regrasp(grasp, exit_code);
 }
 
 }  // namespace handsel

@@ -152,38 +152,39 @@ int show(const ShowOptions& o) {
 }  // namespace
 
 void add_grasp_show(CLI::App& grasp, int& exit_code) {
-  CLI::App* command = grasp.add_subcommand(
-      "show",
-      "A picture of a grasp, of its hand's workspaces or of the object as the planner sees it");
+  CLI::App* command = grasp.add_subcommand("show",
+                                           "draws a grasp, the workspaces of its hand, or the "
+                                           "features of the object that the planner uses");
   auto o = std::make_shared<ShowOptions>();
   add_list_options(*command, *o);
-  command->add_option("--png", o->png, "file to write")->required();
+  command->add_option("--png", o->png, "file for the picture")->required();
   command
-      ->add_option("--figure", o->figure,
-                   "grasp: hand on object, contacts, friction cones; ellipsoids: of the fingers' "
-                   "forces, and contact normals; candidates: points "
-                   "in the fingers' workspaces; curvature: of the surface, red low, blue high; "
-                   "points: contact points and the boxes of their tree; "
-                   "workspace: of a finger, as grid and as spheres")
+      ->add_option(
+          "--figure", o->figure,
+          "grasp: hand on object, contacts, friction cones; ellipsoids: force ellipsoids of the "
+          "fingers, and contact normals; candidates: points in the fingers' workspaces; curvature: "
+          "curvature of the surface, red low, blue high; points: contact points and the boxes of "
+          "their tree; workspace: workspace of a finger, as grid and as spheres")
       ->check(
           CLI::IsMember({"grasp", "ellipsoids", "candidates", "curvature", "points", "workspace"}))
       ->capture_default_str();
-  command->add_option("--rank", o->rank, "which grasp: 1 is the best")
+  command->add_option("--rank", o->rank, "rank of the grasp; 1: the best")
       ->check(kAboveZero)
       ->capture_default_str();
-  command->add_option("--id", o->id, "which grasp, by its id in `grasp list`")->check(kNotNegative);
-  command->add_option("--finger", o->finger, "whose workspace: 0 is the thumb")
+  command->add_option("--id", o->id, "id of the grasp in the output of `grasp list`")
+      ->check(kNotNegative);
+  command->add_option("--finger", o->finger, "finger whose workspace is drawn; 0: the thumb")
       ->capture_default_str();
-  command->add_option("--depth", o->depth, "of the boxes of the tree")
+  command->add_option("--depth", o->depth, "depth of the boxes of the tree")
       ->check(CLI::Range(0, 12))
       ->capture_default_str();
-  command->add_option("--size", o->size, "height of the picture [points]")
+  command->add_option("--size", o->size, "height of the picture [pixels]")
       ->check(CLI::Range(100, 2000))
       ->capture_default_str();
-  command->add_option("--azimuth", o->azimuth, "turn of the view [deg]")
+  command->add_option("--azimuth", o->azimuth, "azimuth of the view [deg]")
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
-  command->add_option("--elevation", o->elevation, "of the view [deg]")
+  command->add_option("--elevation", o->elevation, "elevation of the view [deg]")
       ->check(CLI::Range(-89.0, 89.0))
       ->capture_default_str();
   command->callback([o, &exit_code] { exit_code = show(*o); });

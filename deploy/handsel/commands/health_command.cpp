@@ -54,15 +54,16 @@ int ask(const HealthOptions& options) {
 
 void add_health_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<HealthOptions>();
-  CLI::App* command = app.add_subcommand("health",
-                                         "is a process, or without a name the whole system, there "
-                                         "and ok? 0 yes, 1 no, 3 nothing is received");
+  CLI::App* command =
+      app.add_subcommand("health",
+                         "tests whether a process, or without a name the whole system, works; exit "
+                         "code 0: it works, 1: it does not, 3: nothing is received");
   add_domain_option(*command, options->domain);
-  command->add_option("--within", options->within, "[s] wait so long for a yes")
+  command->add_option("--within", options->within, "max time to wait until it works [s]")
       ->capture_default_str()
       ->check(kAboveZero);
   command->add_option("component", options->component,
-                      "as `handsel status` names it: spark, supervisor, ...");
+                      "name of the process as printed by `handsel status`: spark, supervisor, ...");
   command->callback([options, &exit_code] { exit_code = ask(*options); });
 }
 

@@ -283,19 +283,21 @@ void add_model_commands(CLI::App& app, int& exit_code) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* model = app.add_subcommand(
-      "model", "Robot descriptions and URDFs: what they lack, what they hold, forward kinematics");
+      "model", "checks and prints robot descriptions and URDFs; computes forward kinematics");
   model->require_subcommand(1);
   const auto add = [&](const char* name, const char* what) {
     CLI::App* command = model->add_subcommand(name, what);
-    command->add_option("robot", options->robot, "Name of a robot, a description or a URDF")
+    command
+        ->add_option("robot", options->robot, "name of a robot, or file of a description or URDF")
         ->required();
-    command->add_flag("--json", options->as_json, "JSON Lines");
+    command->add_flag("--json", options->as_json, "print JSON Lines");
     return command;
   };
-  add("check", "What the robot lacks; exit 1 if something")->callback([options, &exit_code] {
-    exit_code = check(options->robot, json_wanted(options->as_json));
-  });
-  add("info", "Links, axes, limits and groups")->callback([options, &exit_code] {
+  add("check", "prints what is missing in a robot description; exit code 1: something is missing")
+      ->callback([options, &exit_code] {
+        exit_code = check(options->robot, json_wanted(options->as_json));
+      });
+  add("info", "prints links, axes, limits and groups")->callback([options, &exit_code] {
     const json info = describe(load_any(options->robot, Meshes::load));
     if (json_wanted(options->as_json))
       std::cout << info.dump() << '\n';
@@ -303,10 +305,11 @@ void add_model_commands(CLI::App& app, int& exit_code) {
       print_model(info);
     exit_code = 0;
   });
-  CLI::App* fk = add("fk", "Poses of all links in the root frame for joint values on stdin");
+  CLI::App* fk =
+      add("fk", "computes the poses of all links in the root frame for joint values from stdin");
   fk->footer(
-      R"(A line: {"q": {joint: value}}, 0 for joints not named; the answer: {"T": {link: three rows
-of four}})");
+      R"(Input line: {"q": {joint: value}}, 0 for joints not named. Output line: {"T": {link: three
+rows of four}})");
   fk->callback([options, &exit_code] {
     exit_code = for_each_line(std::cin, std::cout,
                               ForwardKinematics(load_any(options->robot, Meshes::skip)));

@@ -31,9 +31,9 @@ constexpr double kCartesianChecks = 1e5;  // per second; divided among the branc
 
 struct Options {
   std::string robot, srdf, group, planner{"auto"}, space{"joint"};
-  double time{5.0}, roam{3.0};
+  double time{5.0}, platform_margin{3.0};
   std::uint64_t checks{0}, seed{1};
-  bool stock{false}, json_lines{false}, landscape{false};
+  bool ompl{false}, json_lines{false}, landscape{false};
   std::string png;
 };
 
@@ -74,7 +74,7 @@ class Batch {
                       options_.group + "\"");
     path_planner::Problem problem;
     problem.planner = kPlanners.at(options_.planner);
-    problem.stock = options_.stock;
+    problem.stock = options_.ompl;
     problem.seed = options_.seed;
     problem.budget = options_.checks > 0 ? options_.checks : UINT64_MAX / 2;
     problem.start = configuration_in(robot_, field(item, "start"), "start");
@@ -90,7 +90,7 @@ class Batch {
     if (path_planner::is_of_platform(options_.group)) {
       navigation.emplace(robot_, weights_in(item));
       navigation->set_people(people);
-      path_planner::drive(robot_, *navigation, options_.roam, problem);
+      path_planner::drive(robot_, *navigation, options_.platform_margin, problem);
     }
 
     const Clock::time_point begin = Clock::now();
@@ -148,7 +148,7 @@ class Batch {
     const auto upright = item.find("upright");
     if (upright == item.end()) return;
     problem.upright.emplace();
-    problem.upright->max_angle = number(*upright, "most");
+    problem.upright->max_angle = number(*upright, "max_angle");
     if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
     if (!(problem.upright->axis_tool.norm() > 1e-9))
       throw LineError("\"axis\" of \"upright\" must not be zero");
@@ -282,7 +282,7 @@ int run(const Options& options) {
     throw ConfigError("--png draws the planners on a landscape of costs: give --landscape, too");
   if (options.robot.empty())
     throw ConfigError("--robot is missing: a .urdf, or a robot description by name or file");
-  if (!(options.roam > 0)) throw ConfigError("--roam must be greater than 0");
+  if (!(options.platform_margin > 0)) throw ConfigError("--platform-margin must be greater than 0");
   if (!(options.time > 0)) throw ConfigError("--time must be greater than 0");
   Batch batch(options);
   const bool for_people = !options.json_lines && isatty(STDOUT_FILENO) != 0;
@@ -297,38 +297,43 @@ int run(const Options& options) {
 
 void add_plan_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* plan =
-      app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
+  CLI::App* plan = app.add_subcommand(
+      "plan", "computes collision-free paths; reads one line of JSON for each problem from stdin");
   plan->footer(
-      R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}] or [{"pose": {"p": [x, y, z], "q":
-[x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}],
+      R"(Input line: {"start": {joint: rad}, "goals": [{joint: rad}] or [{"pose": {"p": [x, y, z],
+"q": [x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}],
 "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}], "human":
 {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility",
 "comfort"}, "also": {joint: rad} where head or hand end (--space cartesian), "upright":
-{"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height,
+{"axis": [x, y, z] of the tool frame, "max_angle": rad from up}}; dims of a cylinder: height,
 radius.)");
   plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file");
-  plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
   plan->add_option(
-      "--group", options->group,
-      "group of axes; where the robot names none, the axes of the goals. A robot with a platform "
-      "has \"platform\" and "
-      "\"robot\" (platform and arm), too: platform_x, platform_y [m], platform_heading [rad]");
-  plan->add_option("--roam", options->roam,
-                   "a platform keeps within this beyond the box around its start and goals [m]");
-  plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")
+      "--srdf", options->srdf,
+      "SRDF file that names the pairs of links that are never tested against each other");
+  plan->add_option("--group", options->group,
+                   "group of axes (default: if the robot names no groups, the axes of the goals). "
+                   "A robot with a platform has the groups \"platform\" and \"robot\" (platform "
+                   "and arm) too: platform_x, platform_y [m], platform_heading [rad]");
+  plan->add_option("--platform-margin", options->platform_margin,
+                   "max distance of a platform from the box around its start and goals [m]");
+  plan->add_option("--planner", options->planner, "planning algorithm")
       ->check(CLI::IsMember(kPlanners));
-  plan->add_option("--space", options->space,
-                   "joint, or cartesian: place of the tool and angle of the elbow")
+  plan->add_option(
+          "--space", options->space,
+          "space of the search: joint, or cartesian (pose of the tool and angle of the elbow)")
       ->check(CLI::IsMember({"joint", "cartesian"}));
-  plan->add_flag("--stock", options->stock, "OMPL's planner of that name instead of the own one");
-  plan->add_option("--time", options->time, "limit of a problem [s]");
-  plan->add_option("--checks", options->checks, "limit in checked states instead: repeatable");
-  plan->add_option("--seed", options->seed, "of every random choice");
+  plan->add_flag("--ompl", options->ompl, "use OMPL's planner of that name");
+  plan->add_option("--time", options->time, "max time for each problem [s]");
+  plan->add_option(
+      "--checks", options->checks,
+      "max number of checked states for each problem instead of --time; the result is repeatable");
+  plan->add_option("--seed", options->seed, "seed of all random choices");
   plan->add_flag("--landscape", options->landscape,
-                 "instead of problems: trees and path on a landscape of costs over two axes");
-  plan->add_option("--png", options->png, "file to draw the landscape, the trees and the path to");
-  plan->add_flag("--json", options->json_lines, "JSON Lines on a terminal, too");
+                 "instead of problems: search on an example cost map over two axes");
+  plan->add_option("--png", options->png,
+                   "file for a picture of the cost map, the search trees and the path");
+  plan->add_flag("--json", options->json_lines, "print JSON Lines also on a terminal");
   plan->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

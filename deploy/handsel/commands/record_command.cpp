@@ -113,26 +113,33 @@ int replay(const ReplayOptions& options) {
 void add_record_commands(CLI::App& app, int& exit_code) {
   auto recorded = std::make_shared<RecordOptions>();
   CLI::App* command =
-      app.add_subcommand("record", "writes everything that is said on a domain into an MCAP file");
-  command->add_option("file", recorded->file, "e.g. today.mcap; must not be there yet")->required();
+      app.add_subcommand("record", "records all messages on a domain into an MCAP file");
+  command->add_option("file", recorded->file, "file to write, e.g. today.mcap; must not exist")
+      ->required();
   add_domain_option(*command, recorded->domain);
-  command->add_option("--seconds", recorded->seconds, "end by itself after so long")
+  command
+      ->add_option("--seconds", recorded->seconds,
+                   "duration of the recording [s] (default: until Ctrl-C)")
       ->check(kAboveZero);
   command->callback([recorded, &exit_code] { exit_code = record(*recorded); });
 
   auto replayed = std::make_shared<ReplayOptions>();
   command = app.add_subcommand(
       "replay",
-      "feeds what came in from outside, as it was recorded, into a system started without sim");
-  command->add_option("file", replayed->what.file, "an MCAP file of `handsel record`")->required();
+      "sends the recorded robot states and observations to a system that was started without sim");
+  command->add_option("file", replayed->what.file, "MCAP file written by `handsel record`")
+      ->required();
   add_domain_option(*command, replayed->domain);
-  command->add_option("--from", replayed->what.from, "[s] of the recording to begin at")
+  command
+      ->add_option("--from", replayed->what.from,
+                   "time of the recording at which the replay begins [s]")
       ->check(kNotNegative);
   command
-      ->add_option("--topics", replayed->what.topics,
-                   "these instead of robot state and observations, e.g. human_observation")
+      ->add_option(
+          "--topics", replayed->what.topics,
+          "topics to send instead of robot states and observations, e.g. human_observation")
       ->delimiter(',');
-  command->add_flag("--json", replayed->json, "print what was sent as JSON");
+  command->add_flag("--json", replayed->json, "print the numbers of sent messages as JSON");
   command->callback([replayed, &exit_code] { exit_code = replay(*replayed); });
 }
 

@@ -148,8 +148,9 @@ int run(RunOptions& options) {
   if (json_wanted(options.json)) std::printf("%s\n", report.dump().c_str());
   std::fflush(stdout);
   if (options.stay && !interrupted()) {
-    std::fprintf(stderr,
-                 "\nthe system stays up; `handsel task …` gives it more to do, Ctrl-C stops it\n");
+    std::fprintf(
+        stderr,
+        "\nthe system keeps running; `handsel task …` starts further tasks, Ctrl-C stops all\n");
     while (!interrupted()) system.wait(from_seconds(3600), [] { return false; });
   }
   return performer.succeeded() ? 0 : 1;
@@ -159,23 +160,28 @@ int run(RunOptions& options) {
 
 void add_run_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand(
-      "run", "starts every process, performs the scenario's tasks, reports, stops all");
+  CLI::App* command = app.add_subcommand("run",
+                                         "starts all processes, performs the scenario's tasks, "
+                                         "prints a report and stops all processes");
   add_system_options(*command, options->system);
   command->add_flag("--headless", options->headless, "open no browser");
-  command->add_flag("--stay", options->stay, "stay up after the tasks until Ctrl-C");
+  command->add_flag("--stay", options->stay,
+                    "keep the processes running after the tasks until Ctrl-C");
   command->add_flag("--json", options->json, "print the report as JSON");
   command->add_option(
       "--human", options->human,
-      "recording that the first person plays: .csv, .bvh, or a folder of the KTH handover set");
+      "recording that the first person replays: .csv, .bvh, or a folder of the KTH handover set");
   command->add_option("--report", options->report, "write the report to this file");
   command->add_option("--condition", options->condition,
-                      "of a study: in the report and, as a mark at begin and end, in the record");
+                      "condition of a study, written into the report and, as a mark at begin and "
+                      "end, into the recording");
   command->add_option("--participant", options->participant,
-                      "pseudonym, in the report and the record");
+                      "pseudonym of a participant, written into the report and the recording");
   command->add_option("--trial", options->trial,
-                      "number of the trial, in the report and the record");
-  command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")
+                      "number of the trial, written into the report and the recording");
+  command
+      ->add_option("--timeout", options->timeout,
+                   "max time for all tasks [s] (default: the scenario's)")
       ->check(kAboveZero);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

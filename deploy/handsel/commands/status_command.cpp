@@ -47,10 +47,11 @@ int show(const StatusOptions& options) {
 
 void add_status_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* command =
-      app.add_subcommand("status", "each process, the task, the trajectory, the mode and why");
+  CLI::App* command = app.add_subcommand(
+      "status",
+      "prints the state of each process, the task, the trajectory, and the mode with its causes");
   add_domain_option(*command, options->domain);
-  command->add_flag("--watch", options->watch, "again and again until Ctrl-C");
+  command->add_flag("--watch", options->watch, "print again twice a second until Ctrl-C");
   command->add_flag("--json", options->json, "print JSON");
   command->callback([options, &exit_code] { exit_code = show(*options); });
 }

@@ -15,10 +15,10 @@ void add_story_command(CLI::App& app, int& exit_code) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "story", "runs story files (start, task, disturb, kill, expect) over real processes");
+      "story", "performs story files (start, task, disturb, kill, expect) with real processes");
   add_domain_option(*command, options->story.domain);
   add_overlay_options(*command);
-  command->add_option("--seed", options->story.seed, "instead of the story's");
+  command->add_option("--seed", options->story.seed, "seed instead of the story's");
   command->add_option("files", options->files, "stories: names or files")->required();
   command->callback([options, &exit_code] {
     catch_interrupts();

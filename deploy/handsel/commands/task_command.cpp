@@ -222,17 +222,17 @@ int clear_person(const TaskOptions& options) {
 
 /// Adds the options of a target, one of which is required.
 void add_drive_options(CLI::App& command, TaskGoal& goal) {
-  CLI::Option_group* target = command.add_option_group("target", "where to");
-  target->add_option("--object", goal.object, "object, to where the arm reaches it");
-  target->add_option("--surface", goal.surface, "surface, to where the arm reaches it");
-  target->add_option("--to", goal.human, "person, to where the arm hands things over");
+  CLI::Option_group* target = command.add_option_group("target", "destination");
+  target->add_option("--object", goal.object, "object that the arm will reach from there");
+  target->add_option("--surface", goal.surface, "surface that the arm will reach from there");
+  target->add_option("--to", goal.human, "person to whom the arm can hand objects over from there");
   target
       ->add_option_function<std::vector<double>>(
           "--at",
           [&goal](const std::vector<double>& place) {
             goal.place = {place[0], place[1], place[2]};
           },
-          "x y [m] and heading [rad] of the platform in the world")
+          "x y [m] and heading [rad] of the platform in the world frame")
       ->expected(3);
   target->require_option(1);
 }
@@ -253,7 +253,7 @@ std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* w
 
 void add_task_commands(CLI::App& app, int& exit_code) {
   CLI::App* task = app.add_subcommand(
-      "task", "sends a goal to a running system and follows it to the end; Ctrl-C cancels it");
+      "task", "sends a task to a running system and waits for its end; Ctrl-C cancels the task");
   task->require_subcommand(1);
   const auto goal = [&](const char* word, const char* help, TaskKind kind) {
     auto options = add(*task, exit_code, word, help, kind, perform);
@@ -275,10 +275,11 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   auto receive =
       goal("receive", "takes an object from a person and puts it down", TaskKind::receive);
   receive.first->add_option("object", receive.second->goal.object,
-                            "object (default: what is offered)");
-  receive.first->add_option("--from", receive.second->goal.human,
-                            "person (default: who offers, or the nearest attentive one)");
-  onto(receive, "surface it is put on (default: where there is room)");
+                            "object (default: the offered one)");
+  receive.first->add_option(
+      "--from", receive.second->goal.human,
+      "person (default: a person who offers an object, else the nearest attentive one)");
+  onto(receive, "surface on which the object is put (default: any with a free place)");
   auto pick = goal("pick", "picks an object up", TaskKind::pick);
   object(pick);
   auto place = goal("place", "puts an object on a surface", TaskKind::place);
@@ -286,7 +287,7 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   surface(place);
   auto clear = goal("clear", "clears a surface", TaskKind::clear);
   surface(clear);
-  onto(clear, "surface the things are put on (default: where there is room)");
+  onto(clear, "surface on which the objects are put (default: any with a free place)");
   auto tidy =
       goal("tidy", "puts an object, or all objects of a model, on a surface", TaskKind::tidy);
   tidy.first->add_option("object", tidy.second->goal.object, "object, or the name of a model")
@@ -297,31 +298,35 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   auto lift = goal("lift", "lifts an object", TaskKind::lift);
   object(lift);
   auto go_to = goal("goto", "moves the arm to a named configuration", TaskKind::go_to);
-  go_to.first->add_option("place", go_to.second->goal.surface, "configuration: rest")->required();
-  auto drive = goal("drive", "drives the platform to a thing, a surface, a person or a place",
+  go_to.first->add_option("place", go_to.second->goal.surface, "name of the configuration: rest")
+      ->required();
+  auto drive = goal("drive", "drives the platform to an object, a surface, a person or a place",
                     TaskKind::drive);
   add_drive_options(*drive.first, drive.second->goal);
   add(*task, exit_code, "pause",
-      "stops the robot with limited jerk until a person resumes, whatever restarts",
+      "stops the robot with limited jerk until resume, also across restarts of processes",
       TaskKind::pause, send_request);
-  add(*task, exit_code, "resume", "ends a pause, and the wait after a stop of the robot",
+  add(*task, exit_code, "resume", "ends a pause, and the waiting after a stop of the robot",
       TaskKind::resume, send_request);
   add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, send_request);
-  add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault or stop",
-      TaskKind::acknowledge, send_request);
+  add(*task, exit_code, "acknowledge",
+      "states that a person has removed the cause of a fault or stop", TaskKind::acknowledge,
+      send_request);
 
-  auto clear_lost =
-      add(*task, exit_code, "clear-person", "says that a person SPARK has lost sight of is gone",
-          TaskKind::clear_person, clear_person);
+  auto clear_lost = add(*task, exit_code, "clear-person",
+                        "states that a person whom SPARK does not observe any more has left",
+                        TaskKind::clear_person, clear_person);
   task->get_subcommand("clear-person")
-      ->add_option("person", clear_lost->goal.human, "who; without, everybody lost");
+      ->add_option("person", clear_lost->goal.human,
+                   "person (default: all who are not observed any more)");
 
   auto speed =
-      add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, send_request);
+      add(app, exit_code, "speed", "sets the global speed override", TaskKind::speed, send_request);
   CLI::App* command = app.get_subcommand("speed");
   command
       ->add_option_function<double>(
-          "percent", [speed](double percent) { speed->goal.value = percent / 100.0; }, "[%]")
+          "percent", [speed](double percent) { speed->goal.value = percent / 100.0; },
+          "speed override [%]")
       ->required()
       ->check(CLI::Range(0.0, 100.0));
 }

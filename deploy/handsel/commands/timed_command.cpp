@@ -114,20 +114,24 @@ int run_timed(const TimedOptions& options) {
 
 void add_timed_command(CLI::App& trajectory, int& exit_code) {
   auto options = std::make_shared<TimedOptions>();
-  CLI::App* command = trajectory.add_subcommand(
-      "timed", "A path of a robot's joints to soft motion, slower where it costs people");
+  CLI::App* command =
+      trajectory.add_subcommand("timed",
+                                "computes the jerk-limited motion along a path of joints, slower "
+                                "where the human-aware costs are high");
   command->footer(
-      R"(A line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of the others, "obstacles"?,
-"human"?: {"joints": {name: [x, y, z]}, "gaze"?: [x, y, z], "velocity"?: [x, y, z]} in the
-root frame, "weights"?, "speed_scale"?, "title"?: of the picture's panel}.
-An answer: "speeds" of each path segment, [[up to this fraction of it, scale of the velocity limits,
-of the acceleration limits, of the jerk limits], ...]; nothing without a human.)");
+      R"(Input line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of other joints,
+"obstacles"?, "human"?: {"joints": {name: [x, y, z]}, "gaze"?: [x, y, z], "velocity"?: [x, y, z]}
+in the root frame, "weights"?, "speed_scale"?, "title"?: title of the panel in the picture}; ? marks
+fields that may be missing.
+Output line: "speeds" of each path segment: [[end of a part as fraction of the segment, scale of the
+velocity limits, of the acceleration limits, of the jerk limits], ...]; empty without a human.)");
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")
       ->required();
-  command->add_option("--group", options->group, "whose joints move")->capture_default_str();
-  command->add_option("--svg", options->svg,
-                      "file to draw speed and cost along the path to, a panel a line");
-  command->add_flag("--json")->description("JSON Lines (always so)");
+  command->add_option("--group", options->group, "group whose joints move")->capture_default_str();
+  command->add_option(
+      "--svg", options->svg,
+      "file for a picture of speed and cost along the path, one panel for each line");
+  command->add_flag("--json")->description("has no effect: the output is always JSON Lines");
   command->callback([options, &exit_code] { exit_code = run_timed(*options); });
 }
 

@@ -120,7 +120,7 @@ int rate(const TopicOptions& options) {
 }  // namespace
 
 void add_topic_commands(CLI::App& app, int& exit_code) {
-  CLI::App* topic = app.add_subcommand("topic", "looks at DDS traffic");
+  CLI::App* topic = app.add_subcommand("topic", "prints what is sent over DDS");
   topic->require_subcommand(1);
   const auto add = [&](const char* word, const char* help, int (*action)(const TopicOptions&),
                        bool named) {
@@ -131,15 +131,14 @@ void add_topic_commands(CLI::App& app, int& exit_code) {
       add_domain_option(*command, options->domain);
       command->add_option("topic", options->topic, "topic or message type, e.g. robot_state")
           ->required();
-      command->add_option("--seconds", options->seconds, "listen for so long")->check(kAboveZero);
-      if (action == echo)
-        command->add_option("--count", options->count, "stop after so many samples");
+      command->add_option("--seconds", options->seconds, "duration [s]")->check(kAboveZero);
+      if (action == echo) command->add_option("--count", options->count, "max number of samples");
     }
     command->callback([options, action, &exit_code] { exit_code = action(*options); });
   };
-  add("list", "every topic with its type, profile, rate, writers and readers", list, false);
-  add("echo", "prints each sample as a line of JSON", echo, true);
-  add("hz", "measures how often samples come", rate, true);
+  add("list", "prints each topic with its type, profile, rate, writers and readers", list, false);
+  add("echo", "prints each sample as one line of JSON", echo, true);
+  add("hz", "measures the rate of samples", rate, true);
 }
 
 }  // namespace handsel

@@ -14,14 +14,14 @@ namespace handsel {
 void add_up_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SystemOptions>();
   auto headless = std::make_shared<bool>(false);
-  CLI::App* up =
-      app.add_subcommand("up", "starts every process, restarts what dies, stops all on Ctrl-C");
+  CLI::App* up = app.add_subcommand(
+      "up", "starts all processes, restarts those that end, stops all on Ctrl-C");
   add_system_options(*up, *options);
   up->add_option("--only", options->only,
-                 "start these processes only, e.g. spark,bridge; the others run elsewhere")
+                 "start only these processes, e.g. spark,bridge; the others run elsewhere")
       ->delimiter(',');
   up->add_option("--without", options->without,
-                 "start all but these, e.g. sim when a robot's driver takes its place")
+                 "start all processes but these, e.g. sim if a robot's driver runs")
       ->delimiter(',');
   up->add_flag("--headless", *headless, "open no browser");
   up->callback([options, headless, &exit_code] {

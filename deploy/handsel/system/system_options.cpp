@@ -27,7 +27,7 @@ void add_domain_option(CLI::App& command, int& domain) {
         setenv("HANDSEL_NAME", name.c_str(), 1);
         system_name();
       },
-      "of this system, where several work in one domain (default: HANDSEL_NAME, else none)");
+      "name of this system, if several work in one domain (default: HANDSEL_NAME, else none)");
 }
 
 void add_system_options(CLI::App& command, SystemOptions& options) {
@@ -36,14 +36,13 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
                      "robot description: name or file (default: the scenario's)");
   command.add_option("--scenario", options.scenario, "scenario: name or file")
       ->capture_default_str();
-  command.add_option("--seed", options.seed, "of every random choice")->capture_default_str();
+  command.add_option("--seed", options.seed, "seed of all random choices")->capture_default_str();
   command
       .add_option("--port", options.web_port,
-                  "of the page; 0: any free one (default: as in the bridge's settings)")
+                  "port of the page; 0: any free one (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
-  command.add_option("--record", options.record,
-                     "write everything that is said into this MCAP file");
-  command.add_flag("--ros2", options.ros2, "with the connection to ROS 2 (docs/ros2.md)");
+  command.add_option("--record", options.record, "record all messages into this MCAP file");
+  command.add_flag("--ros2", options.ros2, "start the connection to ROS 2 too (docs/ros2.md)");
   add_help_hold_option(command);
   add_overlay_options(command);
 }
@@ -52,7 +51,7 @@ void add_overlay_options(CLI::App& command) {
   auto overlays = std::make_shared<Overlays>();
   command
       .add_option("--config", overlays->files,
-                  "file with settings of one or more components that go over the shipped ones; may "
+                  "file with settings of one or more components that replace the shipped ones; may "
                   "be repeated (docs/settings.md)")
       ->expected(1)
       ->take_all();

@@ -207,7 +207,7 @@ TEST(BadRecordings, are_refused_in_one_sentence_with_file_and_line) {
       {"bvh/truncated_hierarchy.bvh", "expected CHANNELS, found"},
       {"bvh/negative_frames.bvh", "Frames: must be a whole number of at least 1"},
       {"bvh/no_arm.bvh", "no joint for the body's l_elbow; known names are leftforearm"},
-      {"bvh/one_frame.bvh", "one frame is a posture, not a motion"},
+      {"bvh/one_frame.bvh", "one frame is no motion"},
       {"bvh/deep.bvh", "the hierarchy is deeper than 128"},
   };
   for (const auto& [file, text] : expected)

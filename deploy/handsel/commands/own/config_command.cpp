@@ -35,18 +35,21 @@ int diff(const std::vector<std::string>& components) {
 }  // namespace
 
 void add_config_commands(CLI::App& app, int& exit_code) {
-  CLI::App* config = app.add_subcommand("config", "Settings of the components and their sources");
+  CLI::App* config =
+      app.add_subcommand("config", "prints settings of the components and their sources");
   config->require_subcommand(1);
   const auto add = [&](const char* name, const char* text,
                        int (*run)(const std::vector<std::string>&)) {
     auto components = std::make_shared<std::vector<std::string>>();
     CLI::App* command = config->add_subcommand(name, text);
-    command->add_option("components", *components, "components (default: all), as spark");
+    command->add_option("components", *components,
+                        "names of components, e.g. spark (default: all)");
     add_overlay_options(*command);
     command->callback([components, run, &exit_code] { exit_code = run(*components); });
   };
-  add("show", "Every setting with its value and where the value comes from", show);
-  add("diff", "Settings that differ from the shipped ones; exit 1 when there are any", diff);
+  add("show", "prints each setting with its value and the source of the value", show);
+  add("diff", "prints settings that differ from the shipped ones; exit code 1: there are some",
+      diff);
 }
 
 }  // namespace handsel

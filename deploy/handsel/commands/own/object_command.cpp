@@ -117,36 +117,44 @@ int make(NewOptions& options) {
 }  // namespace
 
 void add_object_commands(CLI::App& app, int& exit_code) {
-  CLI::App* object = app.add_subcommand("object", "Objects of your own");
+  CLI::App* object = app.add_subcommand("object", "creates descriptions of your own objects");
   object->require_subcommand(1);
-  CLI::App* command = object->add_subcommand(
-      "new", "Makes an object of a mesh: a description beside the mesh that scenarios can name");
+  CLI::App* command = object->add_subcommand("new",
+                                             "creates a description of an object from a mesh, "
+                                             "beside the mesh; scenarios name the description");
   command->footer("example: handsel object new cup.stl --unit mm --mass 0.3 --hand sah");
   auto o = std::make_shared<NewOptions>();
-  command->add_option("mesh", o->mesh, "STL, OBJ, PLY or DAE")->required();
-  command->add_option("--name", o->name, "of the object (default: the file's)");
-  auto* unit = command->add_option("--unit", o->unit, "of the file (default: found by the size)")
+  command->add_option("mesh", o->mesh, "mesh file: STL, OBJ, PLY or DAE")->required();
+  command->add_option("--name", o->name, "name of the object (default: the file's)");
+  auto* unit = command
+                   ->add_option("--unit", o->unit,
+                                "unit of length of the file (default: inferred from the size)")
                    ->check(CLI::IsMember({"mm", "cm", "in", "m"}));
-  command->add_option("--scale", o->wishes.scale, "metres a unit of the file")
+  command->add_option("--scale", o->wishes.scale, "length of one unit of the file [m]")
       ->check(kAboveZero)
       ->excludes(unit);
-  command->add_option("--up", o->wishes.up, "axis of the file that is up when the object stands")
+  command
+      ->add_option("--up", o->wishes.up, "axis of the file that points up when the object stands")
       ->check(CLI::IsMember({"auto", "x", "y", "z", "-x", "-y", "-z"}))
       ->capture_default_str();
-  auto* density = command->add_option("--density", o->wishes.density, "of the solid [kg/m^3]")
-                      ->check(kAboveZero)
-                      ->capture_default_str();
-  command->add_option("--mass", o->wishes.mass, "[kg]")->check(kAboveZero)->excludes(density);
-  command->add_option("--friction", o->wishes.friction, "Coulomb coefficient")
+  auto* density =
+      command->add_option("--density", o->wishes.density, "density of the solid [kg/m^3]")
+          ->check(kAboveZero)
+          ->capture_default_str();
+  command->add_option("--mass", o->wishes.mass, "mass [kg]")->check(kAboveZero)->excludes(density);
+  command->add_option("--friction", o->wishes.friction, "coefficient of Coulomb friction")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
-  command->add_flag("--full", o->wishes.full, "a filled container: it is carried upright");
-  command->add_option("--hand", o->hands, "also count the grasps of this hand; may be repeated")
+  command->add_flag("--full", o->wishes.full,
+                    "the object is a filled container and is carried upright");
+  command
+      ->add_option("--hand", o->hands,
+                   "also print the number of grasps of this hand; may be repeated")
       ->expected(1)
       ->take_all();
   command->add_option("--out", o->out,
                       "folder or file of the description (default: beside the mesh)");
-  command->add_flag("--replace", o->replace, "write over a description that is there already");
+  command->add_flag("--replace", o->replace, "replace an existing description");
   command->callback([o, &exit_code] { exit_code = make(*o); });
 }
 
