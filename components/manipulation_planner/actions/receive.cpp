@@ -226,9 +226,11 @@ Routine<OfferGrasps> choose_arm_and_grasps(Parts& parts, const Offer& offer,
 }
 
 /// Waits for another offer after no grasp of this one is reachable: the giver often offers
-/// elsewhere, nearer, or farther out where there is space.
+/// elsewhere, nearer, or farther out where there is space. `p_uncleared`: position of an object
+/// from which the arm cannot come farther; nullopt: none.
 Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vector3& p_asked,
-                                   const Outcome& why, Outcome last) {
+                                   const Outcome& why, Outcome last,
+                                   std::optional<Vector3>& p_uncleared) {
   const auto has_moved = [&] {
     const SceneObject* held = parts.now.object(offer.object);
     return held == nullptr ||
@@ -236,8 +238,13 @@ Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vecto
   };
   if (has_moved()) co_return last;
   if (why.reason != last.reason) parts.refuse("offer", why.reason);
-  if (parts.area.is_occupied(offer.giver))
+  const bool can_clear =
+      !p_uncleared || (p_asked - *p_uncleared).norm() > parts.settings.offer_moved;
+  if (can_clear && parts.area.is_occupied(offer.giver)) {
     co_await clear_offer_area(parts, offer.giver, ClearUntil::clear_offer);
+    p_uncleared.reset();
+    if (parts.area.is_occupied(offer.giver)) p_uncleared = p_asked;
+  }
   co_await parts.waiting.until(has_moved, parts.settings.offer_retry);
   co_return why;
 }
@@ -264,6 +271,7 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
   std::set<GraspOfArm> failed;
   TimePoint deadline = parts.now.time() + from_seconds(timeout);
   std::optional<TimePoint> patient_until;
+  std::optional<Vector3> p_uncleared;
   for (std::uint32_t attempt = 0; attempt < parts.settings.receive_attempts;) {
     std::optional<Offer> offer = co_await await_offer(parts, giver, deadline);
     if (!offer) break;
@@ -279,13 +287,15 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
     parts.action.exchange_point = p_asked;
     const OfferGrasps found = co_await choose_arm_and_grasps(parts, *offer, onto, p_asked);
     if (!found.list.outcome.good || found.list.grasps.empty()) {
-      last = co_await await_other_offer(parts, *offer, p_asked, found.list.outcome, last);
+      last =
+          co_await await_other_offer(parts, *offer, p_asked, found.list.outcome, last, p_uncleared);
       continue;
     }
     const bool all_sure_failed = !found.sure.empty() && have_failed(parts, found.sure, failed);
     const bool is_patient = parts.now.time() < *patient_until && !all_sure_failed;
     if (is_patient && (!found.serves || found.sure.empty())) {
-      last = co_await await_other_offer(parts, *offer, p_asked, none_is_sure(*offer, found), last);
+      last = co_await await_other_offer(parts, *offer, p_asked, none_is_sure(*offer, found), last,
+                                        p_uncleared);
       continue;
     }
     ++attempt;

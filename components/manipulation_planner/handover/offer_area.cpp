@@ -35,13 +35,17 @@ Vector3 offer_toward(const Person& person, Side side, const Vector3& p_hand, dou
 double OfferArea::clearance(const Person& person, const Vector& q) const {
   double room = std::numeric_limits<double>::infinity();
   const Vector3 p_hand = now_.T_world_base() * arm_.robot().link_pose(q, arm_.palm()).translation();
-  for (const Side side : {Side::left, Side::right}) {
-    const Vector3 p_offer = offer_toward(person, side, p_hand, settings_.offer_max_angle);
+  const auto leave_room_at = [&](const Vector3& p_offer) {
     const double hand = horizontal(p_hand - p_offer).norm() - settings_.offer_area_hand;
     const double arm =
         retreat_.distance(q, now_.T_world_base(), p_offer) - settings_.offer_area_arm;
     room = std::min({room, hand, arm});
-  }
+  };
+  for (const Side side : {Side::left, Side::right})
+    leave_room_at(offer_toward(person, side, p_hand, settings_.offer_max_angle));
+  for (const SceneObject& object : now_.scene().objects)
+    if (object.holder == Holder::human && object.holder_id == person.id)
+      leave_room_at(object.T_world_object.translation());
   return room;
 }
 

@@ -20,7 +20,8 @@ class OfferArea {
       : settings_(settings), arm_(arm), retreat_(retreat), now_(now) {}
 
   /// Returns by how much hand and arm, in a configuration of all axes, are farther than they must
-  /// be from where the person would comfortably offer something [m].
+  /// be from where the person would comfortably offer something, and from what the person holds
+  /// [m].
   double clearance(const Person& person, const Vector& q) const;
   /// Returns whether a configuration leaves the person too little space for an offer.
   bool is_occupied(const Person& person, const Vector& q) const;

@@ -64,5 +64,25 @@ TEST_F(OfferAreaTest, beside_the_hand_at_rest_the_area_of_the_person_becomes_cle
   }
 }
 
+TEST_F(OfferAreaTest, an_object_in_a_persons_hand_occupies_the_area_where_it_is) {
+  const Vector3 p_hand = arm_.T_world_tool().translation();
+  const Person person = test::person_at({p_hand.x() + 1.6, 0, 0}).people.front();
+  ASSERT_FALSE(area_.is_occupied(person, rest_));
+  const auto offered_at = [&](double before, Holder holder) {
+    Scene scene = now_.scene();
+    SceneObject object;
+    object.id = "mug";
+    object.holder = holder;
+    object.holder_id = person.id;
+    object.T_world_object.translation() = p_hand + Vector3(before, 0, 0);
+    scene.objects = {object};
+    now_.on(scene);
+    return area_.is_occupied(person, rest_);
+  };
+  EXPECT_TRUE(offered_at(0.44, Holder::human));
+  EXPECT_FALSE(offered_at(0.44, Holder::surface));
+  EXPECT_FALSE(offered_at(0.7, Holder::human));
+}
+
 }  // namespace
 }  // namespace handsel::manipulation_planner::offer_area_test
