@@ -420,8 +420,10 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   overload_time_ =
       view.grip_force.norm() > manners.person_max_tolerated_force ? overload_time_ + dt : 0;
   if (overload_time_ > manners.taking_carry_overload_time) return give_up();
-  // The force is limited, and the hand yields where the object is caught.
-  const double rate = manners.taking_max_pull_ratio - view.grip_force.norm() / settings_.pull;
+  // The force is limited, and the hand yields where the object or the hand itself is caught.
+  const Vector3 direction = (carry_position() - from_).stableNormalized();
+  const double force = std::max(view.grip_force.norm(), view.arm_force.dot(direction));
+  const double rate = manners.taking_max_pull_ratio - force / settings_.pull;
   progress_ = std::max(
       0.0, progress_ + dt / duration_ * std::clamp(rate, -manners.taking_max_yield_rate, 1.0));
   const double s = min_jerk(progress_);

@@ -93,6 +93,8 @@ struct PersonView {
   std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
   bool grip_broke{};                    ///< the object slipped out of this person's hand
   Vector3 grip_force{Vector3::Zero()};  ///< force of this person's hand on the object, world [N]
+  /// Force of the arm on the hand beyond the weight of what the hand holds, world [N].
+  Vector3 arm_force{Vector3::Zero()};
   const std::vector<HandPart>* robot{nullptr};  ///< parts of the robot, world; nullptr: unobserved
   /// Distance of the robot's nearest finger from the surface of `object` [m].
   double finger_distance{std::numeric_limits<double>::infinity()};
@@ -237,6 +239,8 @@ class PersonModel {
   std::optional<Vector3> choose_place_to_give(const ObjectModel&, const Eigen::Quaterniond& turn);
   void hold_to_give_back(const PersonView&);
   void hold_otherwise(const PersonView&);
+  void repeat_offer(const PersonView&);
+  bool is_robot_hand_far(const PersonView&) const;
   void remember_hold();
   bool gives_from_place() const;
   double lean_to_reach(const Vector3& p_hand) const;

@@ -112,32 +112,7 @@ void PersonModel::offer(double dt, const PersonView& view) {
       view.object != nullptr &&
       (view.robot_hand - object_centre(view)).norm() < manners.giving_withdraw_distance;
   if (is_hand_near || phase_time() < duration_) ignored_time_ = 0;
-  // Repeats an ignored offer, by another hold and nearer to the robot's hand.
-  if ((ignored_time_ += dt) > manners.giving_max_ignored_time) {
-    ignored_time_ = 0;
-    settings_.moving = {};
-    from_ = hand_target_;
-    home_ = feet_;
-    hold_otherwise(view);
-    const Vector3 step =
-        manners.giving_step_nearer *
-        (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
-    p_shoulder_offer_ = offer_from_shoulder(view);
-    const Vector3 nearer = offer_from_shoulder(view, step);
-    // A step that only bends the arm is not made.
-    const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - manners.giving_max_shortening;
-    const bool steps_nearer =
-        has_room && !settings_.behaviour.seated && steps_nearer_ < manners.giving_max_steps_nearer;
-    if (steps_nearer) p_shoulder_offer_ = nearer;
-    if (steps_nearer) {
-      ++steps_nearer_;
-      settings_.behaviour.sidestep = step;
-      home_aside_ = aside_;
-      sidestep_time_ = 0;
-      settings_.behaviour.sidestep_at = behaviour_time();
-    }
-    enter(PersonPhase::offering);
-  }
+  if ((ignored_time_ += dt) > manners.giving_max_ignored_time) return repeat_offer(view);
   if (is_to_offer() && !(is_hand_near && settings_.behaviour.withdraws && !first_attempt_over_))
     return;
   first_attempt_over_ = true;
@@ -145,6 +120,40 @@ void PersonModel::offer(double dt, const PersonView& view) {
   from_ = hand_target_;
   duration_ = manners.giving_second_offer_delay;
   enter(PersonPhase::keeping);
+}
+
+/// Repeats an ignored offer: by another hold and nearer to the robot's hand. Draws the object back
+/// first if the robot's hand leaves no room to hold the object anew.
+void PersonModel::repeat_offer(const PersonView& view) {
+  const PersonManners& manners = settings_.manners;
+  ignored_time_ = 0;
+  settings_.moving = {};
+  from_ = hand_target_;
+  home_ = feet_;
+  if (gives_from_place() && !is_robot_hand_far(view)) {
+    remember_hold();
+    duration_ = manners.giving_second_offer_delay;
+    return enter(PersonPhase::keeping);
+  }
+  hold_otherwise(view);
+  const Vector3 step =
+      manners.giving_step_nearer *
+      (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+  p_shoulder_offer_ = offer_from_shoulder(view);
+  const Vector3 nearer = offer_from_shoulder(view, step);
+  // A step that only bends the arm is not made.
+  const bool has_room = nearer.norm() > p_shoulder_offer_.norm() - manners.giving_max_shortening;
+  const bool steps_nearer =
+      has_room && !settings_.behaviour.seated && steps_nearer_ < manners.giving_max_steps_nearer;
+  if (steps_nearer) p_shoulder_offer_ = nearer;
+  if (steps_nearer) {
+    ++steps_nearer_;
+    settings_.behaviour.sidestep = step;
+    home_aside_ = aside_;
+    sidestep_time_ = 0;
+    settings_.behaviour.sidestep_at = behaviour_time();
+  }
+  enter(PersonPhase::offering);
 }
 
 /// Turns the hand back to the neutral configuration of the wrist.

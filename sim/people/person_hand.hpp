@@ -36,6 +36,8 @@ class PersonHand {
 
   btRigidBody& body() { return *body_; }  ///< body, for its owner and contact flags
   BodyState state() const;                ///< state after the last physics step, world
+  /// Returns the last force of the arm on the hand, world [N].
+  const Vector3& arm_force() const { return spring_.wrench().force; }
   /// Moves the hand to a pose in no time, with these velocities.
   void place(const BodyState&);
   /// Gives the hand this configuration about its present position; nullopt: a fist.

@@ -94,14 +94,19 @@ std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
   return make_pose(*p_hand_object, turn);
 }
 
-/// Chooses a partner's grasp of the requested object anew while the robot's hand is far: none in
-/// which the object was offered in vain, while the hand has another place.
+/// Returns whether the robot's hand is so far from the object that a person holds it anew.
+bool PersonModel::is_robot_hand_far(const PersonView& view) const {
+  return view.object != nullptr && (view.robot_hand - object_centre(view)).norm() >
+                                       settings_.manners.giving_min_hand_distance;
+}
+
+/// Chooses the grasp of an object that a partner gives back, or that was offered in vain, anew
+/// while the robot's hand is far: none in which the object was offered in vain, while the hand has
+/// another place.
 void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_.reset();
-  const bool is_far =
-      view.object != nullptr && !view.held_by_robot &&
-      (view.robot_hand - object_centre(view)).norm() > settings_.manners.giving_min_hand_distance;
-  if (settings_.kind != PersonKind::partner || !taking_.has_place() || !is_far) return;
+  const bool gives_anew = settings_.kind == PersonKind::partner || !held_in_vain_.empty();
+  if (!gives_anew || !taking_.has_place() || view.held_by_robot || !is_robot_hand_far(view)) return;
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   p_hand_object_to_give_ = choose_place_to_give(*view.object, turn);
   if (p_hand_object_to_give_ || held_in_vain_.empty()) return;
@@ -117,9 +122,7 @@ void PersonModel::remember_hold() {
 /// Changes the grasp of an object that the robot has not taken; keeps it where the hand has
 /// no other place.
 void PersonModel::hold_otherwise(const PersonView& view) {
-  const bool is_far = view.object != nullptr && (view.robot_hand - object_centre(view)).norm() >
-                                                    settings_.manners.giving_min_hand_distance;
-  if (!gives_from_place() || !is_far) return;
+  if (!gives_from_place() || !is_robot_hand_far(view)) return;
   remember_hold();
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   const auto p_hand_object = choose_place_to_give(*view.object, turn);

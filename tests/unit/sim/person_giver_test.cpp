@@ -297,6 +297,45 @@ TEST(SimPerson, partner_who_offered_in_vain_holds_the_object_otherwise_when_aske
   EXPECT_TRUE(moved > 0.05 || cosine < 0.7) << moved << " m, " << cosine;
 }
 
+TEST(SimPerson, giver_whose_offer_is_ignored_beside_the_robots_hand_draws_it_back_to_hold_it_anew) {
+  PersonModel person(giver());
+  const auto first_hold =
+      person.hold_from_beginning(*library()("mug"), Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(first_hold);
+  Pose T_hand_object = *first_hold;
+  Vector3 robot_hand(0.3, 0, 1.0);
+  const auto live_with_mug = [&](double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds * 1000); ++i) {
+      if (person.p_hand_object_to_give())
+        T_hand_object.translation() = *person.p_hand_object_to_give();
+      PersonView view = holding(person, robot_hand, false);
+      view.T_world_object = person.hand().T_world_body * T_hand_object;
+      view.p_hand_object = T_hand_object.translation();
+      person.step(0.001, view);
+    }
+  };
+  const auto palm = [&] {
+    const Pose T_world_palm = make_pose(person.hand().T_world_body.translation(),
+                                        person.hand_configuration()->R_world_hand);
+    return Pose((person.hand().T_world_body * T_hand_object).inverse() * T_world_palm);
+  };
+  live_with_mug(4);
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  const Pose first = palm();
+  robot_hand = person.hand().T_world_body * T_hand_object.translation() - Vector3(0.44, 0, 0);
+  bool drawn_back = false;
+  for (int i = 0; i < 140; ++i) {
+    live_with_mug(0.1);
+    drawn_back = drawn_back || person.phase() == PersonPhase::keeping;
+  }
+  EXPECT_TRUE(drawn_back);
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  const Pose second = palm();
+  const double moved = (second.translation() - first.translation()).norm();
+  const double cosine = second.linear().col(0).dot(first.linear().col(0));
+  EXPECT_TRUE(moved > 0.05 || cosine < 0.7) << moved << " m, " << cosine;
+}
+
 TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
   PersonModel person(giver());
   live(person, 3, {1.0, -0.2, 1.2});

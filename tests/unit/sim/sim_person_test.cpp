@@ -232,6 +232,19 @@ TEST(SimPerson, who_withdraws_gives_way_where_the_object_is_caught) {
   EXPECT_EQ(person.phase(), PersonPhase::keeping);
 }
 
+TEST(SimPerson, who_withdraws_gives_way_where_the_hand_itself_is_caught) {
+  PersonView view = offer({0.95, 0.05, 1.05});
+  PersonModel person = withdrawing_person(taker(), view);
+  step_for(person, view, 0.5);
+  const Vector3 caught = person.hand().T_world_body.translation();
+  view.arm_force = Vector3(25, 0, 0);
+  step_for(person, view, 0.25);
+  EXPECT_LT(person.hand().T_world_body.translation().x(), caught.x() - 0.01);
+  view.arm_force = Vector3(-25, 0, 0);  // pressed on something that the hand moves away from
+  step_for(person, view, 2);
+  EXPECT_EQ(person.phase(), PersonPhase::keeping);
+}
+
 TEST(SimPerson, who_withdraws_something_long_does_not_press_it_on_the_table) {
   PersonView view = offer({0.95, 0.05, 1.25});
   ObjectModel tall = *view.object;
