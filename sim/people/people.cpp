@@ -214,8 +214,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.held_firmly = view.held_by_robot && robot_hand.holds_firmly;
     view.grip_force = person.grip.wrench().force;
     view.arm_force = person.hand().arm_force();
-    if (person.grip.holding())
-      view.arm_force += object.model().mass * from_bt(world_.getGravity());
+    if (person.grip.holding()) view.arm_force += object.model().mass * from_bt(world_.getGravity());
     view.p_hand_object =
         person.hand().state().T_world_body.inverse() * view.T_world_object.translation();
     if (person.model.needs_finger_distance())

@@ -103,8 +103,7 @@ double max_displacement(const BodyPoints& from, const BodyPoints& to) {
 
 Recording parse_bvh_recording(std::string_view text, const std::string& name) {
   const Bvh bvh = parse_bvh(text, name);
-  if (bvh.frames() < 2)
-    fail_at(name, 1, "one frame is no motion: needs at least two frames");
+  if (bvh.frames() < 2) fail_at(name, 1, "one frame is no motion: needs at least two frames");
   const BvhMap map = map_joints(bvh, name);
   std::vector<Vector3> points;
   bvh.positions(0, points);
