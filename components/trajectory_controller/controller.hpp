@@ -91,7 +91,7 @@ struct ControllerSettings {
   double look_ahead{0.15};                ///< the guard also checks the path this much later [s]
   double look_far_ahead{0.45};            ///< and this much later: about the time of a stop [s]
   double ahead_min_factor{0.6};           ///< min speed factor assumed until then
-  double back_min_factor{0.02};           ///< min one back along the path for which it looks back
+  double back_min_factor{0.02};           ///< min one backward at which the path behind is checked
   std::uint32_t rest_check_cycles{50};    ///< between two checks of the guard at rest
   std::uint32_t blind_check_cycles{10};   ///< between two checks at rest that the arm is observed
   std::uint32_t finger_check_cycles{10};  ///< between two evaluations of the speed of the fingers
