@@ -35,6 +35,7 @@ void SimWorld::Impl::update_robot_hands() {
     seen.palm = tool_state(hands[i]);
     seen.gripped = hands[i].gripped;
     seen.holds_firmly = holds_firmly(hands[i]);
+    seen.pressed = hands[i].pressed;
     seen.fingers.clear();
     for (std::size_t k = 0; k < links.size(); ++k) {
       if (hands[i].grasp.chain_of(robot->body_of(links[k].link)) >= 1)
@@ -101,12 +102,13 @@ void SimWorld::Impl::update_grasp(Hand& hand) {
       const double pressure = hand.grasp.pressure(touches, i);
       if (pressure > max_pressure) max_pressure = pressure, candidate = i;
     }
+    hand.pressed = max_pressure > settings.touch_force ? candidate : -1;
   }
   const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero())
                                        : objects[candidate].state().T_world_body.translation();
   const bool held = hand.grasp.update(touches, candidate, centre, settings.step);
   if (hand.gripped < 0 && held) {
-    hand.gripped = candidate;
+    hand.gripped = hand.pressed = candidate;
     if (helped(candidate))
       hand.grip.hold(tool_state(hand).T_world_body.inverse() *
                      objects[candidate].state().T_world_body);

@@ -56,6 +56,7 @@ struct SimWorld::Impl {
     Grip grip;                       ///< grasp constraint
     HandMeasure measured;            ///< wrist wrench, payload and external torque
     int gripped{-1};                 ///< index of the held object; -1: none
+    int pressed{-1};                 ///< index of the object that the hand presses on; -1: none
   };
 
   Impl(const RobotModel& robot_model, const ObjectLibrary& library,

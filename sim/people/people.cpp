@@ -212,6 +212,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.object_velocity = object.state().velocity;
     view.held_by_robot = gripped == person.object;
     view.held_firmly = view.held_by_robot && robot_hand.holds_firmly;
+    view.pressed_by_robot = robot_hand.pressed == person.object;
     view.grip_force = person.grip.wrench().force;
     view.arm_force = person.hand().arm_force();
     if (person.grip.holding()) view.arm_force += object.model().mass * from_bt(world_.getGravity());

@@ -30,6 +30,7 @@ struct RobotHandState {
   std::vector<HandPart> fingers;  ///< parts of the finger links, world
   int gripped{-1};                ///< index of the held object; -1: none
   bool holds_firmly{};            ///< whether all hands on that object can bear its weight
+  int pressed{-1};                ///< index of the object that the hand presses on; -1: none
 };
 
 class People {

@@ -114,7 +114,7 @@ void PersonModel::step(double dt, const PersonView& view) {
       feet_ = home_ - distance_from_place(settings_.steps_in, settings_.approach_from, clock_,
                                           settings_.manners.person_max_step_acceleration) *
                           forward();
-    step_aside(dt);
+    step_aside(dt, view);
     update_hand(dt, view);
     if (!followed_) turn_gaze(gaze_target(view), dt);
   }

@@ -87,8 +87,9 @@ struct PersonView {
   Pose T_world_object{Pose::Identity()};  ///< pose of `object`
   /// Velocity of the object's centre of mass, world [m/s].
   Vector3 object_velocity{Vector3::Zero()};
-  bool held_by_robot{};  ///< whether a hand of the robot holds `object`
-  bool held_firmly{};    ///< whether the robot's grasp alone bears the object's weight
+  bool held_by_robot{};     ///< whether a hand of the robot holds `object`
+  bool held_firmly{};       ///< whether the robot's grasp alone bears the object's weight
+  bool pressed_by_robot{};  ///< whether a hand of the robot presses on `object`
   /// Left, right: displacement of the hand from its commanded position by forces, world [m].
   std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
   bool grip_broke{};                    ///< the object slipped out of this person's hand
@@ -222,7 +223,7 @@ class PersonModel {
   void offer(double dt, const PersonView&);
   void turn_hand_back(double dt);
   void offer_in_motion(double dt, const PersonView&);
-  void step_aside(double dt);
+  void step_aside(double dt, const PersonView&);
   double reach_fraction() const;
   double reach_duration() const;
   Vector3 gaze_target(const PersonView&) const;

@@ -229,12 +229,13 @@ void PersonModel::raise_hand_in_advance(double dt, const PersonView& view) {
   hand_target_ = rest + min_jerk(raise_progress_) * (raised - rest);
 }
 
-/// Moves the body aside, except while person and robot both hold the object or a hand reaches.
-void PersonModel::step_aside(double dt) {
+/// Moves the body aside, except while the robot's hand presses on the object that the person
+/// offers, or a hand reaches.
+void PersonModel::step_aside(double dt, const PersonView& view) {
   const double length = settings_.behaviour.sidestep.norm();
   if (length <= 0) return;
   const bool free = phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping ||
-                    (phase_ == PersonPhase::offering && exit_time_ <= 0);
+                    (phase_ == PersonPhase::offering && !view.pressed_by_robot && exit_time_ <= 0);
   const double duration = step_time(length, settings_.manners);
   const bool under_way = sidestep_time_ > 0 && sidestep_time_ < duration;
   if (behaviour_time() < settings_.behaviour.sidestep_at || !(free || under_way)) return;

@@ -336,6 +336,28 @@ TEST(SimPerson, giver_whose_offer_is_ignored_beside_the_robots_hand_draws_it_bac
   EXPECT_TRUE(moved > 0.05 || cosine < 0.7) << moved << " m, " << cosine;
 }
 
+TEST(SimPerson, giver_does_not_step_aside_while_the_robots_hand_presses_on_the_object) {
+  PersonSettings settings = giver();
+  settings.behaviour.sidestep = Vector3(0, 0.2, 0);
+  settings.behaviour.sidestep_at = 3;
+  PersonModel person(settings);
+  const auto torso = [&] { return person.body().joints[joint("torso")].position.y(); };
+  const double before = torso();
+  const auto live_pressed = [&](double seconds, bool pressed) {
+    for (int i = 0; i < static_cast<int>(seconds * 1000); ++i) {
+      PersonView view = holding(person, {0.4, 0.3, 1.0}, false);
+      view.pressed_by_robot = pressed;
+      person.step(0.001, view);
+    }
+  };
+  live_pressed(2, false);
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  live_pressed(3, true);
+  EXPECT_NEAR(torso(), before, 0.01);
+  live_pressed(2, false);
+  EXPECT_NEAR(torso(), before + 0.2, 0.02);
+}
+
 TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
   PersonModel person(giver());
   live(person, 3, {1.0, -0.2, 1.2});
