@@ -7,7 +7,7 @@ import { kNoGl, launchBrowser, Program, settled, startSystem, until } from "./st
 const kDomain = process.env.HANDSEL_TEST_DOMAIN ?? "39";
 const kSize = { width: 1000, height: 620 };  // [px] without a GPU a small picture is drawn more often
 const kPatience = 60_000;                    // [ms] for a condition to come true
-const kSpeed = 0.3;                          // speed override while a hand is dragged
+const kSpeed = 0.15;                         // speed override while a hand is dragged
 const kSeparation = 1 << 7;                  // cause of ExecutionStatus
 const kOfPage = 2;                           // low byte of the id of a task that the page has given
 
@@ -129,11 +129,11 @@ test("a hand dragged to the arm stops it, dragged away the arm goes on", async (
   await settled(page);
   await page.selectOption("#task-kind", "give");
   await page.selectOption("#task-object", "mug");
-  // Slowly, so that a slow browser finds the arm on its path.
-  assert.equal((await post({ Authorization: `Bearer ${token}` }, { task: "speed", value: kSpeed })).status, 202);
   await page.click("#task-start");
   const moving = () => Math.abs(active.newest?.speed_factor ?? 0) > kSpeed / 2;
   await onDds(() => action.newest?.phase === "carry", "nothing is carried");
+  // Slowly from here, so that a slow browser finds the arm on its path.
+  assert.equal((await post({ Authorization: `Bearer ${token}` }, { task: "speed", value: kSpeed })).status, 202);
   await onDds(moving, "the arm does not carry");
   const rest = joint("l_hand");
   const from = await drawn("left");
