@@ -75,7 +75,7 @@ class Fields {
     if (!wanted(field, use)) return {};
     const Json& value = json_.at(field);
     if (!value.is_string()) throw Refused(quoted(field) + " must be a text");
-    const std::string text = value;
+    std::string text = value;
     const bool printable =
         std::all_of(text.begin(), text.end(), [](unsigned char c) { return c > 0x20 && c < 0x7f; });
     if (text.size() > kMaxName || !printable || (text.empty() && use == Use::must))
