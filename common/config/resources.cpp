@@ -48,7 +48,7 @@ fs::path resource_root() {
 
 fs::path resource(const std::string& relative) {
   fs::path file = resource_root() / relative;
-  if (!fs::exists(file)) throw MissingError("no file " + file.string());
+  if (!fs::exists(file)) throw MissingError("file " + file.string() + " does not exist");
   return file;
 }
 

@@ -17,7 +17,8 @@ bool is_there(const fs::path& path) {
 
 std::string read_text_file(const fs::path& file, std::uintmax_t max_bytes) {
   constexpr std::size_t kMaxShown = 400;  // max length of a path in messages [bytes]
-  if (!is_there(file)) throw MissingError("no file " + printable(file.string(), kMaxShown));
+  if (!is_there(file))
+    throw MissingError("file " + printable(file.string(), kMaxShown) + " does not exist");
   std::error_code error;
   if (!fs::is_regular_file(file, error)) throw ConfigError(file.string() + " is not a file");
   const std::uintmax_t size = fs::file_size(file, error);

@@ -83,7 +83,7 @@ void check_indices(const aiScene& scene, const std::filesystem::path& file) {
 
 std::string read(const std::filesystem::path& file) {
   namespace fs = std::filesystem;
-  if (!fs::exists(file)) throw MissingError("no mesh " + file.string());
+  if (!fs::exists(file)) throw MissingError("mesh " + file.string() + " does not exist");
   if (!fs::is_regular_file(file)) throw ConfigError(file.string() + " is not a file");
   if (fs::file_size(file) > mesh::kMaxBytes)
     throw ConfigError(file.string() + ": larger than 64 MB, the maximum of a mesh");

@@ -170,8 +170,8 @@ fs::path find_mesh(const fs::path& urdf, const std::string& uri,
   for (const auto& folder : package_folders(packages))
     for (const auto& tail : tails)
       if (fs::is_regular_file(folder / tail, error)) return fs::weakly_canonical(folder / tail);
-  throw MissingError(locate(urdf, uri) + ": no mesh " + uri +
-                     " in the folder of the URDF, above it, or in the packages' folders");
+  throw MissingError(locate(urdf, uri) + ": mesh " + uri +
+                     " is neither in the folder of the URDF, nor above it, nor in a package");
 }
 
 class ShapeReader {

@@ -162,7 +162,7 @@ TEST_F(OwnObject, that_cannot_be_is_refused_in_one_sentence) {
   EXPECT_THAT(refusal("open.stl"), HasSubstr("open.txtpb is there already; --replace"));
   EXPECT_EQ(handsel("object new open.stl --replace").exit_code, 0);
 
-  EXPECT_THAT(refusal("nothing.stl", 3), HasSubstr("no mesh nothing.stl"));
+  EXPECT_THAT(refusal("nothing.stl", 3), HasSubstr("mesh nothing.stl does not exist"));
   folder.write("empty.stl", "solid nothing\nendsolid nothing\n");
   EXPECT_THAT(refusal("empty.stl"), HasSubstr("empty.stl"));
   folder.write("flat.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0.1 0.1 0\nf 1 2 3\nf 2 4 3\n");

@@ -143,7 +143,7 @@ TEST_F(Overlay, what_is_wrong_is_refused_with_source_key_and_cure) {
               HasSubstr("is a list without names; give the whole list in a file"));
   EXPECT_THAT(refused("attention.behaviours=1"), HasSubstr("has keys of its own: name, "));
   EXPECT_THAT(message_of<MissingError>([] { use_overlays({.files = {"/nowhere.txtpb"}}); }),
-              HasSubstr("no file /nowhere.txtpb"));
+              HasSubstr("file /nowhere.txtpb does not exist"));
 }
 
 TEST_F(Overlay, values_that_disagree_are_refused_with_the_place_in_the_overlay) {
