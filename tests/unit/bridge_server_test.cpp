@@ -214,7 +214,7 @@ TEST_F(BridgeServer, takes_commands_with_the_token_only_and_counts_the_refusals)
               StartsWith("HTTP/1.1 202"));
   EXPECT_THAT(command(give, ""), StartsWith("HTTP/1.1 401"));
   EXPECT_THAT(command(give, "0123456789abcdef0123456789abcdee"), StartsWith("HTTP/1.1 401"));
-  // Who may only look from elsewhere may not command.
+  // Programs from elsewhere that may only read may not command.
   EXPECT_THAT(command(give, kToken, "Origin: https://example.org\r\n"), StartsWith("HTTP/1.1 403"));
   EXPECT_THAT(command("{}"), testing::AllOf(StartsWith("HTTP/1.1 400"), HasSubstr("either")));
   EXPECT_THAT(command(std::string(5000, ' ') + give), StartsWith("HTTP/1.1 413"));

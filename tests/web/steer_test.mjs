@@ -125,7 +125,7 @@ test("a refusal is shown", async () => {
   assert.equal(answer.text, 'the field "object" is missing\n');
 });
 
-test("a hand dragged to the arm stops it, dragged away the arm goes on", async () => {
+test("a hand dragged to the arm stops it, dragged away the arm continues", async () => {
   await settled(page);
   await page.selectOption("#task-kind", "give");
   await page.selectOption("#task-object", "mug");
@@ -159,7 +159,7 @@ test("a hand dragged to the arm stops it, dragged away the arm goes on", async (
   const aside = await at([1.5, -0.05, 0.8]);
   await page.mouse.move(aside.x, aside.y, { steps: 5 });
   await until(page, (least) => Number.parseInt(document.getElementById("speed").textContent, 10) >= least, 50 * kSpeed);
-  await onDds(moving, "the arm does not go on");
+  await onDds(moving, "the arm does not continue");
   await page.mouse.up();
   assert.equal((await post({ Authorization: `Bearer ${token}` }, { task: "speed", value: 1 })).status, 202);
   await onDds(() => tasks.samples.some(({ id, kind, state }) => kind === "give" && id !== cancelled && state === "succeeded"), "not given");

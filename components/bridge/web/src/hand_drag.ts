@@ -68,7 +68,7 @@ export class HandDrag {
     this.marker.visible = false;
     this.canvas.style.cursor = "";
     this.touch();
-    void this.tell(hand, 0);
+    void this.command(hand, 0);
   }
 
   private hover(event: PointerEvent): void {
@@ -81,10 +81,10 @@ export class HandDrag {
     const { hand } = this;
     const rests = this.sent.distanceTo(this.marker.position) < 1e-3 && performance.now() - this.sentAt < kRepeat;
     if (!hand || this.sending || rests) return;
-    await this.tell(hand, kHold);
+    await this.command(hand, kHold);
   }
 
-  private async tell({ person, side }: Hand, time: number): Promise<void> {
+  private async command({ person, side }: Hand, time: number): Promise<void> {
     this.sending = true;
     this.sentAt = performance.now();
     this.sent.copy(this.marker.position);
