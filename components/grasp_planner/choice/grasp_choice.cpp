@@ -162,16 +162,17 @@ GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot,
   retreats_ = retreat_directions(hand_geometry_->hand);
 }
 
-Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
+std::vector<GraspChooser::Found> GraspChooser::consider_all(Search& search, const Ranking& order,
+                                                            const Ranking& weak) const {
+  const ChoiceInputs& inputs = search.inputs;
   const GraspRequest& request = inputs.request;
   const GraspList& list = inputs.list;
   const TransferTable* pairs = inputs.pairs;
-  Search search(*this, inputs);
-  const auto [order, weak] = search.ranked();
   std::vector<Found> found;
   // Twice the requested number, so that the arm configuration affects the ranking.
   const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
   const std::uint64_t budget =
+      search.out.reaches +
       (request.has_goal ? 2 : 1) * static_cast<std::uint64_t>(settings_.reach_budget);
   const auto consider = [&](double rank, std::size_t index, std::optional<TransferPose> transfer) {
     const bool stop = found.size() >= enough || search.out.reaches >= budget ||
@@ -184,12 +185,12 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   };
   // For a person, grasps with a handover place come first, upright before tilted; the others
   // follow when too few of those can be picked up.
-  std::vector<std::pair<double, std::size_t>> others = order;
+  Ranking others = order;
   const auto levels = search.places ? tilt_levels(pairs->settings()) : std::vector<double>{};
   for (const double tilt : levels) {
     search.transfer_budget = search.out.transfer_reaches + settings_.transfer_budget;
     std::size_t tries = 0;
-    std::vector<std::pair<double, std::size_t>> left;
+    Ranking left;
     for (const auto& [rank, index] : others) {
       const Grasp& g = list.grasps[index].grasp;
       std::optional<TransferPose> transfer;
@@ -215,6 +216,22 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
     else
       ++search.out.reasons[static_cast<std::size_t>(ChoiceReason::too_weak)];
   }
+  return found;
+}
+
+Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
+  const GraspRequest& request = inputs.request;
+  Search search(*this, inputs);
+  const auto [order, weak] = search.ranked();
+  const auto reasons = search.out.reasons;
+  std::vector<Found> found = consider_all(search, order, weak);
+  // Nearer to the digits of the giver only where no grasp keeps the full distance.
+  if (found.empty() && search.holder_body && search.holder_body->has_digits() &&
+      settings_.min_off_digits < settings_.off_digits) {
+    search.holder_body->set_digit_clearance(settings_.min_off_digits);
+    search.out.reasons = reasons;
+    found = consider_all(search, order, weak);
+  }
   const NamedContacts contacts_here = search.out.contacts;
   if (found.empty() && request.move_platform) search_places(search, order, found);
   search.out.contacts = contacts_here;
@@ -238,8 +255,7 @@ Choice GraspChooser::choose(const ChoiceInputs& inputs) const {
   return search.out;
 }
 
-void GraspChooser::search_places(Search& search,
-                                 const std::vector<std::pair<double, std::size_t>>& order,
+void GraspChooser::search_places(Search& search, const Ranking& order,
                                  std::vector<Found>& found) const {
   const GraspRequest& request = search.inputs.request;
   const GraspList& list = search.inputs.list;
@@ -248,7 +264,7 @@ void GraspChooser::search_places(Search& search,
   counts.asked = true;
   counts.none = mobile_ == nullptr;
   if (counts.none) return;
-  std::vector<std::pair<double, std::size_t>> tried;
+  Ranking tried;
   for (const auto& [rank, index] : order) {
     const Grasp& g = list.grasps[index].grasp;
     if (tried.size() >= settings_.platform_grasps) break;

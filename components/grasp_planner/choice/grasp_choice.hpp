@@ -127,8 +127,10 @@ class GraspChooser {
  private:
   struct Search;
   struct Found;
-  void search_places(Search& search, const std::vector<std::pair<double, std::size_t>>& order,
-                     std::vector<Found>& found) const;
+  using Ranking = std::vector<std::pair<double, std::size_t>>;  // rank, place in the list
+  // Checks ranked grasps until enough are found; the weak ones only where few others serve.
+  std::vector<Found> consider_all(Search& search, const Ranking& order, const Ranking& weak) const;
+  void search_places(Search& search, const Ranking& order, std::vector<Found>& found) const;
 
   std::shared_ptr<const RobotModel> robot_, mobile_;
   std::shared_ptr<const HandGeometry> hand_geometry_;

@@ -76,10 +76,11 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const ChoiceInputs& gi
       if (p.id != holder) continue;
       std::vector<HandPart> digits;
       if (held_object != nullptr) digits = assumed_digits(p, *held_object, start.T_world_object);
-      for (HandPart& part : digits) part.radius += p.inflation + settings().off_digits;
+      for (HandPart& part : digits) part.radius += p.inflation;
       p = with_fingers_bent(p, start.T_world_object.translation());
       p.inflation += settings().off_fingers;
-      holder_body = body_at_object(p, start.T_world_object, digits);
+      holder_body.emplace(p, start.T_world_object, std::move(digits));
+      holder_body->set_digit_clearance(settings().off_digits);
     }
     start.world.set_people(around);
     for (Person& p : around.people) {
@@ -261,8 +262,9 @@ bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q,
     if (self.hand_geometry_->shape.touches(T_open, inputs.object, T_object_hand, clearance))
       return false;
     if (from_hand) ++out.touch_tests;
-    if (from_hand && HandShape::hands_touch(
-                         self.hand_geometry_->shape.placed(T_open, T_object_hand), *holder_body, 0))
+    if (from_hand &&
+        HandShape::hands_touch(self.hand_geometry_->shape.placed(T_open, T_object_hand),
+                               holder_body->placed(), 0))
       return false;
   }
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));
@@ -335,7 +337,7 @@ GraspChooser::Search::Ranked GraspChooser::Search::ranked() {
 }
 
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
-  if (holder_body && hand.touches(*holder_body, g, out.touch_tests)) {
+  if (holder_body && hand.touches(holder_body->placed(), g, out.touch_tests)) {
     if (!out.contacts.is_full()) out.contacts.add("the hand and that of " + holder);
     return ChoiceReason::collision;
   }

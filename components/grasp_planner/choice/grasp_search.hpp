@@ -26,9 +26,7 @@ struct GraspChooser::Search {
 
   /// Returns the place of the robot.
   Vector3 p_world_robot() const;
-  /// Ranks of grasps and their places in the list, best first.
-  using Ranking = std::vector<std::pair<double, std::size_t>>;
-  /// Grasps that bear the object, and weaker ones, used when few others are feasible.
+  /// Grasps that bear the object, and weaker ones, used when few others are feasible; best first.
   struct Ranked {
     Ranking strong, weak;
   };
@@ -91,9 +89,9 @@ struct GraspChooser::Search {
   Scene scene;
   Site start;
   std::optional<Site> goal;
-  std::optional<HandShape::PlacedHand> holder_body;  // frame of the object
-  std::optional<CollisionWorld> giver;               // the giver without forearms and hands
-  std::optional<CollisionWorld> carrying;            // at the goal, with the object held
+  std::optional<HolderBody> holder_body;   // of the person that holds the object
+  std::optional<CollisionWorld> giver;     // the giver without forearms and hands
+  std::optional<CollisionWorld> carrying;  // at the goal, with the object held
   // with the object held at the handover, the person's arms excluded
   std::optional<CollisionWorld> held;
   bool goal_is_taken{};

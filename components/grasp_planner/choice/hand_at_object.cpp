@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/model/human/human_body.hpp"
 #include "components/grasp_planner/choice/visibility.hpp"
@@ -40,6 +41,18 @@ HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_o
     add_capsule(out, {T_object_world * part.a, T_object_world * part.b, part.radius});
   for (const HandPart& part : digits) add_capsule(out, part);
   return out;
+}
+
+HolderBody::HolderBody(const Person& person, const Pose& T_world_object,
+                       std::vector<HandPart> digits)
+    : person_(person), T_world_object_(T_world_object), digits_(std::move(digits)) {
+  set_digit_clearance(0);
+}
+
+void HolderBody::set_digit_clearance(double clearance) {
+  std::vector<HandPart> larger = digits_;
+  for (HandPart& part : larger) part.radius += clearance;
+  placed_ = body_at_object(person_, T_world_object_, larger);
 }
 
 HandAtObject::HandAtObject(const HandGeometry& hand, const Graspable& object, double support_gap)

@@ -17,6 +17,27 @@ namespace handsel::grasp_planner {
 HandShape::PlacedHand body_at_object(const Person& person, const Pose& T_world_object,
                                      const std::vector<HandPart>& digits = {});
 
+/// The body of a person that holds an object, with the digits assumed around the object. Own
+/// method.
+class HolderBody {
+ public:
+  /// `person`: world; `digits`: object frame, may be empty. The digits have no clearance yet.
+  HolderBody(const Person& person, const Pose& T_world_object, std::vector<HandPart> digits);
+
+  /// Sets the distance that the robot keeps from the digits [m].
+  void set_digit_clearance(double clearance);
+  /// Returns whether digits are assumed.
+  bool has_digits() const { return !digits_.empty(); }
+  /// Returns body and digits, larger by their clearances, object frame.
+  const HandShape::PlacedHand& placed() const { return placed_; }
+
+ private:
+  Person person_;
+  Pose T_world_object_;
+  std::vector<HandPart> digits_;
+  HandShape::PlacedHand placed_;
+};
+
 class HandAtObject {
  public:
   /// Keeps references to hand and object. `support_gap`: kept between hand and support [m].

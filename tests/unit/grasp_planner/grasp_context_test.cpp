@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <random>
 
 #include "common/model/human/holding_hand.hpp"
@@ -351,29 +352,34 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
   EXPECT_GT(count(none, ChoiceReason::near_giver), 0U);
 }
 
-TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
-  HumanState people;
+// Returns a scene in which the palm is beside the lower half of the mug, the fingers along its far
+// side, and the digits of that hand in the frame of the mug.
+Scene mug_in_fingers(HumanState& people, std::vector<HandPart>& digits) {
   Scene scene = held_out(people);
-  // The palm is beside the lower half of the mug, the fingers are along its far side.
-  Person& who = people.people.front();
+  Person& giver = people.people.front();
   const Pose& T_world_object = scene.objects[0].T_world_object;
   const auto at = [&](const char* joint) -> Vector3& {
-    return who.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
+    return giver.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
   };
   at("r_hand") = T_world_object * Vector3(0.04, 0.07, -0.03);
   at("r_wrist") = at("r_hand") + Vector3(0.09, 0.0, 0.0);
-  const std::vector<HandPart> digits = assumed_digits(who, *object_model("mug"), T_world_object);
-  ASSERT_EQ(digits.size(), static_cast<std::size_t>(kDigits * kDigitSegments));
-  const Choice c = choose(request(), scene, people);
-  ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
-  // Independent check: spheres along the digits as objects of the scene.
+  digits = assumed_digits(giver, *object_model("mug"), T_world_object);
+  EXPECT_EQ(digits.size(), static_cast<std::size_t>(kDigits * kDigitSegments));
+  return scene;
+}
+
+// Checks that the robot keeps this distance from the digits [m], with spheres along them as objects
+// of the scene.
+void expect_clear_of_digits(const Choice& c, const Scene& scene,
+                            const std::vector<HandPart>& digits, double distance) {
+  const Pose& T_world_object = scene.objects[0].T_world_object;
   Scene with_digits = scene;
   for (const HandPart& part : digits) {
     for (const Vector3& p : {part.a, part.b}) {
       SceneObject ball;
       ball.id = "ball" + std::to_string(with_digits.objects.size());
       ball.T_world_object = T_world_object * Eigen::Translation3d(p);
-      const double radius = part.radius + settings::GraspPlannerSettings{}.off_digits - 0.001;
+      const double radius = part.radius + distance - 0.001;
       ball.primitive = {PrimitiveKind::sphere, Vector3::Constant(2 * radius)};
       with_digits.objects.push_back(ball);
     }
@@ -393,6 +399,33 @@ TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
           << g.id << " at " << s;
     }
   }
+}
+
+TEST(HeldOut, grasps_keep_off_the_digits_around_the_object) {
+  HumanState people;
+  std::vector<HandPart> digits;
+  const Scene scene = mug_in_fingers(people, digits);
+  const Choice c = choose(request(), scene, people);
+  ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
+  expect_clear_of_digits(c, scene, digits, settings::GraspPlannerSettings{}.off_digits);
+}
+
+TEST(HeldOut, where_no_grasp_keeps_the_distance_from_the_digits_a_smaller_one_serves) {
+  HumanState people;
+  std::vector<HandPart> digits;
+  const Scene scene = mug_in_fingers(people, digits);
+  settings::GraspPlannerSettings settings;
+  settings.off_digits = settings.min_off_digits = 0.4;
+  const Choice none = choose(request(), scene, people, settings);
+  ASSERT_TRUE(none.grasps.empty());
+  settings.min_off_digits = 0.01;
+  const Choice c = choose(request(), scene, people, settings);
+  ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
+  expect_clear_of_digits(c, scene, digits, settings.min_off_digits);
+  const auto sum = [](const Choice& of) {
+    return std::accumulate(of.reasons.begin(), of.reasons.end(), std::uint64_t{0});
+  };
+  EXPECT_EQ(sum(c), mug().list.grasps.size()) << "each grasp has one reason";
 }
 
 TEST(HeldOut, a_hand_that_touches_only_while_it_closes_is_seen_to_touch) {
