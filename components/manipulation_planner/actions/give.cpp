@@ -159,6 +159,7 @@ Routine<Offered> offer(Parts& parts, const std::string& object, const std::strin
   parts.action.exchange_engaged = false;
   co_await keep(parts, false);
   if (!released.outcome.good) co_return Offered{released.outcome};
+  parts.held.note_vain_offer();
   co_return Offered{
       Outcome::failure(receiver + " did not take " + object + " within " +
                            std::to_string(static_cast<int>(parts.settings.offer_timeout)) + " s",

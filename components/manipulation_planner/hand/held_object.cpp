@@ -30,6 +30,7 @@ bool has_hand_near(const Person& person, const Vector3& p_world, double distance
 }  // namespace
 
 void HeldObject::hold(const SceneObject& object) {
+  if (attachment_.object != object.id) vain_offers_.clear();
   attachment_.object = object.id;
   attachment_.hand = arm_.hand_name();
   attachment_.T_tool_object = arm_.T_world_tool().inverse() * object.T_world_object;

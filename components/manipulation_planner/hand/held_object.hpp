@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/time.hpp"
 #include "common/config/settings/manipulation_planner.hpp"
@@ -22,7 +23,10 @@ class HeldObject {
   /// Notes that the hand holds the object where the scene has it.
   void hold(const SceneObject& object);
   /// Notes that no hand holds anything.
-  void release() { attachment_ = {}; }
+  void release() {
+    attachment_ = {};
+    vain_offers_.clear();
+  }
   /// Returns whether something is held.
   bool is_holding() const { return !attachment_.object.empty(); }
   /// Returns what is held and how; `object` empty: nothing.
@@ -36,6 +40,11 @@ class HeldObject {
   void set_grasp(std::optional<Grasp> grasp) { grasp_ = std::move(grasp); }
   /// Returns the grasp of the hand in use; nullopt: unknown.
   const std::optional<Grasp>& grasp() const { return grasp_; }
+
+  /// Notes that nobody took what is held where it is now.
+  void note_vain_offer() { vain_offers_.push_back(T_world_object()); }
+  /// Returns the poses in the world in which what is held was offered in vain.
+  const std::vector<Pose>& vain_offers() const { return vain_offers_; }
 
   /// Returns whether `object` is what is held and its position within max_slip of its place in the
   /// hand.
@@ -63,6 +72,7 @@ class HeldObject {
   const settings::ManipulationPlannerSettings& settings_;
   Attachment attachment_;
   std::optional<Grasp> grasp_;
+  std::vector<Pose> vain_offers_;
   TimePoint seen_in_hand_{};
 };
 

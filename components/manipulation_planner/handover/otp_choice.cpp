@@ -67,9 +67,10 @@ Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const P
        partners = grasp ? grasp->partners : std::vector<PartnerGrasp>{},
        hands = look_at_hands(parts, *person), settings = parts.settings,
        back = grasp ? std::optional<Vector3>(parts.arm.direction_back(*grasp)) : std::nullopt,
-       p_robot = Vector3(T_world_platform(parts.now).translation())] {
-        const OtpQuery query{scene,  who,      layers, T_now, T_tool_object,
-                             barred, partners, hands,  back,  p_robot};
+       p_robot = Vector3(T_world_platform(parts.now).translation()),
+       vain_offers = parts.held.vain_offers()] {
+        const OtpQuery query{scene,    who,   layers, T_now,   T_tool_object, barred,
+                             partners, hands, back,   p_robot, vain_offers};
         if (T_present && shift)
           choice->search = shifted_otp(*robot, arm, query, {*T_present, shift->p_wanted},
                                        RobotModel::with(q, arm, shift->arm_joints), settings);

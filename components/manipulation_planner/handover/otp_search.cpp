@@ -46,6 +46,7 @@ class OtpCosts {
         partners_(query.partners),
         taking_arms_(taking_arms(query.person, query.hands, settings)),
         hands_(query.hands),
+        vain_offers_(query.vain_offers),
         p_now_(query.T_world_object.translation()),
         object_in_hand_(query.T_tool_object.linear().transpose() *
                         query.T_tool_object.translation()),
@@ -125,6 +126,17 @@ class OtpCosts {
     if (in_the_way > settings_.otp_max_barred) return std::nullopt;
     return settings_.w_legibility * ((1 - facing) / 2 + in_the_way);
   }
+  /// Cost of a pose near others in which the person did not take the object.
+  double of_vain_offers(const Pose& T_world_object) const {
+    const auto is_near = [&](const Pose& before) {
+      const Eigen::Matrix3d R = before.linear().transpose() * T_world_object.linear();
+      return (before.translation() - T_world_object.translation()).norm() <
+                 settings_.vain_offer_range &&
+             Eigen::AngleAxisd(R).angle() < settings_.vain_offer_turn;
+    };
+    return settings_.w_vain_offer *
+           static_cast<double>(std::count_if(vain_offers_.begin(), vain_offers_.end(), is_near));
+  }
   /// Returns whether grasps of the person count: some are known, of a body whose arm is known.
   bool has_partners() const {
     return !partners_.empty() && !taking_arms_.empty() && settings_.w_wrist > 0;
@@ -149,6 +161,7 @@ class OtpCosts {
   const std::vector<PartnerGrasp>& partners_;
   std::vector<TakingArm> taking_arms_;
   ReceiverHands hands_;
+  const std::vector<Pose>& vain_offers_;
   Vector3 p_now_, object_in_hand_, toward_robot_;
   SimplifiedBody body_;
   ReachCheck furniture_;
@@ -189,7 +202,7 @@ Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs,
       T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * query.T_world_object.linear();
       T.translation() = p;
       if (const std::optional<double> attitude = costs.of_attitude(T.linear()))
-        found.all.push_back({T, cost + *attitude});
+        found.all.push_back({T, cost + *attitude + costs.of_vain_offers(T)});
     }
   };
   // Symmetric, and straight ahead among them, whatever the step.
@@ -398,7 +411,7 @@ std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object
   if (!attitude) return std::nullopt;
   const double wrist =
       costs.has_partners() ? costs.of_partner(costs.partner_at(T_world_object)) : 0.0;
-  return cost + *attitude + wrist;
+  return cost + *attitude + wrist + costs.of_vain_offers(T_world_object);
 }
 
 }  // namespace handsel::manipulation_planner

@@ -64,6 +64,8 @@ struct OtpQuery {
   std::optional<Vector3> back{};
   /// Where the robot stands in the world; nullopt: at the root of its model [m].
   std::optional<Vector3> p_robot{};
+  /// Poses of the object in which the receiver did not take it, world.
+  std::vector<Pose> vain_offers{};
 };
 
 /// Returns the directions, seen from the object, in which a hand that pinches stands (outward

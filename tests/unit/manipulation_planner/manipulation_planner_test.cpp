@@ -104,6 +104,33 @@ TEST(ManipulationPlanner, an_offer_nobody_takes_fails_with_their_name) {
   EXPECT_TRUE(rig.planner.status().holding);
 }
 
+TEST(ManipulationPlanner, offers_elsewhere_or_turned_after_an_offer_that_nobody_took) {
+  for (const double weight : {1.0, 0.0}) {
+    SCOPED_TRACE(weight);
+    auto settings = rig::settings();
+    settings.w_vain_offer = weight;
+    Rig rig("jido", settings);
+    rig.start(ActionKind::pick);
+    rig.run(30);
+    rig.person_takes = false;
+    const auto offered = [&]() -> Pose {
+      rig.start(ActionKind::give);
+      rig.run_until("offer");
+      EXPECT_EQ(phase_text(rig.planner.status()), "offer");
+      const Pose T_world_mug = rig.scene.objects[0].T_world_object;
+      rig.run(60);
+      EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+      return T_world_mug;
+    };
+    const Pose first = offered(), second = offered();
+    const Eigen::Matrix3d R = first.linear().transpose() * second.linear();
+    const bool is_near =
+        (first.translation() - second.translation()).norm() < 0.9 * settings.vain_offer_range &&
+        Eigen::AngleAxisd(R).angle() < 0.9 * settings.vain_offer_turn;
+    EXPECT_EQ(is_near, weight == 0.0);
+  }
+}
+
 TEST(ManipulationPlanner, what_a_person_has_drawn_out_of_the_closed_hand_is_given) {
   Rig rig;
   rig.start(ActionKind::pick);

@@ -353,6 +353,36 @@ TEST_F(OtpSearchTest, poses_from_which_the_hand_cannot_retreat_are_left_out) {
   EXPECT_EQ(nowhere.poses.size(), 1u) << "better than no handover";
 }
 
+TEST_F(OtpSearchTest, is_elsewhere_or_turned_after_an_offer_in_vain) {
+  auto settings = rig::settings();
+  const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
+             T_tool_mug = make_pose({0.08, 0.02, 0.23});
+  const LayersNow layers;
+  const Group& arm = rig_.robot->require_group("arm");
+  OtpQuery query{rig_.scene, anna_, layers, T_world_mug, T_tool_mug, {}, {}};
+  const auto best = [&]() -> Pose {
+    const OtpSearch search = find_otp(*rig_.robot, arm, query, rig_.q, settings);
+    EXPECT_FALSE(search.poses.empty()) << search.reason;
+    return search.poses.empty() ? Pose::Identity() : search.poses.front().T_world_object;
+  };
+  const auto is_near = [&](const Pose& a, const Pose& b) {
+    const Eigen::Matrix3d R = a.linear().transpose() * b.linear();
+    return (a.translation() - b.translation()).norm() < settings.vain_offer_range &&
+           Eigen::AngleAxisd(R).angle() < settings.vain_offer_turn;
+  };
+  for (int offers = 0; offers < 3; ++offers) {
+    const Pose next = best();
+    for (const Pose& before : query.vain_offers) EXPECT_FALSE(is_near(before, next)) << offers;
+    const auto cost = otp_cost(query, next, settings);
+    query.vain_offers.push_back(next);
+    const auto repeated = otp_cost(query, next, settings);
+    ASSERT_TRUE(cost && repeated);
+    EXPECT_NEAR(*repeated - *cost, settings.w_vain_offer, 1e-9);
+  }
+  settings.w_vain_offer = 0;
+  EXPECT_TRUE(is_near(best(), query.vain_offers.front()));
+}
+
 TEST_F(OtpSearchTest, is_shifted_as_asked_for_but_never_to_where_there_is_no_exchange_point) {
   const auto settings = rig::settings();
   const Pose T_world_mug = rig_.tool() * rig_.T_tool_mug,
