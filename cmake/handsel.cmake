@@ -2,8 +2,10 @@
 # How every library, component and test of the project is made.
 
 add_library(handsel_options INTERFACE)
-target_compile_options(handsel_options INTERFACE -Wall -Wextra -Wshadow -Wno-psabi -Werror)
-target_include_directories(handsel_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+if(NOT HANDSEL_LIBRARIES_ONLY)
+  target_compile_options(handsel_options INTERFACE -Wall -Wextra -Wshadow -Wno-psabi -Werror)
+endif()
+target_include_directories(handsel_options INTERFACE ${handsel_SOURCE_DIR} ${handsel_BINARY_DIR}/generated)
 option(HANDSEL_ASAN "Address and undefined-behaviour sanitizers" OFF)
 option(HANDSEL_TSAN "Thread sanitizer" OFF)
 if(HANDSEL_ASAN)
@@ -14,7 +16,7 @@ elseif(HANDSEL_TSAN)
   target_link_options(handsel_options INTERFACE -fsanitize=thread)
 endif()
 find_program(HANDSEL_MOLD mold)
-if(HANDSEL_MOLD)
+if(HANDSEL_MOLD AND NOT HANDSEL_LIBRARIES_ONLY)
   add_link_options(-fuse-ld=mold)
 endif()
 
@@ -31,15 +33,19 @@ function(handsel_unity target)
 endfunction()
 
 # Headers of the standard library, Eigen and GoogleTest are parsed once, not again for every source.
-option(HANDSEL_PRECOMPILED "Parse headers of other projects once: a full build is faster" ON)
+set(precompiled ON)
+if(HANDSEL_LIBRARIES_ONLY)
+  set(precompiled OFF)
+endif()
+option(HANDSEL_PRECOMPILED "Parse headers of other projects once: a full build is faster" ${precompiled})
 
 set(HANDSEL_HEADERS <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <iostream> <map> <memory> <mutex> <optional>
     <random> <set> <sstream> <string> <thread> <unordered_map> <variant> <vector> <Eigen/Dense>)
 
 # handsel_parsed_headers(<target> <header> ...): lets the target, which has no code, parse headers for others.
 function(handsel_parsed_headers target)
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${target}.cpp CONTENT "")
-  target_sources(${target} PRIVATE ${CMAKE_BINARY_DIR}/generated/${target}.cpp)
+  file(CONFIGURE OUTPUT ${handsel_BINARY_DIR}/generated/${target}.cpp CONTENT "")
+  target_sources(${target} PRIVATE ${handsel_BINARY_DIR}/generated/${target}.cpp)
   if(HANDSEL_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
@@ -63,11 +69,15 @@ function(handsel_precompiled target headers)
   endforeach()
 endfunction()
 
-# handsel_library(<name> SOURCES a.cpp ... LINK lib ...): static library handsel_<name>.
+# handsel_library(<name> SOURCES a.cpp ... LINK lib ...): library handsel_<name>, static unless HANDSEL_SHARED.
 function(handsel_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
-  add_library(handsel_${name} STATIC ${ARG_SOURCES})
-  target_link_libraries(handsel_${name} PUBLIC handsel_options Eigen3::Eigen ${ARG_LINK})
+  set(type STATIC)
+  if(HANDSEL_SHARED)
+    set(type SHARED)
+  endif()
+  add_library(handsel_${name} ${type} ${ARG_SOURCES})
+  target_link_libraries(handsel_${name} PUBLIC $<BUILD_INTERFACE:handsel_options> Eigen3::Eigen ${ARG_LINK})
   handsel_unity(handsel_${name})
   handsel_precompiled(handsel_${name} handsel_headers)
 endfunction()
@@ -88,7 +98,7 @@ endfunction()
 function(handsel_test_binary target label)
   add_executable(${target})
   target_link_libraries(${target} PRIVATE handsel_options GTest::gtest_main GTest::gmock)
-  target_compile_definitions(${target} PRIVATE HANDSEL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_compile_definitions(${target} PRIVATE HANDSEL_SOURCE_DIR="${handsel_SOURCE_DIR}")
   # Such a test starts processes and waits for them: its own speed does not matter.
   if(label MATCHES "^(system|fault)$")
     target_compile_options(${target} PRIVATE -O1)
