@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/resources.hpp"
 
+#include <dlfcn.h>
 #include <google/protobuf/text_format.h>
 
 #include <cstdlib>
@@ -19,6 +20,17 @@ namespace handsel {
 namespace fs = std::filesystem;
 namespace {
 
+/// Returns the absolute path of the program or shared library that holds this code: in a Python
+/// process the library; empty when it is not known.
+fs::path code_file() {
+  Dl_info info{};
+  static const char inside{};
+  if (dladdr(&inside, &info) == 0 || info.dli_fname == nullptr) return {};
+  std::error_code error;
+  const fs::path file = fs::canonical(info.dli_fname, error);
+  return error ? fs::path() : file;
+}
+
 fs::path find_root() {
   if (const char* home = std::getenv("HANDSEL_HOME"); home != nullptr && *home != '\0') {
     if (fs::is_directory(fs::path(home) / "robots")) return fs::canonical(home);
@@ -26,10 +38,12 @@ fs::path find_root() {
   }
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  for (fs::path folder = executable.parent_path(); !error; folder = folder.parent_path()) {
-    for (const char* below : {"deploy", "share/handsel"})
-      if (fs::is_directory(folder / below / "robots")) return folder / below;
-    if (folder == folder.parent_path()) break;
+  for (const fs::path& file : {executable, code_file()}) {
+    for (fs::path folder = file.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+      for (const char* below : {"deploy", "share/handsel"})
+        if (fs::is_directory(folder / below / "robots")) return folder / below;
+      if (folder == folder.parent_path()) break;
+    }
   }
   throw MissingError("no folder deploy/ or share/handsel beside or above " + executable.string() +
                      "; set HANDSEL_HOME to it");
