@@ -114,7 +114,9 @@ inline double number(py::handle value, const char* name) {
     throw py::type_error(std::string(name) + " must be a number, not " + type_name(value) + ".");
   const double out = PyFloat_AsDouble(value.ptr());
   if (out == -1.0 && PyErr_Occurred() != nullptr) {
+    const bool too_large = PyErr_ExceptionMatches(PyExc_OverflowError) != 0;
     PyErr_Clear();
+    if (too_large) throw py::value_error(std::string(name) + " is too large.");
     throw py::type_error(std::string(name) + " must be a number, not " + type_name(value) + ".");
   }
   require_finite(&out, 1, name);

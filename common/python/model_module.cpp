@@ -138,8 +138,8 @@ py::tuple position_limits(const RobotModel& robot) {
 }  // namespace
 
 PYBIND11_MODULE(_model, m) {
-  py::register_exception<ConfigError>(m, "DescriptionError", PyExc_ValueError);
-  py::register_exception<MissingError>(m, "MissingError", PyExc_FileNotFoundError);
+  py::register_local_exception<ConfigError>(m, "DescriptionError", PyExc_ValueError);
+  py::register_local_exception<MissingError>(m, "MissingError", PyExc_FileNotFoundError);
   m.def("load", &load);
   m.def("load_urdf", &load_urdf);
   py::class_<RobotModel>(m, "Robot")

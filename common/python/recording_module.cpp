@@ -171,8 +171,8 @@ py::dict read_tables(py::handle file, const std::vector<std::string>& wanted,
 }  // namespace
 
 PYBIND11_MODULE(_recording, m) {
-  py::register_exception<ConfigError>(m, "FileError", PyExc_ValueError);
-  py::register_exception<MissingError>(m, "MissingError", PyExc_FileNotFoundError);
+  py::register_local_exception<ConfigError>(m, "FileError", PyExc_ValueError);
+  py::register_local_exception<MissingError>(m, "MissingError", PyExc_FileNotFoundError);
   m.def("overview", &overview);
   m.def("read_tables", &read_tables);
 }

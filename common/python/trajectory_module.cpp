@@ -81,6 +81,7 @@ py::object smooth_waypoints(py::handle waypoints, py::handle limits, py::handle 
                             py::handle reach) {
   const KinematicLimits& bounds = limits_argument(limits);
   const RowMatrix points = rows(waypoints, "waypoints", bounds.velocity.size());
+  if (points.rows() < 2) throw py::value_error("waypoints must have at least two rows.");
   std::vector<Eigen::VectorXd> nodes;
   for (Eigen::Index i = 0; i < points.rows(); ++i) nodes.push_back(points.row(i).transpose());
   SmoothSettings settings;

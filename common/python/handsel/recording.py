@@ -112,7 +112,7 @@ def read(path: Union[str, os.PathLike], topics: Optional[Iterable[str]] = None, 
 
     topics: names; left out: every topic with messages in CDR. max_bytes: largest size of the
     columns of one topic. Raises MissingError for a file that is not there, FileError naming topic
-    and field for damaged samples, KeyError for a topic that is not in the recording.
+    and field for damaged samples, ValueError for a topic that is not in the recording.
     """
     found = overview(path)
     if topics is None:
@@ -125,7 +125,7 @@ def read(path: Union[str, os.PathLike], topics: Optional[Iterable[str]] = None, 
         if not isinstance(name, str):
             raise TypeError(f"topics must be a list of str, not of {type(name).__name__}.")
         if name not in found.topics:
-            raise KeyError(f"{_file(path)} has no topic {name!r}; it has: "
-                           f"{', '.join(found.topics)}.")
+            raise ValueError(f"{_file(path)} has no topic {name!r}; it has: "
+                             f"{', '.join(found.topics)}.")
     tables = _recording.read_tables(_file(path), wanted, max_bytes)
     return {name: Table(*tables[name]) for name in wanted}

@@ -1,0 +1,81 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# outside_test.sh <kind> <source> <build> <cmake>: configures, builds and runs examples/cpp outside the tree.
+#   installed  against components installed from the build; also pkg-config, link list and mistakes of find_package
+#   shared     against shared libraries built without the rest of the system; also what they export
+#   fetched    with the source tree as a part of the project (FetchContent)
+set -eu
+kind=$1 source=$2 build=$3 cmake=$4
+work=$(mktemp -d "${TMPDIR:-/tmp}/handsel-libraries.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+fail() { echo "outside_test: $1" >&2; exit 1; }
+run() { "$@" >"$work/log" 2>&1 || { cat "$work/log"; fail "failed: $*"; }; }
+
+# examples <option>...: builds and runs the examples of trajectory, grasp and record.
+examples() {
+  cp -r "$source/examples/cpp" "$work/cpp"
+  run "$cmake" -S "$work/cpp" -B "$work/cpp/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+  run "$cmake" --build "$work/cpp/build" --parallel 2
+  (cd "$work/cpp/build" && run ctest --output-on-failure && cat "$work/log")
+}
+
+# links_only <file> <pattern>: the file needs no shared library beyond the C++ runtime and the pattern.
+links_only() {
+  others=$(objdump -p "$1" | sed -n 's/^ *NEEDED *//p' | grep -Ev "^(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so|$2" || true)
+  [ -z "$others" ] || fail "$1 needs also: $others"
+}
+
+# refused <pattern> <component>...: find_package refuses the components with a sentence that matches.
+refused() {
+  pattern=$1
+  shift
+  mkdir -p "$work/refused"
+  printf 'cmake_minimum_required(VERSION 3.25)\nproject(refused LANGUAGES CXX)\nfind_package(handsel REQUIRED COMPONENTS %s)\n' \
+    "$*" >"$work/refused/CMakeLists.txt"
+  if "$cmake" -S "$work/refused" -B "$work/refused/build" -DCMAKE_PREFIX_PATH="$work/prefix" >"$work/log" 2>&1; then
+    fail "find_package accepted: $*"
+  fi
+  tr -s '\n ' ' ' <"$work/log" | grep -q "$pattern" || { cat "$work/log"; fail "no sentence with: $pattern"; }
+}
+
+case $kind in
+  installed)
+    for component in trajectory grasp record; do
+      run "$cmake" --install "$build" --component $component --prefix "$work/prefix"
+    done
+    for unwanted in bin share; do
+      [ ! -e "$work/prefix/$unwanted" ] || fail "the components install $unwanted/ as well"
+    done
+    if grep -rn '"common/' "$work/prefix/include"; then fail "an installed header includes from the source tree"; fi
+    examples -DCMAKE_PREFIX_PATH="$work/prefix"
+    links_only "$work/cpp/build/01_two_states" '^$'
+    links_only "$work/cpp/build/08_grasp" '^$'
+    links_only "$work/cpp/build/09_recording" '^$'
+    refused "there is no component teleport" teleport
+    refused "handsel-model, which is not installed" model
+    refused "component idl is not installed" idl
+    # The same without CMake. The package may be moved: the files of pkg-config find their place.
+    mv "$work/prefix" "$work/moved"
+    export PKG_CONFIG_PATH="$work/moved/lib/pkgconfig"
+    # shellcheck disable=SC2046 # the flags are meant to be split
+    run c++ -std=c++20 "$source/examples/cpp/04_stop.cpp" -o "$work/stop" $(pkg-config --cflags --libs handsel-trajectory)
+    run "$work/stop"
+    [ "$(pkg-config --modversion handsel-trajectory)" = "$(sed -n 's/^project(handsel VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")" ] ||
+      fail "the version of pkg-config is not that of the project"
+    ;;
+  shared)
+    run "$cmake" -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DHANDSEL_LIBRARIES_ONLY=ON -DHANDSEL_SHARED=ON
+    run "$cmake" --build "$work/build" --parallel 2
+    run "$cmake" --install "$work/build" --prefix "$work/prefix"
+    examples -DCMAKE_PREFIX_PATH="$work/prefix"
+    for library in trajectory grasp record; do
+      file=$work/prefix/lib/libhandsel_$library.so
+      links_only "$file" '^$'
+      foreign=$(nm -DC --defined-only "$file" | cut -d' ' -f3- | grep -v 'handsel' || true)
+      [ -z "$foreign" ] || fail "$file exports names of others: $foreign"
+    done
+    ;;
+  fetched) examples -DHANDSEL_SOURCE="$source" ;;
+  *) fail "unknown kind $kind" ;;
+esac
+echo "outside_test: $kind: ok"
