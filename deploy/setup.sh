@@ -10,6 +10,7 @@ cyclonedds-dev cyclonedds-tools protobuf-compiler libprotobuf-dev
 libeigen3-dev libompl-dev libfcl-dev libccd-dev libassimp-dev libbullet-dev liburdfdom-dev liburdfdom-headers-dev
 libtinyxml2-dev libqhull-dev libglpk-dev libboost-dev libboost-filesystem-dev libboost-serialization-dev libboost-system-dev
 nlohmann-json3-dev libcli11-dev
+pybind11-dev python3-dev python3-numpy
 libgtest-dev libgmock-dev libbenchmark-dev mold
 "
 test_packages="chromium universal-ctags locales"

@@ -14,6 +14,8 @@
 
 #include <Eigen/Core>
 
+#include "common/python/unlocked.hpp"
+
 namespace handsel::python {
 
 namespace py = pybind11;

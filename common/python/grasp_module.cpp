@@ -49,7 +49,7 @@ RowMatrix wrenches(py::handle positions, py::handle normals, py::handle friction
 bool closed(py::handle value) {
   const RowMatrix w = rows(value, "wrenches");
   if (w.rows() == 0 || w.cols() == 0) return false;
-  const py::gil_scoped_release released;
+  const Unlocked released;
   return force_closure(w);
 }
 
@@ -69,7 +69,7 @@ py::tuple grip(py::handle positions, py::handle normals, py::handle friction, py
     throw py::value_error("friction_fraction must be in (0, 1].");
   GripForces out;
   {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     out = grip_forces(at, com, mass, settings);
   }
   RowMatrix forces(static_cast<Eigen::Index>(out.forces.size()), 3);

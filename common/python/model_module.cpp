@@ -11,14 +11,14 @@ namespace {
 
 RobotModel load(py::handle name_or_path) {
   const std::string name = text(name_or_path, "name");
-  const py::gil_scoped_release released;
+  const Unlocked released;
   return RobotModel::load(find_file(FileKind::robot, name));
 }
 
 RobotModel load_urdf(py::handle urdf, py::handle srdf, bool meshes) {
   const std::string file = text(urdf, "urdf");
   const std::string groups = srdf.is_none() ? std::string() : text(srdf, "srdf");
-  const py::gil_scoped_release released;
+  const Unlocked released;
   return RobotModel::load_urdf(file, groups, meshes ? Meshes::load : Meshes::skip);
 }
 
@@ -107,7 +107,7 @@ py::object inverse(const RobotModel& robot, py::handle pose, py::handle group, p
       seed.is_none() ? robot.rest_configuration() : vector(seed, "seed", robot.dof());
   std::optional<Vector> found;
   {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     found = robot.inverse(axes, T_root_tip, start);
   }
   if (!found) return py::none();

@@ -51,7 +51,7 @@ py::tuple overview(py::handle file) {
   mcap::Metadata metadata;
   bool cut = false;
   {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     metadata = mcap::Reader(name).metadata();
     cut = read_messages(name, [&](const mcap::Channel& channel, const mcap::Message&) {
       ++counts[channel.topic];
@@ -149,7 +149,7 @@ py::dict read_tables(py::handle file, const std::vector<std::string>& wanted,
   const auto limit = static_cast<std::uint64_t>(whole(max_bytes, "max_bytes", 1, 1LL << 50));
   Topics topics;
   {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     measure_all(name, {wanted.begin(), wanted.end()}, topics);
     fill_all(name, limit, topics);
   }

@@ -111,7 +111,7 @@ py::tuple solve_batch(const py::tuple& states, const py::tuple& limits) {
   py::array_t<std::int32_t> outcomes(problems), failed(problems);
   const Results out{durations.mutable_data(), outcomes.mutable_data(), failed.mutable_data()};
   {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     solve_all(columns, problems, axes, out);
   }
   return py::make_tuple(durations, outcomes, failed);

@@ -93,7 +93,7 @@ py::object smooth_waypoints(py::handle waypoints, py::handle limits, py::handle 
   }
   SmoothResult out;
   {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     const KinematicLimits copy = bounds;
     out = smooth(nodes, copy, settings);
   }

@@ -151,12 +151,14 @@ class Parser {
   }
   Field read_declarator(Type type) {
     Field field{take_name(), std::move(type)};
+    std::vector<std::uint32_t> lengths;
     while (take("[")) {
-      const std::uint32_t length = take_number();
-      if (length == 0) fail("an array has at least one element");
-      field.type = {Kind::array, {}, std::make_shared<Type>(field.type), length};
+      lengths.push_back(take_number());
+      if (lengths.back() == 0) fail("an array has at least one element");
       expect("]");
     }
+    for (auto length = lengths.rbegin(); length != lengths.rend(); ++length)
+      field.type = {Kind::array, {}, std::make_shared<Type>(field.type), *length};
     return field;
   }
   Type read_type(int depth) {

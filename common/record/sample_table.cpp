@@ -179,11 +179,10 @@ void SampleTable::add_column(Column column, std::uint64_t& left) {
 void SampleTable::shape(Node& node, std::vector<std::size_t> around, std::uint64_t& left) {
   if (node.type.kind == Kind::sequence) {
     node.count_column = columns_.size();
-    // Sequences in sequences have the same name.
-    std::string name = node.name + ".count";
-    while (std::any_of(columns_.begin(), columns_.end(),
-                       [&](const Column& column) { return column.name == name; }))
-      name += ".count";
+    std::string name = node.name;  // "a[]" is a sequence in the sequence a
+    const auto taken = [&](const Column& column) { return column.name == "len(" + name + ")"; };
+    while (std::any_of(columns_.begin(), columns_.end(), taken)) name += "[]";
+    name = "len(" + name + ")";
     add_column({name, Kind::uint32, {}, around, {}, {}}, left);
   }
   if (node.type.element) around.push_back(node.longest);

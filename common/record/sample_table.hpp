@@ -14,7 +14,7 @@ namespace handsel::idl {
 /// One field over all samples. Sequences are padded to the longest one: floats with NaN, other
 /// numbers with 0, texts with "".
 struct Column {
-  std::string name;         ///< "people.joints.position.x"; "people.count": lengths of a sequence
+  std::string name;         ///< "people.joints.position.x"; "len(people)": lengths of a sequence
   Kind kind{};              ///< of its elements; text: `texts`, else `numbers`
   std::string enumeration;  ///< name of the enumeration; else empty
   std::vector<std::size_t> shape;     ///< samples, then the length of each sequence or array around

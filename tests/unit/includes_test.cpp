@@ -118,9 +118,10 @@ TEST(Includes, only_the_simulator_knows_physics_and_only_the_bridge_knows_http) 
 /// Inside common: bus -> wire -> the rest -> geometry.
 TEST(Includes, rooms_of_common_point_downward) {
   const std::map<std::string, int> height{
-      {"base", 0},  {"geometry", 1}, {"grasp", 2},      {"trajectory", 2}, {"messages", 3},
-      {"model", 4}, {"config", 4},   {"collision", 5},  {"cost", 5},       {"record", 1},
-      {"wire", 6},  {"bus", 7},      {"robot_side", 5}, {"topics", 0}};
+      {"base", 0},       {"geometry", 1}, {"grasp", 2},     {"trajectory", 2},
+      {"messages", 3},   {"model", 4},    {"config", 4},    {"collision", 5},
+      {"cost", 5},       {"record", 1},   {"wire", 6},      {"bus", 7},
+      {"robot_side", 5}, {"topics", 0},   {"libraries", 6}, {"python", 6}};
   for (const Include& include : includes_below("common")) {
     if (!starts_with(include.target, "common/") ||
         include.target.find(".pb.h") != std::string::npos)

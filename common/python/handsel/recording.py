@@ -7,7 +7,7 @@
 
 A column holds one field of all samples, named as in idl/, for example "people.joints.position.x".
 Sequences are padded to the longest one, floats with NaN, other numbers with 0, texts with "";
-"<name>.count" has their lengths. Types are read from the recording itself, so recordings of other
+"len(<name>)" has their lengths. Types are read from the recording itself, so recordings of other
 versions open too.
 """
 

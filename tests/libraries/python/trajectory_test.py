@@ -4,6 +4,7 @@
 import math
 import sys
 import threading
+import time
 import unittest
 
 import numpy as np
@@ -57,9 +58,9 @@ class Solve(unittest.TestCase):
                 x, v, a = (x + duration * (v + duration * (a / 2 + duration * jerk / 6)),
                            v + duration * (a + duration * jerk / 2), a + duration * jerk)
                 knots.append((begin, x, v, a, 0.0))
-            for i, time in enumerate(times):
-                begin, x, v, a, jerk = [k for k in knots if k[0] <= time + 1e-12][-1]
-                s = time - begin
+            for i, at in enumerate(times):
+                begin, x, v, a, jerk = [k for k in knots if k[0] <= at + 1e-12][-1]
+                s = at - begin
                 self.assertAlmostEqual(sampled.position[i, axis],
                                        x + s * (v + s * (a / 2 + s * jerk / 6)), 9)
                 self.assertAlmostEqual(sampled.velocity[i, axis], v + s * (a + s * jerk / 2), 9)
@@ -108,6 +109,7 @@ class Batch(unittest.TestCase):
         def count():
             while not done.is_set():
                 counted[0] += 1
+                time.sleep(0)  # offers the lock
         worker = threading.Thread(target=count)
         interval = sys.getswitchinterval()
         sys.setswitchinterval(1000)  # the lock changes hands only where it is released
