@@ -156,6 +156,7 @@ inline std::string text(py::handle value, const char* name) {
 inline py::array_t<double> to_array(const double* values, py::ssize_t count) {
   return py::array_t<double>(count, values);
 }
+/// Returns an array with the elements of a vector, copied.
 inline py::array_t<double> to_array(const Eigen::VectorXd& values) {
   return to_array(values.data(), values.size());
 }

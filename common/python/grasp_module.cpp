@@ -37,13 +37,14 @@ std::vector<PointContact> contacts(py::handle positions, py::handle normals, py:
   return out;
 }
 
+/// `cone`: edges, centre, torque scale.
 RowMatrix wrenches(py::handle positions, py::handle normals, py::handle friction,
-                   py::handle torsion, py::handle edges, py::handle centre, py::handle scale) {
+                   py::handle torsion, const py::tuple& cone) {
   const auto at = contacts(positions, normals, friction, torsion);
-  const double torque_scale = number(scale, "torque_scale");
+  const int edges = static_cast<int>(whole(cone[0], "edges", 3, kMaxEdges));
+  const double torque_scale = number(cone[2], "torque_scale");
   if (!(torque_scale > 0)) throw py::value_error("torque_scale must be positive.");
-  return contact_wrenches(at, static_cast<int>(whole(edges, "edges", 3, kMaxEdges)),
-                          vector(centre, "centre", 3), torque_scale);
+  return contact_wrenches(at, edges, vector(cone[1], "centre", 3), torque_scale);
 }
 
 bool closed(py::handle value) {
@@ -81,10 +82,10 @@ py::tuple grip(py::handle positions, py::handle normals, py::handle friction, py
 }  // namespace
 
 PYBIND11_MODULE(_grasp, m) {
-  m.def("contact_wrenches", [](py::handle p, py::handle n, py::handle mu, py::handle torsion,
-                               py::handle edges, py::handle centre, py::handle scale) {
-    return to_array(wrenches(p, n, mu, torsion, edges, centre, scale));
-  });
+  m.def("contact_wrenches",
+        [](py::handle p, py::handle n, py::handle mu, py::handle torsion, const py::tuple& cone) {
+          return to_array(wrenches(p, n, mu, torsion, cone));
+        });
   m.def("force_closure", &closed);
   m.def("grip_forces", &grip);
 }

@@ -38,7 +38,7 @@ std::size_t size_of(Kind kind) noexcept;
 
 /// Type of a field.
 struct Type {
-  Kind kind{Kind::boolean};
+  Kind kind{Kind::boolean};       ///< of the value
   std::string name;               ///< of a structure or enumeration, without its modules
   std::shared_ptr<Type> element;  ///< of a sequence or array
   std::uint32_t length{};         ///< of an array; bound of a sequence, 0: none

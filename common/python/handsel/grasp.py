@@ -34,8 +34,8 @@ def contact_wrenches(positions: ArrayLike, normals: ArrayLike, friction: ArrayLi
     torsion: torque about the normal per normal force [m]. edges: of one cone, 3 .. 256. Torques are
     about `centre` [m] times `torque_scale` [1/m].
     """
-    return _grasp.contact_wrenches(positions, normals, friction, torsion, edges, centre,
-                                   torque_scale)
+    return _grasp.contact_wrenches(positions, normals, friction, torsion,
+                                   (edges, centre, torque_scale))
 
 
 def force_closure(wrenches: ArrayLike) -> bool:
