@@ -14,8 +14,8 @@ int main() {
       handsel::solve(start, handsel::rest_state(Eigen::VectorXd::Constant(1, 2)), slow);
   handsel::SwitchSettings settings;
   settings.on_clock = true;
-  const handsel::Switched met = handsel::switch_to(
-      handsel::rest_state(Eigen::VectorXd::Zero(1)), target.trajectory, limits, settings);
+  const handsel::Switched met = handsel::switch_to(handsel::rest_state(Eigen::VectorXd::Zero(1)),
+                                                   target.trajectory, limits, settings);
   if (!met.ok()) {
     std::printf("not met: %s\n", met.reason.c_str());
     return 1;
