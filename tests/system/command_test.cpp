@@ -66,6 +66,8 @@ TEST(Command, help_is_an_answer) {
 
 TEST(Command, what_is_not_there_is_named_before_anything_starts) {
   expect_refusal("run --scenario nowhere" + kDomain, 3, "nowhere");
+  for (const std::string command : {"run", "up", "eval --trials 1"})
+    expect_refusal(command + " nowhere" + (command[0] == 'e' ? "" : kDomain), 3, "nowhere");
   expect_refusal("up --robot nobody" + kDomain, 3, "nobody");
   expect_refusal("story nothing.story", 3, "nothing.story");
   const TemporaryFile scenario(

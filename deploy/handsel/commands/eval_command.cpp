@@ -381,7 +381,7 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("eval",
                                          "performs randomised trials in lock-step; prints one line "
                                          "of JSON for each and a table at the end");
-  command->add_option("--scenario", options->scenarios, "scenarios: names or files")
+  command->add_option("scenarios,--scenario", options->scenarios, "scenarios: names or files")
       ->capture_default_str();
   add_overlay_options(*command);
   command->add_option("--robot", options->robot, "robot description (default: the scenario's)");

@@ -34,7 +34,7 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
   add_domain_option(command, options.domain);
   command.add_option("--robot", options.robot,
                      "robot description: name or file (default: the scenario's)");
-  command.add_option("--scenario", options.scenario, "scenario: name or file")
+  command.add_option("scenario,--scenario", options.scenario, "scenario: name or file")
       ->capture_default_str();
   command.add_option("--seed", options.seed, "seed of all random choices")->capture_default_str();
   command
