@@ -63,7 +63,10 @@ struct HandCommand {
   /// settings.
   Vector effort;
   double pull_force{4.0};  ///< [N] beyond the load's weight, for release_on_pull
-  double payload{};        ///< mass of what is grasped, 0: unknown [kg]
+  double payload{};        ///< mass of what is grasped by this hand, 0: unknown [kg]
+  /// The hand holds one object together with the other hands that have such a command: the pull is
+  /// that on all of them, and they release together.
+  bool both_hands{};
 };
 
 /// Ordered: further down takes precedence (architecture: mode machine).

@@ -253,6 +253,9 @@ struct RegraspRequest {
   /// Where the object may stand at the end, any of them, the best first; not empty, at most 64.
   std::vector<StandingPlace> goals;
   bool both{};  ///< two hands at once, which carry it there together; else from hand to hand
+  /// Of both: the goals are poses in the air, reached straight after the lift; else the object is
+  /// put down there.
+  bool in_air{};
   std::uint64_t seed{};  ///< seed of the random choices
 };
 

@@ -108,6 +108,8 @@ struct ActionGoal {
   /// pick, place, regrasp, carry: the final pose of the object is known; drive: of the platform.
   bool has_goal{};
   Pose T_world_goal{Pose::Identity()};  ///< that pose
+  /// give: with both hands, from where the object stands; else with the hand that holds it.
+  bool both_hands{};
 };
 
 enum class ActionState : std::uint8_t { idle, running, succeeded, failed, cancelled };

@@ -51,6 +51,7 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
   io.vector("effort", m.effort, w.effort, kCoordinate);
   io.number("pull_force", m.pull_force, w.pull_force, {0, 1e5});
   io.number("payload", m.payload, w.payload, {0, 1e3});
+  io.flag("both_hands", m.both_hands, w.both_hands);
 }
 
 void describe(WireIo& io, OtherHandState& m, handsel_OtherHandState& w) {

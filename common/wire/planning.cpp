@@ -180,9 +180,11 @@ void describe(WireIo& io, RegraspRequest& m, handsel_RegraspRequest& w) {
   io.part("grasp", m.grasp, w.grasp);
   io.list("goals", m.goals, w.goals, 64);
   io.flag("both", m.both, w.both);
+  io.flag("in_air", m.in_air, w.in_air);
   io.integer("seed", m.seed, w.seed);
   io.check(m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
   io.check(!m.goals.empty(), "goals", "is empty, at least one place is needed");
+  io.check(m.both || !m.in_air, "in_air", "is for two hands at once, but both is false");
 }
 
 void describe(WireIo& io, RegraspStep& m, handsel_RegraspStep& w) {

@@ -60,6 +60,7 @@ void describe(WireIo& io, ActionGoal& m, handsel_ActionGoal& w) {
   io.text("surface", m.surface, w.surface, Text::maybe_empty);
   io.flag("has_goal", m.has_goal, w.has_goal);
   io.pose("T_world_goal", m.T_world_goal, w.T_world_goal);
+  io.flag("both_hands", m.both_hands, w.both_hands);
 }
 
 void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
