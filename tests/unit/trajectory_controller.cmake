@@ -12,6 +12,7 @@ handsel_test(controller GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST
 handsel_test(controller_parts GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_inputs_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_arm_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(finger_limit GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/finger_limit_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
+handsel_test(both_hands GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/both_hands_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(go_gate GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/go_gate_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 # Latches over supervisor and controller.
 handsel_test(latches_property GROUP trajectory_controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/latches_property_test.cpp

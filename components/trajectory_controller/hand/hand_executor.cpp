@@ -339,6 +339,8 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now,
   // In Hold and more severe modes the positions of people are uncertain.
   const bool alone = in.may_move && !person_near_ && !release_.armed();
   if (in.new_state && alone && state_ == HandState::grasped) release_.bear(in.force, now);
+  if (in.restarts_watch && release_.armed() && phase_ == Phase::hold)
+    release_.arm(release_.threshold());
   if (in.clamped && person_near_ && closed_) {  // opens to where the last closing began
     release_.disarm();
     paused_ = false;

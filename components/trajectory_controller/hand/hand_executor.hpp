@@ -54,7 +54,9 @@ struct HandInputs {
   bool may_move{};                  ///< mode below Hold
   bool stop{};                      ///< mode Stop or Fault: use the stop limits
   bool too_near{};  ///< a person approaches the hand: fingers that move or close stop
-  bool clamped{};   ///< the partner of the handover is clamped: open in any mode
+  /// An armed watch for a pull begins anew: the load's own force is measured again.
+  bool restarts_watch{};
+  bool clamped{};  ///< the partner of the handover is clamped: open in any mode
 };
 
 class HandExecutor {

@@ -44,7 +44,8 @@ const Wrench* felt_wrench(const RobotState& robot, std::size_t hand) noexcept {
   return hand <= robot.other_hands.size() ? &robot.other_hands[hand - 1].wrist_wrench : nullptr;
 }
 
-/// Finds the nearest hand of a person to a hand at `p` (world [m]), and the handover partner.
+/// Finds the nearest hand of a person to a hand at `p` (world [m]), or keeps a nearer one of
+/// before, and the handover partner as seen from `p`.
 void find_people(const ObservedPeople& people, const Vector3& p, HandInputs& in) noexcept {
   double torso = std::numeric_limits<double>::infinity();
   for (const PersonPoints& person : people.points()) {
@@ -112,6 +113,10 @@ std::string Hands::accept(const HandCommand& command, std::string refusal,
   if (hand != nullptr) hand->refused = !refusal.empty();
   if (!refusal.empty()) return refusal;
   accepted_ = command.id;
+  hand->together = command.both_hands;
+  // Watches that begin at the same time decide the same: the hands release together.
+  if (command.both_hands && command.action == HandAction::release_on_pull)
+    for (Hand& other : hands_) other.restarts_watch = other.together;
   const bool takes_payload = command.payload > 0.0 || hand->payload == 0.0;
   if (command.action == HandAction::grasp && takes_payload) hand->grasped_payload = command.payload;
   return {};
@@ -124,6 +129,7 @@ void Hands::reset(const Vector& position, const ServoReference* reference) noexc
     const double held =
         reference != nullptr ? trajectory_controller::held_payload(*reference, i) : 0.0;
     hand.payload = hand.grasped_payload = held;
+    hand.together = false;
   }
 }
 
@@ -145,6 +151,24 @@ bool Hands::step(const HandsInputs& in, TimePoint now, MotionState3& next) noexc
   return changed;
 }
 
+void Hands::feel(std::size_t index, const HandsInputs& all, HandInputs& in) const noexcept {
+  const bool together = hands_[index].together;
+  Vector3 p_sum = Vector3::Zero();
+  int count = 0;
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const Hand& hand = hands_[i];
+    if (hand.palm < 0 || (i != index && !(together && hand.together))) continue;
+    const Pose T_world_tool =
+        all.robot.T_world_base * all.T_root_link[static_cast<std::size_t>(hand.palm)];
+    const Wrench* felt = felt_wrench(all.robot, i);
+    if (felt != nullptr) in.force += T_world_tool.linear() * felt->force;
+    find_people(all.people, T_world_tool.translation(), in);
+    p_sum += T_world_tool.translation();
+    ++count;
+  }
+  if (count > 1) find_people(all.people, p_sum / count, in);
+}
+
 void Hands::step(std::size_t index, const HandsInputs& all, TimePoint now,
                  MotionState3& next) noexcept {
   Hand& hand = hands_[index];
@@ -157,13 +181,8 @@ void Hands::step(std::size_t index, const HandsInputs& all, TimePoint now,
   in.person_distance = std::numeric_limits<double>::infinity();
   in.clamped = all.clamped && !all.people.partner().empty();
   in.payload = felt_payload(all.robot, index);
-  if (in.new_state && hand.palm >= 0) {
-    const Pose& T_root_tool = all.T_root_link[static_cast<std::size_t>(hand.palm)];
-    const Pose T_world_tool = all.robot.T_world_base * T_root_tool;
-    const Wrench* felt = felt_wrench(all.robot, index);
-    if (felt != nullptr) in.force = T_world_tool.linear() * felt->force;
-    find_people(all.people, T_world_tool.translation(), in);
-  }
+  in.restarts_watch = std::exchange(hand.restarts_watch, false);
+  if (in.new_state) feel(index, all, in);
   hand.executor.step(in, period_, now, next);
   for (int i = 0; i < hand.executor.size(); ++i) {
     const int axis = hand.executor.axes()[static_cast<std::size_t>(i)];

@@ -81,13 +81,17 @@ class Hands {
     std::string group;  // of its axes
     int palm{-1};       // link
     HandExecutor executor;
-    bool refused{};  // the last command to it
+    bool refused{};   // the last command to it
+    bool together{};  // it holds one object together with the other hands for which this is true
+    bool restarts_watch{};  // another of these hands begins to wait for a pull
     double grasped_payload{}, payload{};
     HandState reported() const noexcept { return refused ? HandState::refused : executor.state(); }
   };
 
   Hand* find(const std::string& group);
   void step(std::size_t index, const HandsInputs& in, TimePoint now, MotionState3& next) noexcept;
+  /// Writes force and people at a hand; the force of hands that hold one object together is summed.
+  void feel(std::size_t index, const HandsInputs& all, HandInputs& in) const noexcept;
 
   double period_;
   std::vector<Hand> hands_;
