@@ -42,9 +42,9 @@ RegraspPlan RegraspPlanner::plan(const RegraspTask& task, const std::function<bo
   return SequenceSearch(impl_->check, impl_->passes, task).run(cancelled);
 }
 
-RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose& T_world_goal,
+RegraspPlan RegraspPlanner::plan_together(const TwoHandTask& task,
                                           const std::function<bool()>& cancelled) {
-  return carry_together(impl_->check, T_world_start, T_world_goal, cancelled);
+  return carry_together(impl_->check, task, cancelled);
 }
 
 }  // namespace handsel::grasp_planner

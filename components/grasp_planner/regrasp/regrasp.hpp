@@ -43,6 +43,13 @@ struct RegraspTask {
 
 enum class RegraspStepKind { pick, pass, place, join };
 
+/// An object that both hands take where it stands and carry together.
+struct TwoHandTask {
+  Pose T_world_start{Pose::Identity()};  ///< where the object stands
+  Pose T_world_goal{Pose::Identity()};   ///< where both hands release the object
+  bool in_air{};  ///< a person takes the object at the goal; else the object is put down there
+};
+
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
   RegraspStepKind kind{};  ///< kind of the transfer
@@ -110,12 +117,11 @@ class RegraspPlanner {
   /// grasps. ConfigError when start or goal name an arm or a grasp that is not there.
   RegraspPlan plan(const RegraspTask& task, const std::function<bool()>& cancelled = {});
 
-  /// Two hands that take it at once where it stands, up by `lift`, straight over and down: pick,
-  /// join, place. All along the path both arms keep the angles of their elbows, stay inside their
-  /// limits and touch nothing, and the fingers of both bear the load. ConfigError when there is one
-  /// arm.
-  RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal,
-                            const std::function<bool()>& cancelled = {});
+  /// Two hands that take it at once where it stands, up by `lift`, straight over and down, or after
+  /// the lift straight to a goal in the air: pick, join, place. All along the path both arms keep
+  /// the angles of their elbows, stay inside their limits and touch nothing, and the fingers of
+  /// both bear the load. ConfigError when there is one arm.
+  RegraspPlan plan_together(const TwoHandTask& task, const std::function<bool()>& cancelled = {});
 
  private:
   struct Impl;

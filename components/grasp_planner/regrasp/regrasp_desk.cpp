@@ -119,7 +119,8 @@ void answer_together(const RegraspRequest& request, const RegraspStage& stage,
                          stage.scene, request.object);
   planner.set_settings(stage.settings);
   for (const StandingPlace& goal : request.goals) {
-    const RegraspPlan plan = planner.plan_together(T_world_start, goal.T_world_object, cancelled);
+    const RegraspPlan plan =
+        planner.plan_together({T_world_start, goal.T_world_object, request.in_air}, cancelled);
     answer.checked += plan.checked;
     write(plan, sides, answer.reply);
     for (std::size_t a = 0; a < plan.load_shares.size(); ++a) {

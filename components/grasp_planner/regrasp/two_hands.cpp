@@ -13,19 +13,22 @@ namespace {
 
 constexpr double kPathStep = 0.03;  // [m] between two poses of the carried object
 
-/// Returns the path of the object: up by `lift` [m], straight across and down.
-std::vector<Pose> carried_over(const Pose& T_start, const Pose& T_goal, double lift) {
+/// Returns the path of the object: up by `lift` [m], straight across and down, or to a goal in the
+/// air straight after the lift.
+std::vector<Pose> carried_over(const TwoHandTask& task, double lift) {
   const auto raised = [&](Pose T) {
     T.translation().z() += lift;
     return T;
   };
+  const Pose &T_start = task.T_world_start, &T_goal = task.T_world_goal;
+  if (task.in_air) return path_of_object({T_start, raised(T_start), T_goal}, kPathStep);
   return path_of_object({T_start, raised(T_start), raised(T_goal), T_goal}, kPathStep);
 }
 
 /// One object carried by both hands from one place to another.
 class TwoHandSearch {
  public:
-  TwoHandSearch(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal);
+  TwoHandSearch(StepCheck& check, const TwoHandTask& task);
   RegraspPlan run(const std::function<bool()>& cancelled);
 
  private:
@@ -47,10 +50,11 @@ class TwoHandSearch {
   RegraspPlan out_;
 };
 
-TwoHandSearch::TwoHandSearch(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal)
+TwoHandSearch::TwoHandSearch(StepCheck& check, const TwoHandTask& task)
     : check_(check),
-      load_(carried_load(check.object().mass(), T_world_start.linear(), check.settings().grip)),
-      T_world_path_(carried_over(T_world_start, T_world_goal, check.settings().lift)) {}
+      load_(
+          carried_load(check.object().mass(), task.T_world_start.linear(), check.settings().grip)),
+      T_world_path_(carried_over(task, check.settings().lift)) {}
 
 /// Finds the grasps of one arm. Returns false, and gives the reason in the plan, when there are
 /// none.
@@ -235,12 +239,12 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
 
 }  // namespace
 
-RegraspPlan carry_together(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal,
+RegraspPlan carry_together(StepCheck& check, const TwoHandTask& task,
                            const std::function<bool()>& cancelled) {
   if (check.arms().size() != 2)
     throw ConfigError("two hands at once need two arms, there is " +
                       std::to_string(check.arms().size()));
-  return TwoHandSearch(check, T_world_start, T_world_goal).run(cancelled);
+  return TwoHandSearch(check, task).run(cancelled);
 }
 
 }  // namespace handsel::grasp_planner

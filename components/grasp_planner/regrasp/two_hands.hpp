@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two hands that take an object at once, carry it together and put it down.
+// Two hands that take an object at once, carry it together and release it.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 namespace handsel::grasp_planner {
 
 /// Returns the plan of RegraspPlanner::plan_together(). ConfigError unless there are two arms.
-RegraspPlan carry_together(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal,
+RegraspPlan carry_together(StepCheck& check, const TwoHandTask& task,
                            const std::function<bool()>& cancelled);
 
 }  // namespace handsel::grasp_planner

@@ -303,7 +303,7 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
   const Pose T_start = DuoStage::standing("tray", 0.50, 0, M_PI / 2),
              T_goal = DuoStage::standing("tray", 0.60, 0, M_PI / 2);
   RegraspPlanner planner(duo().robot, arms, *right.object, library, duo().scene(), "thing");
-  const RegraspPlan plan = planner.plan_together(T_start, T_goal);
+  const RegraspPlan plan = planner.plan_together({T_start, T_goal});
   ASSERT_TRUE(plan.solved) << plan.reason;
   ASSERT_EQ(plan.steps.size(), 3U);
   ASSERT_EQ(plan.load_shares.size(), 2U);
@@ -323,7 +323,7 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
                          GraspListSettings{}.step_fraction, 1);
   const RegraspPlan refused =
       RegraspPlanner(duo().robot, arms, weight, library, duo().scene(), "thing")
-          .plan_together(T_start, T_goal);
+          .plan_together({T_start, T_goal});
   EXPECT_FALSE(refused.solved);
   EXPECT_NE(refused.reason.find("bear"), std::string::npos) << refused.reason;
 }
