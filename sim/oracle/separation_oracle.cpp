@@ -39,9 +39,12 @@ double closest(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Ve
   return (w + s * u - t * v).norm();
 }
 
-bool is_exempt_part(BodyPart part, Side side) {
-  return side == Side::left ? part == BodyPart::forearm_left || part == BodyPart::hand_left
-                            : part == BodyPart::forearm_right || part == BodyPart::hand_right;
+bool is_exempt_part(const PersonVolume& volume, BodyPart part) {
+  if (!volume.exception) return false;
+  const bool left = part == BodyPart::forearm_left || part == BodyPart::hand_left;
+  const bool right = part == BodyPart::forearm_right || part == BodyPart::hand_right;
+  return (left && (volume.both_sides || volume.side == Side::left)) ||
+         (right && (volume.both_sides || volume.side == Side::right));
 }
 
 Vector3 velocity_near(const Person& person, const Vector3& point) {
@@ -116,7 +119,7 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot,
       const Vector3 a = T * link.a, b = T * link.b, middle = (a + b) / 2;
       for (std::size_t i = 0; i < body.size(); ++i) {
         const BodyCapsule& part = body[i];
-        if (volume.exception && is_exempt_part(part.part, volume.side)) continue;
+        if (is_exempt_part(volume, part.part)) continue;
         const double max_centre_distance = best.distance + link.bound + spheres[i].second;
         if (max_centre_distance < 0 ||
             (middle - spheres[i].first).squaredNorm() >= max_centre_distance * max_centre_distance)

@@ -26,6 +26,7 @@ struct PersonVolume {
   const Person* person{};  ///< ground truth; not null
   bool exception{};        ///< separation exemption of forearm and hand
   Side side{Side::right};  ///< side of that forearm and hand
+  bool both_sides{};       ///< forearms and hands of both sides are exempt
 };
 
 struct TrueSeparation {

@@ -209,6 +209,10 @@ void FreeGraspSearch::add(const Vector3& start, const Vector3& direction, const 
 /// `near_left`: how near the held part is to the point that is left to a receiver, [0, 1].
 void FreeGraspSearch::add_candidate(Candidate candidate, const Vector3& direction,
                                     double near_left) {
+  if (query_.beside &&
+      (candidate.T_world_hand.translation() - query_.T_world_object * query_.object->com)
+              .dot(*query_.beside) < settings_.taking_both_min_beside)
+    return;
   Pose T_wrist = candidate.T_world_hand;
   T_wrist.translation() -= query_.wrist * T_wrist.linear().col(2);
   const auto posture = wrist_posture(leaning_to(T_wrist.translation()), T_wrist);

@@ -33,6 +33,9 @@ struct FreeGraspQuery {
   double wrist{};                         ///< distance from the wrist to the palm's middle [m]
   Vector3 preferred{Vector3::UnitX()};    ///< preferred side of the object, world, unit
   const std::vector<HandPart>* robot{};   ///< parts of the robot, world; not null
+  /// Side of the object on which this hand holds, of two hands on the object: direction from the
+  /// centre of mass, world, unit; nullopt: the person takes the object with one hand.
+  std::optional<Vector3> beside;
   /// Point of the object that is left to a receiver, world [m]; nullopt: the person does not give.
   std::optional<Vector3> p_left;
   /// Hand poses of failed attempts, frame of the object: the search avoids them.

@@ -55,6 +55,12 @@ double distance_of(const std::vector<HandPart>& parts, const ObjectModel& model,
 bool is_hand(BodyPart part) { return part == BodyPart::hand_left || part == BodyPart::hand_right; }
 int hand_number(BodyPart part) { return part == BodyPart::hand_left ? 0 : 1; }
 
+/// Returns whether a part is forearm or hand of an arm that takes part in the handover.
+bool exchanges(const PersonModel& person, BodyPart part) {
+  return (of_hand(part, Side::left) && person.takes_part(Side::left)) ||
+         (of_hand(part, Side::right) && person.takes_part(Side::right));
+}
+
 }  // namespace
 
 int object_index(const ObjectBodies& objects, const std::string& id) {
@@ -86,6 +92,7 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   person_settings.manners = settings.manners;
   Body person{PersonModel(person_settings),
               Grip(settings.person_grip),
+              TwoHandHold(settings.person_grip),
               -1,
               object_index(objects_, start.fetches),
               false,
@@ -177,7 +184,7 @@ const RobotHandState& People::hand_for(const Body& person,
     return hand.gripped >= 0 && hand.gripped == person.object;
   };
   const auto holds = [](const RobotHandState& hand) { return hand.gripped >= 0; };
-  const bool is_holding = person.object >= 0 && person.grip.holding();
+  const bool is_holding = person.object >= 0 && person.holds();
   const BodyState at = is_holding ? objects_[person.object].state() : person.hand().state();
   const Vector3 p = at.T_world_body.translation();
   const auto is_nearer = [&p](const RobotHandState& a, const RobotHandState& b) {
@@ -200,7 +207,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
   view.robot = &robot;
   view.platform = platform_;
   view.robot_hand = robot_hand.palm.T_world_body.translation();
-  if (!person.grip.holding() && !person.model.wants_grip())
+  if (!person.holds() && !person.model.wants_grip())
     person.object = person.fetches >= 0          ? person.fetches
                     : gripped >= 0               ? gripped
                     : person.model.in_handover() ? person.object
@@ -213,9 +220,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.held_by_robot = gripped == person.object;
     view.held_firmly = view.held_by_robot && robot_hand.holds_firmly;
     view.pressed_by_robot = robot_hand.pressed == person.object;
-    view.grip_force = person.grip.wrench().force;
-    view.arm_force = person.hand().arm_force();
-    if (person.grip.holding()) view.arm_force += object.model().mass * from_bt(world_.getGravity());
+    feel(person, view);
     view.p_hand_object =
         person.hand().state().T_world_body.inverse() * view.T_world_object.translation();
     if (person.model.needs_finger_distance())
@@ -233,11 +238,34 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
   for (int s = 0; s < 2; ++s) person.hands[s]->place(person.model.hand(s));
 }
 
+/// Writes the forces that a person feels on the object and in the arms. Of a load in both hands the
+/// person expects the weight, and feels what is beyond.
+void People::feel(const Body& person, PersonView& view) const {
+  const Vector3 weight = objects_[person.object].model().mass * from_bt(world_.getGravity());
+  if (!person.both.holding()) {
+    view.grip_force = person.grip.wrench().force;
+    view.arm_force = person.hand().arm_force();
+    if (person.grip.holding()) view.arm_force += weight;
+    return;
+  }
+  view.grip_force = person.both.on_object().force;
+  double& up = view.grip_force.z();
+  up = up > 0 ? std::max(0.0, up + weight.z()) : up;
+  view.arm_force = person.hands[0]->arm_force() + person.hands[1]->arm_force() + weight;
+}
+
 void People::hold_or_release(Body& person) {
   if (!person.model.wants_grip()) {
     person.grip.release();
-  } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
-    if (hand_gap(person) < kPalmDistance + manners_.taking_hold_gap) {
+    person.both.release();
+  } else if (!person.holds() && !person.broke && person.object >= 0) {
+    const double max_gap = kPalmDistance + manners_.taking_hold_gap;
+    if (person.model.uses_both_hands() &&
+        std::max(hand_gap(person, 0), hand_gap(person, 1)) < max_gap) {
+      person.both.hold(
+          {person.hands[0]->state().T_world_body, person.hands[1]->state().T_world_body},
+          objects_[person.object].state().T_world_body);
+    } else if (!person.model.uses_both_hands() && hand_gap(person) < max_gap) {
       person.grip.hold(person.hand().state().T_world_body.inverse() *
                        objects_[person.object].state().T_world_body);
     } else {
@@ -250,8 +278,7 @@ void People::pull(Body& person, double dt) {
   const bool in_handover = person.model.in_handover();
   person.capsules = body_capsules(person.model.body());
   for (int s = 0; s < 2; ++s) {
-    const bool takes = person.model.side() == (s == 0 ? Side::left : Side::right);
-    person.hands[s]->set_configuration(takes ? person.model.hand_configuration() : std::nullopt);
+    person.hands[s]->set_configuration(person.model.hand_configuration(s));
     person.hands[s]->pull_to(person.model.hand(s), dt);
   }
   for (std::size_t c = 0; c < person.colliders.size(); ++c) {
@@ -261,11 +288,13 @@ void People::pull(Body& person, double dt) {
     btRigidBody& body = person.colliders[c] ? *person.colliders[c]
                                             : person.hands[hand_number(capsule.part)]->body();
     const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
-    const bool is_compliant = in_handover && of_hand(capsule.part, person.model.side()) &&
-                              !(is_hand(capsule.part) && person.model.hand_configuration());
+    const bool is_compliant =
+        in_handover && exchanges(person.model, capsule.part) &&
+        !(is_hand(capsule.part) && person.model.hand_configuration(hand_number(capsule.part)));
     body.setCollisionFlags(is_compliant ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE
                                         : flags);
   }
+  if (person.both.holding()) return pull_with_both(person, dt);
   if (!person.grip.holding()) return;
   ObjectBody& object = objects_[person.object];
   if (person.model.phase() == PersonPhase::offering && person.model.p_hand_object_to_give())
@@ -275,6 +304,18 @@ void People::pull(Body& person, double dt) {
   object.push(w);
   person.hand().push(object.state().T_world_body.translation(), {-w.force, -w.torque});
   person.broke = !person.grip.holding();
+}
+
+/// Applies the forces between both hands and the object.
+void People::pull_with_both(Body& person, double dt) {
+  ObjectBody& object = objects_[person.object];
+  person.both.update({person.hands[0]->state(), person.hands[1]->state()}, object.state(),
+                     object.model().mass, object.min_inertia(), dt);
+  person.broke = !person.both.holding();
+  object.push(person.both.on_object());
+  for (int s = 0; s < 2; ++s)
+    person.hands[s]->push(person.hands[s]->state().T_world_body.translation(),
+                          person.both.on_hand(s));
 }
 
 /// Moves the held object in the hand, toward this position in the frame of the hand [m].
@@ -289,20 +330,25 @@ void People::move_in_hand(Body& person, const Vector3& p_hand_object, double dt)
 }
 
 double People::hand_gap(const Body& person) const {
+  return hand_gap(person, person.model.side() == Side::left ? 0 : 1);
+}
+
+double People::hand_gap(const Body& person, int side) const {
   const ObjectBody& object = objects_[person.object];
-  return surface_distance(object.model(), object.T_world_object().inverse() *
-                                              person.hand().state().T_world_body.translation());
+  return surface_distance(
+      object.model(),
+      object.T_world_object().inverse() * person.hands[side]->state().T_world_body.translation());
 }
 
 bool People::grips(int object) const {
   return std::any_of(people_.begin(), people_.end(),
-                     [&](const Body& p) { return p.grip.holding() && p.object == object; });
+                     [&](const Body& p) { return p.holds() && p.object == object; });
 }
 
 int People::touching_person(int object) const {
   const auto found = std::find_if(people_.begin(), people_.end(), [&](const Body& p) {
     if (p.object != object || object < 0) return false;
-    if (p.grip.holding()) return true;
+    if (p.holds()) return true;
     const PersonPhase phase = p.model.phase();
     return (phase == PersonPhase::closing || phase == PersonPhase::reaching) &&
            hand_gap(p) < kPalmDistance + manners_.taking_touch_gap;
@@ -313,13 +359,13 @@ int People::touching_person(int object) const {
 bool People::complies(int code) const {
   const Body& person = people_[code / kMaxCapsules];
   return person.model.in_handover() &&
-         of_hand(person.capsules[code % kMaxCapsules].part, person.model.side());
+         exchanges(person.model, person.capsules[code % kMaxCapsules].part);
 }
 
 bool People::has_digits(int code) const {
   const Body& person = people_[code / kMaxCapsules];
   const BodyPart part = person.capsules[code % kMaxCapsules].part;
-  return is_hand(part) && of_hand(part, person.model.side()) && person.model.hand_configuration();
+  return is_hand(part) && person.model.hand_configuration(hand_number(part)).has_value();
 }
 
 const std::string& People::id(int code) const { return people_[code / kMaxCapsules].model.id(); }
@@ -335,8 +381,8 @@ void People::volumes(const std::vector<RobotHandState>& robot_hands,
     };
     const bool exchanged = person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
                            std::any_of(robot_hands.begin(), robot_hands.end(), is_near_object);
-    out.push_back(
-        {&person.model.body(), person.model.in_handover() || exchanged, person.model.side()});
+    out.push_back({&person.model.body(), person.model.in_handover() || exchanged,
+                   person.model.side(), person.model.uses_both_hands()});
   }
 }
 

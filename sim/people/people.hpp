@@ -12,6 +12,7 @@
 #include "sim/oracle/separation_oracle.hpp"
 #include "sim/people/person.hpp"
 #include "sim/people/person_hand.hpp"
+#include "sim/people/two_hand_hold.hpp"
 #include "sim/physics/grip.hpp"
 #include "sim/physics/object_body.hpp"
 #include "sim/scene/settings.hpp"
@@ -86,8 +87,9 @@ class People {
  private:
   struct Body {
     PersonModel model;
-    Grip grip;
-    int object{-1};  // index of the object of the handover, or of the fetched object
+    Grip grip;         // of the handover hand
+    TwoHandHold both;  // of both hands, in place of `grip`
+    int object{-1};    // index of the object of the handover, or of the fetched object
     int fetches{-1};
     bool broke{false};
     std::vector<BodyCapsule> capsules;
@@ -96,6 +98,7 @@ class People {
 
     PersonHand& hand() { return *hands[model.side() == Side::left ? 0 : 1]; }
     const PersonHand& hand() const { return *hands[model.side() == Side::left ? 0 : 1]; }
+    bool holds() const { return grip.holding() || both.holding(); }
   };
   void build(const StartPerson&, const SimSettings&, int number, ShapeStore&);
   const RobotHandState& hand_for(const Body&, const std::vector<RobotHandState>& robot_hands) const;
@@ -103,8 +106,11 @@ class People {
                const std::vector<HandPart>& robot);
   void hold_or_release(Body&);
   void pull(Body&, double dt);
+  void pull_with_both(Body&, double dt);
+  void feel(const Body&, PersonView&) const;
   void move_in_hand(Body&, const Vector3& p_hand_object, double dt) const;
   double hand_gap(const Body&) const;
+  double hand_gap(const Body&, int side) const;
 
   ObjectBodies& objects_;
   btDynamicsWorld& world_;

@@ -109,6 +109,7 @@ void PersonModel::step(double dt, const PersonView& view) {
     } else if (settings_.kind != PersonKind::still) {
       run_phase(dt, view);
     }
+    move_second_hand();
     move_guided_hands(dt);
     if (settings_.steps_in.speed > 0)
       feet_ = home_ - distance_from_place(settings_.steps_in, settings_.approach_from, clock_,
@@ -125,6 +126,7 @@ void PersonModel::step(double dt, const PersonView& view) {
     bend_arm(hand_index(), hand_target_);
     hand_target_ = points_[kHand[hand_index()]];
   }
+  if (second_hand_.is_active()) bend_arm(1 - hand_index(), second_hand_.target());
   bend_guided_arms();
   command_hands(dt);
   for (int s = 0; s < 2; ++s) {
@@ -140,9 +142,11 @@ void PersonModel::step(double dt, const PersonView& view) {
   body_.gaze_direction = gaze_;
   body_.gaze_origin = points_[kHead] + 0.08 * gaze_;
   body_.palms.clear();
-  if (hand_configuration_)
-    body_.palms.push_back({kBodyJoints[static_cast<std::size_t>(kHand[hand_index()])],
-                           hand_configuration_->R_world_hand * Vector3::UnitX()});
+  for (const int s : {hand_index(), 1 - hand_index()}) {
+    if (const auto& hand = hand_configuration(s))
+      body_.palms.push_back(
+          {kBodyJoints[static_cast<std::size_t>(kHand[s])], hand->R_world_hand * Vector3::UnitX()});
+  }
 }
 
 bool PersonModel::waits_for_robot(const PersonView& view) const {
@@ -206,6 +210,7 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
         give_up();
       } else if (phase_time() > manners.person_close_time) {
         wants_grip_ = true;
+        second_hand_.join(hand_target_);
         from_ = hand_target_;
         enter(PersonPhase::pulling);
       }
@@ -261,8 +266,10 @@ bool PersonModel::is_offered_to(const PersonView& view, int side) const {
     return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
   // An object that the robot has only begun to lift is not offered to anybody.
+  const bool may_be_unlifted =
+      settings_.kind != PersonKind::taker && settings_.kind != PersonKind::partner;
   const bool is_lifted =
-      settings_.kind != PersonKind::taker || !p_object_at_grasp_ ||
+      may_be_unlifted || !p_object_at_grasp_ ||
       (view.T_world_object.translation() - *p_object_at_grasp_).norm() >= manners.taking_min_lift;
   if (!is_lifted) return false;
   if (settings_.kind == PersonKind::partner && announcement_ != Announcement::offers) return false;
@@ -309,7 +316,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
   if (chooses_place()) choose_place(view);
   const PersonManners& manners = settings_.manners;
   if (offer_time_ < (settings_.recording ? manners.recorded_reaction : settings_.reaction)) return;
-  if (chooses_place() && !taking_.has_place()) return;
+  if (chooses_place() && !has_places(view)) return;
   offer_time_ = 0;
   side_of_object_ = side_to_take(view);
   from_ = hand_point();
@@ -319,7 +326,8 @@ void PersonModel::watch(double dt, const PersonView& view) {
   duration_ = std::clamp(reach_time, manners.taking_min_reach_time, manners.taking_max_reach_time) /
               settings_.behaviour.speed_scale;
   lean_from_ = lean_;
-  lean_to_ = taking_.has_place() ? lean_to_take(view) : lean_to_reach(goal);
+  begin_with_second_hand();
+  lean_to_ = taking_.has_place() ? lean_to_places(view) : lean_to_reach(goal);
   hand_target_ = from_;
   hand_active_ = !settings_.recording;
   raise_progress_ = 0;
@@ -346,10 +354,15 @@ void PersonModel::reach_out(double dt, const PersonView& view) {
   hand_target_ = taking_.has_place()
                      ? taking_.position_at(from_, s, manners.taking_curve, view.T_world_object)
                      : Vector3(from_ + s * (grasp_point(view) - from_));
+  second_hand_.reach(s, manners.taking_curve, view.T_world_object);
   if (s >= manners.person_midway && settings_.behaviour.withdraws && !first_attempt_over_)
     return give_up();
   if (s < 1) return;
-  if (hand_to_surface(view) < kPalmDistance + manners.taking_touch_gap) {
+  const bool is_other_there =
+      !second_hand_.is_active() ||
+      hand_to_surface(view, second_hand_.target()) < kPalmDistance + manners.taking_touch_gap;
+  if (is_other_there && hand_to_surface(view) < kPalmDistance + manners.taking_touch_gap) {
+    second_hand_.join(hand_target_);
     enter(PersonPhase::closing);
   } else if (phase_time() > reach_duration() + manners.taking_contact_time) {
     give_up();
@@ -442,6 +455,7 @@ void PersonModel::give_up() {
   from_ = hand_active_ ? hand_target_ : hand_point();
   hand_active_ = true;
   hand_target_ = from_;
+  second_hand_.begin_return();
   lean_from_ = lean_;
   duration_ = settings_.manners.person_retract_time;
   warp_.setConstant(playback_);

@@ -19,6 +19,7 @@
 #include "sim/people/guided_hand.hpp"
 #include "sim/people/moving_offer.hpp"
 #include "sim/people/person_settings.hpp"
+#include "sim/people/second_hand.hpp"
 #include "sim/people/step_in.hpp"
 #include "sim/people/taking_hand.hpp"
 #include "sim/physics/grip.hpp"
@@ -179,8 +180,16 @@ class PersonModel {
   const BodyState& hand() const { return hands_[hand_index()]; }
   /// Returns the commanded state; 0 left, 1 right.
   const BodyState& hand(int side) const { return hands_[side]; }
+  /// Returns the configuration of a hand, 0 left, 1 right; nullopt: a fist.
+  const std::optional<HandConfiguration>& hand_configuration(int side) const {
+    return side == hand_index() ? hand_configuration_ : second_hand_.configuration();
+  }
   /// Returns the configuration of the handover hand; nullopt: a fist.
   const std::optional<HandConfiguration>& hand_configuration() const { return hand_configuration_; }
+  /// Returns whether the person takes or holds the object of the handover with both hands.
+  bool uses_both_hands() const { return second_hand_.is_active(); }
+  /// Returns whether a hand takes part in the handover: the handover hand, or each of both.
+  bool takes_part(Side side) const { return side == side_ || uses_both_hands(); }
   /// Returns the shape of a hand; 0 left, 1 right.
   HumanHand hand_shape(int side) const;
   /// Returns where in the frame of hand() the person moves the held object, to leave a receiver
@@ -237,6 +246,11 @@ class PersonModel {
   void choose_place(const PersonView&);
   Vector3 side_to_take(const PersonView&) const;
   FreeGraspQuery place_query(const ObjectModel&, const HumanArm&) const;
+  FreeGraspQuery place_query_of_both(const PersonView&, const HumanArm&) const;
+  bool needs_both_hands(const ObjectModel&) const;
+  bool has_places(const PersonView&) const;
+  Eigen::Quaterniond hand_at_rest(int side) const;
+  void move_second_hand();
   std::optional<Vector3> choose_place_to_give(const ObjectModel&, const Eigen::Quaterniond& turn);
   void hold_to_give_back(const PersonView&);
   void hold_otherwise(const PersonView&);
@@ -245,10 +259,12 @@ class PersonModel {
   void remember_hold();
   bool gives_from_place() const;
   double lean_to_reach(const Vector3& p_hand) const;
-  double lean_to_take(const PersonView&) const;
+  double lean_to_take(const Pose& T_world_hand, int side) const;
+  double lean_to_places(const PersonView&) const;
+  void begin_with_second_hand();
   double trunk() const;
   Vector3 by_leaning(double lean) const;
-  Vector3 upright_shoulder() const;
+  Vector3 upright_shoulder(int side) const;
   void update_hand(double dt, const PersonView&);
   void raise_hand_in_advance(double dt, const PersonView&);
   bool has_changed_hands() const;
@@ -264,7 +280,10 @@ class PersonModel {
   Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
   Vector3 left() const { return {-std::sin(yaw_), std::cos(yaw_), 0}; }
   Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
-  double hand_to_surface(const PersonView&) const;
+  double hand_to_surface(const PersonView&, const Vector3& p_hand) const;
+  double hand_to_surface(const PersonView& view) const {
+    return hand_to_surface(view, hand_target_);
+  }
   Vector3 carry_position() const;
   Vector3 rest_position() const { return rest_position(hand_index()); }
   Vector3 rest_position(int side) const;
@@ -317,6 +336,7 @@ class PersonModel {
   std::vector<Pose> held_in_vain_;                   // hand in the frame of the object offered
   TakingHand taking_;                                // place of the hand on an object that is taken
   std::optional<HandConfiguration> hand_configuration_;  // of the handover hand; nullopt: a fist
+  SecondHand second_hand_;  // on an object that is taken with both hands
   // Orientation of the handover hand before a reach.
   Eigen::Quaterniond R_world_rest_{Eigen::Quaterniond::Identity()};
   double bend_{0};                            // how far the wrist bends as the hand needs, 0 to 1

@@ -42,8 +42,8 @@ void PersonModel::bend_arm(int s, const Vector3& target) {
   const Vector3 along = (target - root).stableNormalized();
   Vector3 palm_direction =
       ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
-  if (hand_configuration_ && s == hand_index()) {
-    const Vector3 fingers = hand_configuration_->R_world_hand * Vector3::UnitZ();
+  if (const auto& configuration = hand_configuration(s)) {
+    const Vector3 fingers = configuration->R_world_hand * Vector3::UnitZ();
     palm_direction = ((1 - bend_) * palm_direction + bend_ * fingers).stableNormalized();
   }
   const Vector3 palm_vector = palm * palm_direction;
@@ -99,8 +99,8 @@ Vector3 PersonModel::rest_position(int side) const {
 
 Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }
 
-double PersonModel::hand_to_surface(const PersonView& view) const {
-  return surface_distance(*view.object, view.T_world_object.inverse() * hand_target_);
+double PersonModel::hand_to_surface(const PersonView& view, const Vector3& p_hand) const {
+  return surface_distance(*view.object, view.T_world_object.inverse() * p_hand);
 }
 
 /// Returns the recorded hand's position of max reach for a person at `feet`, world [m].

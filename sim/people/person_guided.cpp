@@ -33,7 +33,7 @@ void PersonModel::look_away(double duration) {
 /// Returns whether the hand can leave what it does: not while it exchanges an object, darts or
 /// follows a recording.
 bool PersonModel::may_guide(Side side) const {
-  if (side != side_) return true;
+  if (side != side_ && !uses_both_hands()) return true;
   switch (phase_) {
     case PersonPhase::closing:
     case PersonPhase::pulling:

@@ -44,12 +44,72 @@ FreeGraspQuery PersonModel::place_query(const ObjectModel& object, const HumanAr
   FreeGraspQuery query;
   query.object = &object;
   query.arm = arm;
-  query.arm.shoulder = upright_shoulder();
+  const int s = arm.side == Side::left ? 0 : 1;
+  query.arm.shoulder = upright_shoulder(s);
   query.forward = forward();
   query.trunk = trunk();
-  query.wrist = (template_[kHand[hand_index()]] - template_[kWrist[hand_index()]]).norm();
+  query.wrist = (template_[kHand[s]] - template_[kWrist[s]]).norm();
   query.robot = &nothing;
   return query;
+}
+
+/// Returns whether the person takes an object with both hands.
+bool PersonModel::needs_both_hands(const ObjectModel& object) const {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& vertex : object.mesh.vertices) box.extend(vertex);
+  const double width = box.isEmpty() ? 0.0 : box.sizes().head<2>().maxCoeff();
+  return object.mass > settings_.manners.taking_max_one_hand_mass ||
+         width > settings_.manners.taking_max_one_hand_width;
+}
+
+/// Returns the query for one of both hands: a place on its own side of the object.
+FreeGraspQuery PersonModel::place_query_of_both(const PersonView& view, const HumanArm& arm) const {
+  FreeGraspQuery query = place_query(*view.object, arm);
+  const Vector3 outward = arm.side == Side::left ? left() : Vector3(-left());
+  query.T_world_object = view.T_world_object;
+  query.beside = outward;
+  query.preferred = (outward - forward()).normalized();
+  if (view.robot != nullptr) query.robot = view.robot;
+  return query;
+}
+
+/// Returns whether a place is chosen for each hand that takes the object.
+bool PersonModel::has_places(const PersonView& view) const {
+  return taking_.has_place() &&
+         (!needs_both_hands(*view.object) || second_hand_.taking().has_place());
+}
+
+/// Returns the orientation of a hand before a reach, world.
+Eigen::Quaterniond PersonModel::hand_at_rest(int side) const {
+  const Vector3 fingers = (points_[kHand[side]] - points_[kWrist[side]]).stableNormalized();
+  const Vector3 inward = side == 0 ? Vector3(-left()) : left();
+  Eigen::Matrix3d R;
+  R.col(2) = fingers;
+  R.col(0) = (inward - inward.dot(fingers) * fingers).stableNormalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return Eigen::Quaterniond(R);
+}
+
+/// Moves the other hand of a person who takes with both hands: with the handover hand, or back to
+/// rest.
+void PersonModel::move_second_hand() {
+  if (!second_hand_.is_active()) return;
+  switch (phase_) {
+    case PersonPhase::reaching:
+      return;
+    case PersonPhase::closing:
+    case PersonPhase::pulling:
+    case PersonPhase::withdrawing:
+    case PersonPhase::keeping:
+    case PersonPhase::offering:
+    case PersonPhase::leaving:
+      return second_hand_.follow(hand_target_);
+    case PersonPhase::retracting:
+      return second_hand_.come_back(min_jerk(phase_time() / duration_),
+                                    rest_position(1 - hand_index()));
+    default:
+      return second_hand_.come_back(1, rest_position(1 - hand_index()));
+  }
 }
 
 /// Returns whether the hand holds an object that the person gives in a chosen place.
@@ -136,20 +196,19 @@ void PersonModel::choose_place(const PersonView& view) {
   const auto arm = human_arm(body_, side_);
   if (!arm) return;
   held_in_vain_.clear();
-  FreeGraspQuery query = place_query(*view.object, *arm);
-  query.T_world_object = view.T_world_object;
-  query.preferred = side_to_take(view);
-  if (view.robot != nullptr) query.robot = view.robot;
-  taking_.choose(query, hand_shape(hand_index()), settings_.taking);
-  if (!taking_.has_place()) return;
-  const Vector3 fingers =
-      (points_[kHand[hand_index()]] - points_[kWrist[hand_index()]]).stableNormalized();
-  const Vector3 inward = hand_index() == 0 ? Vector3(-left()) : left();
-  Eigen::Matrix3d R;
-  R.col(2) = fingers;
-  R.col(0) = (inward - inward.dot(fingers) * fingers).stableNormalized();
-  R.col(1) = R.col(2).cross(R.col(0));
-  R_world_rest_ = Eigen::Quaterniond(R);
+  const auto other_arm = human_arm(body_, other_side(side_));
+  if (needs_both_hands(*view.object) && other_arm) {
+    taking_.choose(place_query_of_both(view, *arm), hand_shape(hand_index()), settings_.taking);
+    second_hand_.taking().choose(place_query_of_both(view, *other_arm),
+                                 hand_shape(1 - hand_index()), settings_.taking);
+  } else {
+    FreeGraspQuery query = place_query(*view.object, *arm);
+    query.T_world_object = view.T_world_object;
+    query.preferred = side_to_take(view);
+    if (view.robot != nullptr) query.robot = view.robot;
+    taking_.choose(query, hand_shape(hand_index()), settings_.taking);
+  }
+  if (taking_.has_place()) R_world_rest_ = hand_at_rest(hand_index());
 }
 
 /// Returns the height of the shoulder above the waist [m].
@@ -162,16 +221,14 @@ Vector3 PersonModel::by_leaning(double lean) const {
   return trunk() * (std::sin(lean) * forward() + (std::cos(lean) - 1) * Vector3::UnitZ());
 }
 
-Vector3 PersonModel::upright_shoulder() const { return shoulder(hand_index()) - by_leaning(lean_); }
+Vector3 PersonModel::upright_shoulder(int side) const { return shoulder(side) - by_leaning(lean_); }
 
-/// Returns the min lean with which the wrist reaches the chosen place, else the lean that comes
+/// Returns the min lean with which the wrist of a hand reaches a place, else the lean that comes
 /// nearest [rad].
-double PersonModel::lean_to_take(const PersonView& view) const {
-  const int s = hand_index();
-  const Pose T = taking_.goal(view.T_world_object);
+double PersonModel::lean_to_take(const Pose& T, int s) const {
   const double palm = (template_[kHand[s]] - template_[kWrist[s]]).norm();
   const Vector3 p_wrist = T.translation() - palm * T.linear().col(2);
-  const Vector3 upright = upright_shoulder();
+  const Vector3 upright = upright_shoulder(s);
   const double max_distance = settings_.manners.taking_lean_from * (reach_ - palm);
   const int steps =
       std::max(1, static_cast<int>(std::ceil(settings_.manners.person_max_lean / kLeanStep)));
@@ -185,6 +242,20 @@ double PersonModel::lean_to_take(const PersonView& view) const {
   return nearest;
 }
 
+/// Returns the lean with which each hand that takes the object reaches its place [rad].
+double PersonModel::lean_to_places(const PersonView& view) const {
+  const double lean = lean_to_take(taking_.goal(view.T_world_object), hand_index());
+  if (!second_hand_.is_active()) return lean;
+  return std::max(lean,
+                  lean_to_take(second_hand_.taking().goal(view.T_world_object), 1 - hand_index()));
+}
+
+/// Begins the reach of the second hand, where the person takes the object with both.
+void PersonModel::begin_with_second_hand() {
+  const int s = 1 - hand_index();
+  if (second_hand_.taking().has_place()) second_hand_.begin(points_[kHand[s]], hand_at_rest(s));
+}
+
 /// Updates the configuration of the handover hand: a fist, except while the hand takes, holds in a
 /// chosen place, or moves back without an object.
 void PersonModel::update_hand(double dt, const PersonView& view) {
@@ -192,6 +263,7 @@ void PersonModel::update_hand(double dt, const PersonView& view) {
   switch (phase_) {
     case PersonPhase::watching:
       bend_ = 0;
+      if (!second_hand_.is_active() && offer_time_ <= 0) second_hand_.forget();
       return hand_configuration_.reset();
     case PersonPhase::reaching:
     case PersonPhase::closing:
@@ -205,6 +277,7 @@ void PersonModel::update_hand(double dt, const PersonView& view) {
                                      : 1;
       hand_configuration_ =
           taking_.configuration(R_world_rest_, turned, closed, view.T_world_object);
+      second_hand_.configure(turned, closed, view.T_world_object);
       bend_ = phase_ == PersonPhase::withdrawing ? 1 - min_jerk(progress_) : 1;
       return;
     }
@@ -213,17 +286,20 @@ void PersonModel::update_hand(double dt, const PersonView& view) {
         for (double& closure : hand_configuration_->closures)
           closure = std::max(0.0, closure - dt / manners.person_close_time);
       }
+      second_hand_.open(dt / manners.person_close_time);
       bend_ = 1 - min_jerk(phase_time() / duration_);
       return taking_.forget();
     default:
       if (gives_from_place() && view.object != nullptr) {
         hand_configuration_ = taking_.configuration(R_world_rest_, 1, 1, view.T_world_object);
+        second_hand_.configure(1, 1, view.T_world_object);
         bend_ = 1;
         return;
       }
       bend_ = 0;
       hand_configuration_.reset();
       taking_.forget();
+      second_hand_.forget();
   }
 }
 
