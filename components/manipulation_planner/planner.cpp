@@ -153,7 +153,8 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
   if (!known) co_return Outcome::failure("no scene or no controller state has come");
   Outcome outcome = co_await find_hand(goal);
   if (!outcome.good) co_return outcome;
-  const bool takes_two_hands = goal.kind == ActionKind::regrasp || goal.kind == ActionKind::carry;
+  const bool takes_two_hands =
+      goal.kind == ActionKind::regrasp || goal.kind == ActionKind::carry || goal.both_hands;
   if (takes_two_hands && parts_.arm.manipulators().size() < 2)
     co_return Outcome::failure(std::string(name(goal.kind)) + " needs two hands, robot " +
                                parts_.arm.robot().name() + " has one");
@@ -162,7 +163,10 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       outcome = co_await pick(parts_, goal.object, goal.human, goal.surface);
       break;
     case ActionKind::give:
-      outcome = co_await give(parts_, goal.object, goal.human);
+      if (goal.both_hands)
+        outcome = co_await give_together(parts_, goal);
+      else
+        outcome = co_await give(parts_, goal.object, goal.human);
       break;
     case ActionKind::place:
       outcome = co_await place(parts_, goal.object, goal.surface);

@@ -17,6 +17,8 @@ Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string
                       const std::string& onto);
 /// Gives the held object to a person; empty: the nearest.
 Routine<Outcome> give(Parts& parts, const std::string& object, const std::string& human);
+/// Gives an object, from where it stands, to a person with both hands.
+Routine<Outcome> give_together(Parts& parts, const ActionGoal& goal);
 /// Takes an object from the hand of a person. `wanted` empty: whatever is offered; `giver` empty:
 /// any person; `onto`: as of pick(), empty: any surface.
 Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver,

@@ -323,7 +323,7 @@ Routine<StepResult> execute_plan(Parts& parts, const ActionGoal& goal) {
                              : "there is no free place on a surface called " + goal.surface);
     co_return result;
   }
-  TwoHandPlan plan = co_await ask_regrasp(parts, object, places, false);
+  TwoHandPlan plan = co_await ask_regrasp(parts, object, places, HandsUse::in_turn);
   result.outcome = plan.outcome;
   if (!plan.outcome.good) co_return result;
   // Where the steps begin.

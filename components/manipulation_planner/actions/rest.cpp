@@ -80,6 +80,9 @@ Routine<Outcome> rest_others(Parts& parts) {
 }
 
 Routine<Outcome> rest_all(Parts& parts) {
+  if (parts.held.is_in_both_hands())
+    co_return Outcome::failure(parts.held.id() +
+                               " is in both hands: a person must take it before the arms rest");
   // One arm may be where another rests: the one in the way goes first.
   Outcome others = co_await rest_others(parts);
   Outcome own = co_await rest(parts);

@@ -91,7 +91,8 @@ Grasp grasp_in_hand(const Parts& parts) {
 }  // namespace
 
 Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object,
-                                 const std::vector<Pose>& places, bool both) {
+                                 const std::vector<Pose>& places, HandsUse use) {
+  const bool both = use != HandsUse::in_turn;
   parts.action.phase = both ? ActionPhase::choosing_two_grasps : ActionPhase::choosing_hands;
   RegraspRequest request;
   parts.clients.regrasp.open(request);
@@ -103,6 +104,7 @@ Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object,
     request.grasp = grasp_in_hand(parts);
   }
   request.both = both;
+  request.in_air = use == HandsUse::together_in_air;
   request.seed = parts.action.id;
   const bool answered = co_await parts.clients.regrasp.ask(request);
   TwoHandPlan plan;

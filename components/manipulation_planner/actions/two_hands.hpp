@@ -2,6 +2,7 @@
 // Steps of the actions that take two hands.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,18 @@ struct TwoHandPlan {
   std::vector<RegraspStep> steps;  ///< in order
 };
 
+/// How two hands bring an object to a place.
+enum class HandsUse : std::uint8_t {
+  in_turn,          ///< one after the other, the object is put down at the place
+  together,         ///< both at once, the object is put down at the place
+  together_in_air,  ///< both at once, a person takes the object at the place
+};
+
 // References must outlive the routines.
 /// Asks for steps that bring an object, which stands or is in the hand in use, to one of the places
-/// (T_world_object, at most 64, the best first). `both`: the hands hold the object together.
+/// (T_world_object, at most 64, the best first).
 Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object,
-                                 const std::vector<Pose>& places, bool both);
+                                 const std::vector<Pose>& places, HandsUse use);
 /// Waits until an object is at rest somewhere, for a moment: what was just put down may still seem
 /// to be held.
 Routine<Outcome> await_put_down(Parts& parts, const std::string& object);

@@ -10,6 +10,7 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
   command.position = position;
   if (effort != nullptr) command.effort = *effort;
   command.pull_force = settings_.pull_force;
+  command.both_hands = mass_ratio < 1.0;
   if (const ObjectModel* grasped = now_.model_of(action_.object);
       action == HandAction::grasp && grasped != nullptr)
     command.payload = mass_ratio * grasped->mass;
@@ -59,8 +60,10 @@ Routine<HandResult> HandCommander::run(HandAction action, const Vector& position
 }
 
 Routine<HandResult> HandCommander::release_on_pull(const Vector& position, double timeout,
-                                                   const std::function<bool()>& is_over) {
-  HandResult result = co_await run(HandAction::release_on_pull, position, timeout);
+                                                   const std::function<bool()>& is_over,
+                                                   double mass_ratio) {
+  HandResult result =
+      co_await run(HandAction::release_on_pull, position, timeout, nullptr, mass_ratio);
   if (!result.outcome.good) co_return result;
   const std::uint64_t id = now_.execution()->hand_command;
   const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };

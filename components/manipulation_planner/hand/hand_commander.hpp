@@ -28,7 +28,7 @@ class HandCommander {
 
   /// Sends a command until the controller has acknowledged it. `position`: axes of the hand
   /// [rad, m]; `effort`: of them, null: none; `mass_ratio`: part of the object's mass that this
-  /// hand bears. The references must outlive the routine.
+  /// hand bears, below 1 together with the other hands. The references must outlive the routine.
   Routine<Outcome> send(HandAction action, const Vector& position, const Vector* effort = nullptr,
                         double mass_ratio = 1.0);
   /// Sends a command as send() does and waits for its end, `timeout` [s] at most; sends it again
@@ -36,9 +36,10 @@ class HandCommander {
   Routine<HandResult> run(HandAction action, const Vector& position, double timeout,
                           const Vector* effort = nullptr, double mass_ratio = 1.0);
   /// Waits for a pull that opens the hand, `timeout` [s] at most, until `is_over` or until a stop
-  /// interrupts the hand while it opens: the state is `refused` then.
+  /// interrupts the hand while it opens: the state is `refused` then. `mass_ratio`: as of send().
   Routine<HandResult> release_on_pull(const Vector& position, double timeout,
-                                      const std::function<bool()>& is_over);
+                                      const std::function<bool()>& is_over,
+                                      double mass_ratio = 1.0);
   /// Waits until the fingers have ended a motion that was sent.
   Routine<Outcome> await_open();
 

@@ -26,7 +26,12 @@ class HeldObject {
   void release() {
     attachment_ = {};
     vain_offers_.clear();
+    is_in_both_hands_ = false;
   }
+  /// Notes that a further hand holds the object, too, until release().
+  void join() { is_in_both_hands_ = true; }
+  /// Returns whether two hands hold the object together.
+  bool is_in_both_hands() const { return is_in_both_hands_; }
   /// Returns whether something is held.
   bool is_holding() const { return !attachment_.object.empty(); }
   /// Returns what is held and how; `object` empty: nothing.
@@ -71,6 +76,7 @@ class HeldObject {
   const Snapshot& now_;
   const settings::ManipulationPlannerSettings& settings_;
   Attachment attachment_;
+  bool is_in_both_hands_{};
   std::optional<Grasp> grasp_;
   std::vector<Pose> vain_offers_;
   TimePoint seen_in_hand_{};
