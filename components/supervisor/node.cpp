@@ -41,6 +41,7 @@ Ability ability_of(const settings::SupervisorSettings& settings, const NodeConte
   ability.max_places = settings.max_places;
   ability.objects = context.objects;
   ability.person_reach = settings.person_reach;
+  ability.max_width = settings.max_one_hand_width;
   if (context.robot == nullptr) return ability;
   ability.drives = drives(*context.robot);
   if (const auto it = settings.payload.find(context.robot->name()); it != settings.payload.end())

@@ -7,6 +7,7 @@
 
 #include "common/messages/names.hpp"
 #include "common/model/human/human_body.hpp"
+#include "common/model/object_extent.hpp"
 
 namespace handsel::supervisor {
 namespace {
@@ -117,6 +118,12 @@ bool can_bring(const SceneObject& object, const Ability& ability,
                      [&](const Ability::Arm& arm) { return arm.hand == hand; });
 }
 
+/// Returns the larger level extent of an object in its frame; 0: not known [m].
+double width_of(const ObjectModel* model, const SceneObject& object) {
+  const Eigen::AlignedBox3d box = object_extent(model, object.primitive);
+  return box.isEmpty() ? 0.0 : box.sizes().head<2>().maxCoeff();
+}
+
 bool in_someones_hands(const Facts& facts, const std::string& object, FactKind kind) {
   return std::any_of(facts.facts.begin(), facts.facts.end(),
                      [&](const Fact& f) { return f.kind == kind && f.subject == object; });
@@ -139,6 +146,7 @@ const std::vector<PredicateSign>& known_predicates() {
                            {"room", {T::surface}},
                            {"heavy", {T::object}},
                            {"too_heavy", {T::object}},
+                           {"two_handed", {T::object}},
                            {"two_hands", {}},
                            {"one_arm", {T::object, T::surface}},
                            {"model", {T::object, T::name}},
@@ -277,9 +285,11 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability,
     if (!object.model.empty())
       state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
     const ObjectModel* model = ability.objects ? ability.objects(object.model) : nullptr;
+    const bool is_wide = ability.max_width > 0 && width_of(model, object) > ability.max_width;
+    const bool is_heavy = model != nullptr && ability.payload > 0 && model->mass > ability.payload;
+    if (is_wide || is_heavy) state.set({predicate_of(Derived::two_handed), {o, kNothing}});
     if (model == nullptr || ability.payload <= 0) continue;
-    if (model->mass > ability.payload)
-      state.set({predicate_of(Derived::heavy), {o, kNothing}}, model->mass);
+    if (is_heavy) state.set({predicate_of(Derived::heavy), {o, kNothing}}, model->mass);
     if (model->mass > ability.payload * ability.hands)
       state.set({predicate_of(Derived::too_heavy), {o, kNothing}}, model->mass);
   }

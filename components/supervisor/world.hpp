@@ -28,6 +28,7 @@ enum class Derived : std::uint8_t {
   room,        ///< surface: has free places within reach of an arm; value: their number
   heavy,       ///< object: too heavy for one hand
   too_heavy,   ///< object: too heavy for all hands
+  two_handed,  ///< object: too heavy or too wide for one hand
   two_hands,   ///< the robot has more than one hand
   one_arm,     ///< object, surface: one arm reaches both; an object in a hand: that arm
   model,       ///< object, name: model of the object
@@ -113,8 +114,9 @@ class World {
 
 /// Payload and reach of the robot.
 struct Ability {
-  double payload{};  ///< max payload of one hand [kg]; 0: unlimited
-  int hands{1};      ///< number of hands; their payloads add up
+  double payload{};    ///< max payload of one hand [kg]; 0: unlimited
+  int hands{1};        ///< number of hands; their payloads add up
+  double max_width{};  ///< max width of an object in one hand [m]; 0: unlimited
   /// An arm of the robot.
   struct Arm {
     std::string hand;                   ///< group of the hand, as in SceneObject::holder_id

@@ -57,6 +57,13 @@ TEST(Eval, a_replayed_trial_is_the_same_bit_for_bit_from_another_folder_too) {
   EXPECT_GT(fs::file_size(file), 1'000'000u);
 }
 
+TEST(Eval, a_tray_too_heavy_and_too_wide_for_one_hand_is_given_with_both) {
+  const Outcome run = shell(kHandsel + " eval --scenario give_tray --replay 2");
+  const Json trial = lines_of(run.out).at(0);
+  EXPECT_TRUE(trial["success"].get<bool>()) << run.out.substr(0, 1000);
+  EXPECT_EQ(trial["contact_ratio"].get<double>(), 1) << "without the help of the grasp constraint";
+}
+
 TEST(Eval, conditions_share_their_seeds_and_come_in_a_drawn_order) {
   const TemporaryFolder folder;
   const Outcome outcome = shell(

@@ -88,6 +88,9 @@ class Compiler {
     out.object = field(a.object(), "object");
     out.human = field(a.human(), "human");
     out.surface = field(a.surface(), "surface");
+    out.both_hands = a.both_hands();
+    if (out.both_hands && out.kind != ActionKind::give)
+      throw_at(at.of("both_hands"), "is for actions of kind give, not " + a.kind());
     out.when = conditions_.tests(a.when(), at, "when", scope);
     out.keep = conditions_.tests(a.keep(), at, "keep", scope);
     for (int i = 0; i < a.adds_size(); ++i)

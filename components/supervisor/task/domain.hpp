@@ -88,6 +88,7 @@ struct CompiledAction {
   std::vector<Type> types;              ///< of the parameters
   ActionKind kind{};                    ///< sent in the ActionGoal
   Term object, human, surface;          ///< sent in the ActionGoal; "-": none
+  bool both_hands{};                    ///< sent in the ActionGoal
   std::vector<Test> when, keep;         ///< must hold before the action; while the action runs
   std::vector<Literal> adds, removes;   ///< hold after the action; hold no longer ("*": any)
   /// Change of the value of an atom.

@@ -99,6 +99,7 @@ PlannedAction planned(const Domain& domain, const Ground& ground, int index, con
   };
   PlannedAction out{
       action.kind, text(action.object), text(action.human), text(action.surface), index, {}, 0};
+  out.both_hands = action.both_hands;
   for (std::size_t i = 0; i < action.types.size(); ++i)
     out.args.push_back(ground.world.text(frame[i]));
   return out;

@@ -362,7 +362,8 @@ std::string PlannedAction::text() const {
     case ActionKind::pick:
       return "pick " + what + (human.empty() ? "" : " for " + human);
     case ActionKind::give:
-      return "give " + what + (human.empty() ? "" : " to " + human);
+      return "give " + what + (human.empty() ? "" : " to " + human) +
+             (both_hands ? " with both hands" : "");
     case ActionKind::receive:
       return "receive " + what + (human.empty() ? "" : " from " + human);
     case ActionKind::drive:

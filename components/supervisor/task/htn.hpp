@@ -19,6 +19,7 @@ struct PlannedAction {
   int action{-1};                      ///< index in the domain
   std::vector<std::string> args;       ///< of the domain's action
   double cost{};                       ///< with extra costs in the state of the plan
+  bool both_hands{};                   ///< of the ActionGoal
   std::string text() const;            ///< "give mug to anna"
   /// Returns whether the action ends with the object on a surface.
   bool puts_down() const {

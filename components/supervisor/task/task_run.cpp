@@ -240,6 +240,7 @@ void TaskRun::send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id
   goal.object = object_of(planned, situation_);
   goal.human = planned.human;
   goal.surface = planned.surface;
+  goal.both_hands = planned.both_hands;
   goal.task = status_.id;
   goal.epoch = go_epoch;
   if (is_drive_to_place(goal)) {

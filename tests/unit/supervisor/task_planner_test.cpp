@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/config/resources.hpp"
@@ -240,6 +241,61 @@ TEST(TaskPlanner, refuses_at_once_with_what_would_make_it_possible) {
             "carry mug on shelf, go to rest");
   heavy.mass = 7;
   says(goal(TaskKind::place, "mug", "", "shelf"), "mug is too heavy for the robot", weak);
+}
+
+/// A box of this width, an object of the mass that both hands of the robot bear, but not one.
+struct Burden {
+  Burden(double mass, double width) {
+    object.mass = mass;
+    object.mesh.vertices = {{-width / 2, -0.05, 0}, {width / 2, 0.05, 0.1}};
+    robot.payload = 3;
+    robot.max_width = 0.5;
+    robot.hands = 2;
+    robot.objects = [this](const std::string&) { return &object; };
+  }
+  ObjectModel object;
+  Ability robot;
+};
+
+TEST(TaskPlanner, what_is_too_heavy_or_too_wide_for_one_hand_is_given_with_both) {
+  const TaskWorld world = mug_on_table();
+  const TaskGoal give = goal(TaskKind::give, "mug", "anna");
+  const std::string with_both = "give mug to anna with both hands, go to rest";
+  const Burden heavy(5, 0.1), wide(1, 0.6), light(1, 0.4);
+  EXPECT_EQ(ask(give, world, {}, heavy.robot).steps(), with_both);
+  EXPECT_EQ(ask(give, world, {}, wide.robot).steps(), with_both);
+  EXPECT_EQ(ask(give, world, {}, light.robot).steps(),
+            "pick mug for anna, give mug to anna, go to rest");
+  const auto& actions = ask(give, world, {}, wide.robot).plan.actions;
+  ASSERT_FALSE(actions.empty());
+  EXPECT_TRUE(actions.front().both_hands);
+}
+
+TEST(TaskPlanner, a_give_with_both_hands_is_refused_with_the_reason) {
+  TaskWorld world = mug_on_table();
+  const TaskGoal give = goal(TaskKind::give, "mug", "anna");
+  const auto reason = [&](const Burden& burden) {
+    return ask(give, world, {}, burden.robot).reason();
+  };
+  Burden burden(1, 0.6);
+  burden.robot.hands = 1;
+  EXPECT_THAT(reason(burden), testing::HasSubstr("the robot has no other"));
+  EXPECT_THAT(reason(Burden(7, 0.1)), testing::HasSubstr("mug is too heavy for the robot"));
+  world.distance["mug"] = 1.5;
+  EXPECT_THAT(reason(Burden(1, 0.6)), testing::HasSubstr("out of the robot's reach"));
+}
+
+TEST(TaskPlanner, hands_that_hold_something_put_it_down_before_they_give_with_both) {
+  TaskWorld world = mug_on_table();
+  world.held_by["cup"] = kRobotName;
+  const Burden burden(5, 0.1);
+  Ability robot = burden.robot;
+  robot.objects = [&](const std::string& model) {
+    return model == "mug" ? &burden.object : nullptr;
+  };
+  const std::string steps = ask(goal(TaskKind::give, "mug", "anna"), world, {}, robot).steps();
+  EXPECT_THAT(steps, testing::StartsWith("place cup on "));
+  EXPECT_THAT(steps, testing::EndsWith("give mug to anna with both hands, go to rest"));
 }
 
 TEST(TaskPlanner, an_object_changes_hands_where_one_arm_does_not_reach_both_places) {
