@@ -285,7 +285,8 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability,
     if (!object.model.empty())
       state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
     const ObjectModel* model = ability.objects ? ability.objects(object.model) : nullptr;
-    const bool is_wide = ability.max_width > 0 && width_of(model, object) > ability.max_width;
+    const bool is_wide =
+        ability.hands > 1 && ability.max_width > 0 && width_of(model, object) > ability.max_width;
     const bool is_heavy = model != nullptr && ability.payload > 0 && model->mass > ability.payload;
     if (is_wide || is_heavy) state.set({predicate_of(Derived::two_handed), {o, kNothing}});
     if (model == nullptr || ability.payload <= 0) continue;

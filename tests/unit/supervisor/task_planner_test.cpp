@@ -277,9 +277,11 @@ TEST(TaskPlanner, a_give_with_both_hands_is_refused_with_the_reason) {
   const auto reason = [&](const Burden& burden) {
     return ask(give, world, {}, burden.robot).reason();
   };
-  Burden burden(1, 0.6);
-  burden.robot.hands = 1;
-  EXPECT_THAT(reason(burden), testing::HasSubstr("the robot has no other"));
+  Burden heavy(5, 0.1), wide(1, 0.6);
+  heavy.robot.hands = wide.robot.hands = 1;
+  EXPECT_THAT(reason(heavy), testing::HasSubstr("the robot has no other"));
+  EXPECT_EQ(ask(give, world, {}, wide.robot).steps(),
+            "pick mug for anna, give mug to anna, go to rest");
   EXPECT_THAT(reason(Burden(7, 0.1)), testing::HasSubstr("mug is too heavy for the robot"));
   world.distance["mug"] = 1.5;
   EXPECT_THAT(reason(Burden(1, 0.6)), testing::HasSubstr("out of the robot's reach"));
