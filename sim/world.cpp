@@ -168,9 +168,20 @@ void SimWorld::command(const JointCommand& command, std::uint64_t writer, double
 }
 
 void SimWorld::observe(const HumanObservation& seen) { impl_->people->follow(seen); }
+namespace {
+
+/// Returns whether a robot that gives has the object in its hand for the receiver: a give with both
+/// hands begins where the object stands, and ends there if nobody takes the object.
+bool is_offering(const ActionStatus& action) {
+  return action.kind == ActionKind::give && action.phase != ActionPhase::grasp &&
+         action.phase != ActionPhase::lift && action.phase != ActionPhase::put_back;
+}
+
+}  // namespace
+
 void SimWorld::announce(const ActionStatus& action) {
   Announcement announcement = Announcement::none;
-  if (action.state == ActionState::running && action.kind == ActionKind::give)
+  if (action.state == ActionState::running && is_offering(action))
     announcement = Announcement::offers;
   if (action.state == ActionState::running && action.kind == ActionKind::receive)
     announcement = Announcement::asks;

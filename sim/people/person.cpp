@@ -266,10 +266,8 @@ bool PersonModel::is_offered_to(const PersonView& view, int side) const {
     return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
   // An object that the robot has only begun to lift is not offered to anybody.
-  const bool may_be_unlifted =
-      settings_.kind != PersonKind::taker && settings_.kind != PersonKind::partner;
   const bool is_lifted =
-      may_be_unlifted || !p_object_at_grasp_ ||
+      settings_.kind != PersonKind::taker || !p_object_at_grasp_ ||
       (view.T_world_object.translation() - *p_object_at_grasp_).norm() >= manners.taking_min_lift;
   if (!is_lifted) return false;
   if (settings_.kind == PersonKind::partner && announcement_ != Announcement::offers) return false;
