@@ -92,7 +92,7 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   person_settings.manners = settings.manners;
   Body person{PersonModel(person_settings),
               Grip(settings.person_grip),
-              TwoHandHold(settings.person_grip),
+              TwoHandHold(settings.person_two_hand_grip),
               -1,
               object_index(objects_, start.fetches),
               false,

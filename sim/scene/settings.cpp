@@ -59,6 +59,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.robot_grip.max_force = read.grip_force;
   s.robot_grip.max_torque = read.grip_torque;
   s.person_grip.max_force = read.person_grip_force;
+  s.person_two_hand_grip.max_force = read.person_two_hand_force;
   s.collision_force = read.collision_force;
   s.taking = read.free_grasp;
   s.manners = read.person;

@@ -25,6 +25,7 @@ struct SimSettings {
   double max_setpoint_age{0.1};  ///< older set-points are left out [s]
   /// Grasp constraint of a robot's hand, grip of a person's hand.
   GripSettings robot_grip, person_grip;
+  GripSettings person_two_hand_grip;  ///< each hand of a person who holds an object with both
   PersonHandSettings person_hand;     ///< free hand of a person on its spring
   FreeGraspSettings taking;           ///< choice of a place on an object that the robot holds
   PersonManners manners;              ///< behaviour of all people
