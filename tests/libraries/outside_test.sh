@@ -19,10 +19,21 @@ examples() {
   (cd "$work/cpp/build" && run ctest --output-on-failure && cat "$work/log")
 }
 
-# links_only <file> <pattern>: the file needs no shared library beyond the C++ runtime and the pattern.
+# links_only <file>: the file needs no shared library beyond the C++ runtime.
 links_only() {
-  others=$(objdump -p "$1" | sed -n 's/^ *NEEDED *//p' | grep -Ev "^(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so|$2" || true)
+  objdump -p "$1" >"$work/headers" || fail "objdump cannot read $1"
+  sed -n 's/^ *NEEDED *//p' "$work/headers" >"$work/needed"
+  grep -q '^libstdc++\.so' "$work/needed" || fail "objdump lists no libstdc++ for $1: the list is not complete"
+  others=$(awk '!/^(libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so/' "$work/needed")
   [ -z "$others" ] || fail "$1 needs also: $others"
+}
+
+# exports_only_own <file>: the shared library exports names of the project and no others.
+exports_only_own() {
+  nm -DC --defined-only "$1" >"$work/symbols" || fail "nm cannot read $1"
+  grep -q handsel "$work/symbols" || fail "$1 exports nothing"
+  foreign=$(cut -d' ' -f3- "$work/symbols" | awk '!/handsel/')
+  [ -z "$foreign" ] || fail "$1 exports names of others: $foreign"
 }
 
 # refused <pattern> <component>...: find_package refuses the components with a sentence that matches.
@@ -48,9 +59,9 @@ case $kind in
     done
     if grep -rn '"common/' "$work/prefix/include"; then fail "an installed header includes from the source tree"; fi
     examples -DCMAKE_PREFIX_PATH="$work/prefix"
-    links_only "$work/cpp/build/01_two_states" '^$'
-    links_only "$work/cpp/build/08_grasp" '^$'
-    links_only "$work/cpp/build/09_recording" '^$'
+    links_only "$work/cpp/build/01_two_states"
+    links_only "$work/cpp/build/08_grasp"
+    links_only "$work/cpp/build/09_recording"
     refused "there is no component teleport" teleport
     refused "handsel-model, which is not installed" model
     refused "component idl is not installed" idl
@@ -70,9 +81,8 @@ case $kind in
     examples -DCMAKE_PREFIX_PATH="$work/prefix"
     for library in trajectory grasp record; do
       file=$work/prefix/lib/libhandsel_$library.so
-      links_only "$file" '^$'
-      foreign=$(nm -DC --defined-only "$file" | cut -d' ' -f3- | grep -v 'handsel' || true)
-      [ -z "$foreign" ] || fail "$file exports names of others: $foreign"
+      links_only "$file"
+      exports_only_own "$file"
     done
     ;;
   fetched) examples -DHANDSEL_SOURCE="$source" ;;
