@@ -10,7 +10,8 @@ namespace handsel::sim {
 const char* name(PersonPhase phase) {
   static constexpr const char* kNames[] = {"arriving", "watching",    "reaching", "closing",
                                            "pulling",  "withdrawing", "keeping",  "retracting",
-                                           "offering", "darting",     "leaving",  "guided"};
+                                           "offering", "darting",     "leaving",  "guided",
+                                           "putting"};
   return kNames[static_cast<int>(phase)];
 }
 
@@ -226,8 +227,12 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
         hold_object(view);
       } else {
         hand_target_ = carry_position();
-        if (settings_.kind == PersonKind::fetcher && phase_time() > manners.fetcher_keep_time)
-          leave();
+        if (settings_.kind == PersonKind::fetcher && phase_time() > manners.fetcher_keep_time) {
+          if (settings_.puts_at)
+            begin_to_put(view);
+          else
+            leave();
+        }
       }
       break;
     case PersonPhase::retracting:
@@ -246,6 +251,9 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
       if (wants_grip_) hand_target_ = carry_position();
       break;
     }
+    case PersonPhase::putting:
+      put_down();
+      break;
     case PersonPhase::guided:
       break;
   }

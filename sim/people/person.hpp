@@ -71,6 +71,8 @@ struct PersonSettings {
   /// Max distance at which an external person's hand is guided to an offered object [m].
   double correction{0.15};
   double fetches_at{};           ///< time from which a fetcher reaches for the object [s]
+  /// Where a fetcher puts the object down: its origin, world [m]; nullopt: keeps the object.
+  std::optional<Vector3> puts_at;
   StepInSettings steps_in;       ///< walk of an otherwise resting person toward the robot and back
   MovingOfferSettings moving;    ///< how a giver moves the offered object; duration 0: no motion
   BehaviourProfile behaviour{};  ///< individual behaviour
@@ -119,7 +121,8 @@ enum class PersonPhase {
   offering,
   darting,
   leaving,
-  guided
+  guided,
+  putting  ///< a fetcher puts the object down
 };
 const char* name(PersonPhase);  ///< Returns the name as in the enumeration.
 
@@ -217,6 +220,8 @@ class PersonModel {
   void retract(double dt);
   void continue_dart(double dt, const PersonView&);
   void give_up();
+  void begin_to_put(const PersonView&);
+  void put_down();
   bool may_guide(Side side) const;
   bool leaves_handover_to_guide(Side side) const;
   Vector3 within_reach(int side, const Vector3& point) const;

@@ -264,6 +264,9 @@ class Reader {
              ", must not be negative");
       s.fetches_at = person.fetches_at();
     }
+    if (person.has_puts_at() && s.kind != PersonKind::fetcher)
+      fail("person " + s.id + " has puts_at but is not FETCHER");
+    if (person.has_puts_at()) s.puts_at = vec(person.puts_at());
     if (person.has_varies() && !vary(s, person.varies())) return;
     if (person.has_moves()) read_motion(p, person.moves());
     if (person.has_steps_in()) read_step_in(s, person.steps_in());
@@ -433,6 +436,8 @@ class Reader {
                                                   : GazeOutput::with_body;
     s.gaze_noise = within(sensor.gaze_noise(), "gaze_noise", 0, 1);
     s.gaze_dropout = within(sensor.gaze_dropout(), "gaze_dropout", 0, 1);
+    s.min_rate = std::min(s.rate, within(sensor.min_rate(), "min_rate", 0, 1000));
+    if (s.min_rate == 0) s.min_rate = std::min(s.rate, SensorSettings{}.min_rate);
     s.swap_rate = within(sensor.swap_rate(), "swap_rate", 0, s.rate);
     const bool only_people = !s.joints.empty() || s.joint_dropout > 0 ||
                              sensor.gaze() != config::GAZE_WITH_BODY || s.gaze_noise > 0 ||

@@ -348,6 +348,37 @@ TEST(SimWorld, who_fetches_a_mug_takes_it_from_where_it_stands_and_goes) {
   EXPECT_GT((world.T_world_object("mug").translation() - before).norm(), 0.5);
 }
 
+TEST(SimWorld, what_a_fetcher_puts_down_stands_where_the_scenario_says) {
+  config::Scenario scenario = mug_in_hand();
+  config::PersonDescription* anna = add_person(scenario, config::FETCHER);
+  anna->set_object("mug");
+  anna->set_fetches_at(0.5);
+  (*scenario.mutable_start())["arm_a2"] = 0.2;
+  const Vector3 p_mug = in_hand();
+  const Vector3 goal = p_mug + Vector3(0.05, 0.35, 0);
+  config::BoxDescription* bench = scenario.add_boxes();
+  bench->set_id("bench");
+  bench->mutable_pose()->mutable_xyz()->set_x(goal.x());
+  bench->mutable_pose()->mutable_xyz()->set_y(goal.y());
+  bench->mutable_pose()->mutable_xyz()->set_z(0.5 * (goal.z() - 0.07));
+  bench->mutable_size()->set_x(0.3);
+  bench->mutable_size()->set_y(0.3);
+  bench->mutable_size()->set_z(goal.z() - 0.07);
+  anna->mutable_puts_at()->set_x(goal.x());
+  anna->mutable_puts_at()->set_y(goal.y());
+  anna->mutable_puts_at()->set_z(goal.z());
+  SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
+  while (world.time() < 14 && world.person_phase(0) != PersonPhase::putting) world.step();
+  ASSERT_EQ(world.person_phase(0), PersonPhase::putting);
+  while (world.time() < 16) world.step();
+  GroundTruth ground_truth;
+  world.ground_truth(ground_truth);
+  const Vector3 p = world.T_world_object("mug").translation();
+  EXPECT_LT((p - goal).head<2>().norm(), 0.05) << p.transpose();
+  EXPECT_EQ(ground_truth.carrier, "surface");
+  EXPECT_FALSE(ground_truth.dropped);
+}
+
 TEST(SimWorld, who_fetches_what_is_not_there_is_refused) {
   config::Scenario scenario = mug_in_hand();
   add_person(scenario, config::FETCHER)->set_object("vase");
