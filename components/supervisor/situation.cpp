@@ -61,13 +61,20 @@ std::string Situation::surface_of(const std::string& object) {
   return "";
 }
 
-std::string Situation::fate_of(const std::string& object) {
-  if (!world().is(Type::object, object)) return object + " is gone";
+std::string Situation::person_with(const std::string& object) {
+  if (!world().is(Type::object, object)) return "";
   const Atom pattern{predicate_of(FactKind::held_by_human), {world().symbol(object), kAny}};
   const auto [first, last] = world().state.range(pattern.predicate);
   for (std::size_t i = first; i < last; ++i)
     if (State::fits(world().state.entries()[i].atom, pattern))
-      return world().text(world().state.entries()[i].atom.args[1]) + " took " + object;
+      return world().text(world().state.entries()[i].atom.args[1]);
+  return "";
+}
+
+std::string Situation::fate_of(const std::string& object) {
+  if (!world().is(Type::object, object)) return object + " is gone";
+  if (const std::string person = person_with(object); !person.empty())
+    return person + " took " + object;
   const std::string on = surface_of(object);
   return on.empty() ? "" : object + " is on " + on + " now";
 }

@@ -47,6 +47,8 @@ class Situation {
 
   std::string held();                                 ///< Returns the held object; empty: none.
   std::string surface_of(const std::string& object);  ///< Returns its surface; empty: none.
+  /// Returns the person that has the object; empty: nobody, or an unknown object.
+  std::string person_with(const std::string& object);
   /// Returns what happened to an object as one phrase; empty: unknown.
   std::string fate_of(const std::string& object);
 

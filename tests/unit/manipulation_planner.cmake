@@ -15,5 +15,6 @@ handsel_test(manipulation_planner GROUP manipulation_planner
     ${manipulation_planner_tests}/drive_test.cpp
     ${manipulation_planner_tests}/standing_search_test.cpp
     ${manipulation_planner_tests}/two_hand_otp_test.cpp
+    ${manipulation_planner_tests}/object_sight_test.cpp
   LINK handsel_manipulation_planner_core
   LABEL unit)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "components/manipulation_planner/actions/object_sight.hpp"
 #include "components/manipulation_planner/motion/motion_executor.hpp"
 
 namespace handsel::manipulation_planner {
@@ -28,6 +29,7 @@ Routine<Outcome> reach_grasp(Parts& parts, const std::string& object, const Gras
   approach.phase = ActionPhase::approach;
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {object};
+  approach.object = object_at_rest(parts, object);
   MotionSpec reach = reach_along(parts, object, grasp);
   const Group& fingers = parts.arm.fingers();
   const double closing = parts.settings.reach_closing;

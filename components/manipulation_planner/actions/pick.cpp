@@ -8,6 +8,7 @@
 
 #include "components/manipulation_planner/actions/actions.hpp"
 #include "components/manipulation_planner/actions/arm_choice.hpp"
+#include "components/manipulation_planner/actions/object_sight.hpp"
 #include "components/manipulation_planner/actions/place.hpp"
 #include "components/manipulation_planner/handover/otp_search.hpp"
 
@@ -102,7 +103,7 @@ Routine<Outcome> try_grasps(Parts& parts, const std::string& object, const std::
     last = co_await try_grasp(parts, object, for_human, grasp);
     if (last.good) co_return last;
     parts.refuse("grasp " + std::to_string(grasp.id), last.reason);
-    if (parts.held.is_holding()) co_return last;
+    if (parts.held.is_holding() || last.target_moved()) co_return last;
     if (parts.action.phase != ActionPhase::planning &&
         ++executed >= parts.settings.max_executed_grasps)
       break;
@@ -116,7 +117,10 @@ Routine<Outcome> pick_by_arm(Parts& parts, const std::string& object, const std:
                              const std::string& onto) {
   Outcome last;
   const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.reach_timeout);
-  for (std::uint32_t round = 0; round < parts.settings.grasp_rounds; ++round) {
+  const TimePoint search_end = parts.now.time() + from_seconds(parts.settings.search_timeout);
+  for (std::uint32_t round = 1; round <= parts.settings.grasp_rounds; ++round) {
+    last = co_await await_object(parts, object, search_end);
+    if (!last.good) co_return last;
     GraspList list;
     if (onto.empty())
       list = co_await ask_grasps(parts, object, for_human, parts.settings.max_grasps);
@@ -132,6 +136,7 @@ Routine<Outcome> pick_by_arm(Parts& parts, const std::string& object, const std:
     }
     last = co_await try_grasps(parts, object, for_human, list.grasps, last);
     if (last.good || parts.held.is_holding()) co_return last;
+    if (last.target_moved() && parts.now.time() < search_end) --round;
   }
   co_return last;
 }

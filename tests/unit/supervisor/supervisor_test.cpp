@@ -203,6 +203,31 @@ TEST(Supervisor, what_is_taken_while_the_robot_reaches_for_it_is_let_be) {
   EXPECT_EQ(rig.last().reason, "anna took box");
 }
 
+TEST(Supervisor, waits_for_a_person_who_has_the_only_object_of_the_task) {
+  for (const bool comes_back : {true, false}) {
+    SCOPED_TRACE(comes_back);
+    TaskRig rig;
+    rig.action_time = 6.0;
+    rig.run(2.5);
+    rig.ask(TaskKind::pick, "mug");
+    rig.run(0.5);
+    ASSERT_EQ(rig.done(), "pick mug");
+    rig.world.on.erase("mug");
+    rig.world.held_by["mug"] = "anna";
+    rig.run(3.0);
+    EXPECT_EQ(rig.done(), "pick mug") << "the person may put it down again";
+    if (comes_back) {
+      rig.world.held_by.erase("mug");
+      rig.world.on["mug"] = "shelf";
+    } else {
+      rig.action_time = 14.0;
+    }
+    ASSERT_TRUE(rig.finish());
+    EXPECT_EQ(rig.last().state, comes_back ? TaskState::succeeded : TaskState::failed)
+        << rig.last().reason;
+  }
+}
+
 TEST(Supervisor, what_comes_onto_the_table_meanwhile_is_cleared_too) {
   TaskRig rig;
   rig.run(2.5);
