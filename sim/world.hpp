@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/messages/attention.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
@@ -34,6 +35,8 @@ class SimWorld {
   void command(const JointCommand&, std::uint64_t writer = 1, double arrival = -1);
   /// Takes observations of people from outside; moves the people that follow this source.
   void observe(const HumanObservation&);
+  /// Takes a request of attention to the sensors.
+  void request(const SensorRequest&);
   /// Returns whether any person follows observations from outside.
   bool follows() const;
   /// Announces the robot's action to the people: a give action offers the object, a receive action

@@ -48,6 +48,11 @@ void SimWorld::Impl::prepare_sight() {
   for (const StartBox& box : setup.boxes) sight.boxes.push_back({box.T_world_box, box.size});
 }
 
+void SimWorld::request(const SensorRequest& request) {
+  for (HumanSensor& sensor : impl_->human_sensors) sensor.request(impl_->now(), request);
+  for (ObjectSensor& sensor : impl_->object_sensors) sensor.request(impl_->now(), request);
+}
+
 void SimWorld::human_observations(std::vector<Delivery<HumanObservation>>& out) {
   for (HumanSensor& sensor : impl_->human_sensors) sensor.collect(impl_->now(), out);
   if (impl_->now() < impl_->human_silent_until) out.clear();

@@ -9,6 +9,7 @@
 
 #include "common/base/time.hpp"
 #include "common/geometry/pose.hpp"
+#include "common/messages/perception.hpp"
 
 namespace handsel {
 
@@ -68,6 +69,21 @@ struct AttentionAdvice {
   double replan_period{};    ///< wanted period of the search for a better path [s]
   TaskChange change{};       ///< change wanted of the running task
   std::string person;        ///< id of the person the change concerns; empty: none
+};
+
+/// Topic SensorRequest, profile advice, 10 Hz, keyed by source: how often sources measure what. A
+/// source returns to its own rate when requests stop, and never goes below the rate that the guard
+/// needs.
+struct SensorRequest {
+  Stamp stamp{};          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::string source;     ///< source that is asked; empty: every source
+  double people_rate{};   ///< samples of people [Hz]; 0: own rate of the source
+  bool hands{};           ///< false: knuckles may be left out
+  double objects_rate{};  ///< samples of all objects [Hz]; 0: own rate of the source
+  /// Samples of `objects` and of what is in `region` [Hz]; 0: those of all objects suffice.
+  double region_rate{};
+  Coverage region;                   ///< world [m]; equal corners: no region
+  std::vector<std::string> objects;  ///< ids, at most 16
 };
 
 }  // namespace handsel

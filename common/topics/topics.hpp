@@ -80,6 +80,7 @@ struct TopicRow {
   X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 704, "attention", \
     "spark costmap collision_checker path_planner trajectory_planner manipulation_planner " \
     "trajectory_controller supervisor") \
+  X(SensorRequest, "sensor_request", advice, 10, 0.3, 2048, "attention", "sim ros2_lane") \
   X(PathRequest, "path_request", request, 0, 0, 2686976, "manipulation_planner", "path_planner") \
   X(PathReply, "path_reply", reply, 0, 0, 2621440, "path_planner", "manipulation_planner") \
   X(TrajectoryRequest, "trajectory_request", request, 0, 0, 2621440, \

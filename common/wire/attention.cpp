@@ -44,7 +44,19 @@ void describe(WireIo& io, AttentionAdvice& m, handsel_AttentionAdvice& w) {
   io.text("person", m.person, w.person, Text::maybe_empty);
 }
 
+void describe(WireIo& io, SensorRequest& m, handsel_SensorRequest& w) {
+  io.text("source", m.source, w.source, Text::maybe_empty);
+  io.stamp(m.stamp, w.stamp);
+  io.number("people_rate", m.people_rate, w.people_rate, {0, 1e4});
+  io.flag("hands", m.hands, w.hands);
+  io.number("objects_rate", m.objects_rate, w.objects_rate, {0, 1e4});
+  io.number("region_rate", m.region_rate, w.region_rate, {0, 1e4});
+  io.part("region", m.region, w.region);
+  io.texts("objects", m.objects, w.objects, 16);
+}
+
 HANDSEL_WIRE(AttentionState)
 HANDSEL_WIRE(AttentionAdvice)
+HANDSEL_WIRE_KEYED(SensorRequest, source)
 
 }  // namespace handsel

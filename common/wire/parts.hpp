@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "common/base/errors.hpp"
+#include "common/messages/perception.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
 #include "common/wire/wire_io.hpp"
+#include "idl/perception.h"
 #include "idl/planning.h"
 #include "idl/trajectory.h"
 #include "idl/world.h"
@@ -27,6 +29,7 @@ void describe(WireIo& io, Attachment& m, handsel_Attachment& w);  ///< object an
 void describe(WireIo& io, RequestId& m, handsel_RequestId& w);    ///< any numbers
 void describe(WireIo& io, Primitive& m, handsel_Primitive& w);    ///< extents [0, 1e4] m
 void describe(WireIo& io, MovingPart& m, handsel_MovingPart& w);  ///< radius [0, 100] m
+void describe(WireIo& io, Coverage& m, handsel_Coverage& w);      ///< no extent below 0
 void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);    ///< needs a name; age [0, 1e9] s
 /// Needs an id; at most 64 joints; stature [0.3, 3] m.
 void describe(WireIo& io, Person& m, handsel_Person& w);

@@ -6,10 +6,19 @@
 #include <set>
 
 #include "common/base/errors.hpp"
+#include "components/attention/object_search.hpp"
 
 namespace handsel::attention {
 
-Attention::Attention(const AttentionSettings& settings, const Body& body) : settings_(settings) {
+namespace {
+
+/// Returns whether the period of the work has a bound which the guard needs.
+bool is_bounded(Work work) { return work == Work::sensed_people || work == Work::sensed_objects; }
+
+}  // namespace
+
+Attention::Attention(const AttentionSettings& settings, const Body& body)
+    : settings_(settings), body_(body) {
   if (!(settings.tick > 0)) throw ConfigError("attention: tick must be above 0 s");
   if (!(settings.motor.avoid_slow > settings.motor.avoid_stop))
     throw ConfigError("attention: avoid_slow must be above avoid_stop");
@@ -34,6 +43,8 @@ Attention::Attention(const AttentionSettings& settings, const Body& body) : sett
     if (!seen.insert(w.work).second) throw ConfigError(what + " is described twice");
     if (!(w.p_min > 0)) throw ConfigError(what + ": p_min must be above 0 s");
     if (!(w.p_max >= w.p_min)) throw ConfigError(what + ": p_max must not be below p_min");
+    if (is_bounded(w.work) && !(w.p_max <= settings.max_sensed_period))
+      throw ConfigError(what + ": p_max must not be above max_sensed_period");
     if (w.serves.empty()) throw ConfigError(what + " serves nobody");
     for (const std::string& behaviour : w.serves)
       if (find(behaviour) == nullptr)
@@ -68,6 +79,12 @@ double Attention::period(const WorkSettings& work) const {
   return work.p_min + (work.p_max - work.p_min) * std::clamp(ease, 0.0, 1.0);
 }
 
+double Attention::period(Work work) const {
+  for (const WorkSettings& w : settings_.works)
+    if (w.work == work) return period(w);
+  return 0;
+}
+
 void Attention::step(const World& world, TimePoint now) {
   now_ = now;
   if (settings_.off) return;
@@ -85,6 +102,15 @@ void Attention::step(const World& world, TimePoint now) {
 
 void Attention::choose_gaze(TimePoint now) {
   const auto wants = [](const Entry& e) { return e.released && e.schema->gaze().has_value(); };
+  const auto urgent = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {
+    return wants(e) && e.schema->needs_gaze();
+  });
+  if (urgent != entries_.end()) {
+    const auto index = static_cast<int>(urgent - entries_.begin());
+    if (index != gaze_) gaze_since_ = now;
+    gaze_ = index;
+    return;
+  }
   int best = -1;
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (wants(entries_[i]) &&
@@ -128,11 +154,11 @@ AttentionAdvice Attention::advice() const {
       advice.target_shift = *shift;
     }
   }
-  const std::array<double*, std::size(kWorkNames)> periods{
-      &advice.people_period, &advice.objects_period, &advice.forecast_period,
-      &advice.cost_map_period, &advice.replan_period};
-  for (const WorkSettings& work : settings_.works)
-    *periods[static_cast<std::size_t>(work.work)] = period(work);
+  const std::array<double*, 5> periods{&advice.people_period, &advice.objects_period,
+                                       &advice.forecast_period, &advice.cost_map_period,
+                                       &advice.replan_period};
+  for (std::size_t work = 0; work < periods.size(); ++work)
+    *periods[work] = period(static_cast<Work>(work));
   if (gaze_ >= 0) {
     if (const auto target = entries_[static_cast<std::size_t>(gaze_)].schema->gaze()) {
       advice.has_gaze_target = true;
@@ -140,6 +166,40 @@ AttentionAdvice Attention::advice() const {
     }
   }
   return advice;
+}
+
+SensorRequest Attention::sensor_request(const World& world) const {
+  SensorRequest request;
+  if (settings_.off) {
+    request.hands = true;
+    return request;
+  }
+  const auto rate = [](double period) { return period > 0 ? 1 / period : 0; };
+  request.people_rate = rate(period(Work::sensed_people));
+  request.objects_rate = rate(period(Work::sensed_objects));
+  const ActionStatus* action = world.action;
+  const bool acts = action != nullptr && action->state == ActionState::running;
+  request.hands = acts && !action->human.empty();
+  for (const Entry& e : entries_)
+    request.hands |= e.released && (e.schema->kind() == Behaviour::give ||
+                                    e.schema->kind() == Behaviour::receive);
+  if (!acts || action->object.empty()) return request;
+  if (world.scene == nullptr || is_object_lost(world, settings_.motor.lost_after)) {
+    request.objects_rate = 0;  // it may be anywhere
+    return request;
+  }
+  request.region_rate = rate(period(Work::sensed_region));
+  if (request.objects_rate == 0 || request.region_rate <= request.objects_rate) {
+    request.region_rate = 0;
+    return request;
+  }
+  request.objects.push_back(action->object);
+  if (world.active != nullptr && world.active->position.size() == body_.dof()) {
+    const Vector3 p_hand = body_.grasp_point(world.active->position, world.active->T_world_base);
+    request.region = {p_hand - Vector3::Constant(settings_.region_size),
+                      p_hand + Vector3::Constant(settings_.region_size)};
+  }
+  return request;
 }
 
 AttentionState Attention::state() const {

@@ -28,9 +28,14 @@ enum class Work {
   objects,   ///< poses and holders in the scene
   forecast,  ///< forecast of the running trajectory
   cost_map,
-  replan,  ///< online replanning
+  replan,          ///< online replanning
+  sensed_people,   ///< samples of people by the sensors
+  sensed_objects,  ///< samples of all objects by the sensors
+  sensed_region,   ///< samples of the action's object and of objects at the robot's hand
 };
-inline constexpr const char* kWorkNames[] = {"people", "objects", "forecast", "cost_map", "replan"};
+inline constexpr const char* kWorkNames[] = {"people",         "objects",      "forecast",
+                                             "cost_map",       "replan",       "sensed_people",
+                                             "sensed_objects", "sensed_region"};
 
 /// The advised period of a work, by its most urgent behaviour: p_min + (p_max - p_min) * r, where r
 /// is the min over the behaviours of (period - p_min) / (p_max - p_min) of their clocks; p_min
@@ -54,6 +59,9 @@ struct AttentionSettings {
   MotorSettings motor;                        ///< motor parts of all behaviours
   std::vector<BehaviourSettings> behaviours;  ///< at least one; each name at most once
   std::vector<WorkSettings> works;  ///< each at most once; other works keep their own period
+  /// Bound of the periods of sensed_people and sensed_objects, which the guard needs [s].
+  double max_sensed_period{0.09};
+  double region_size{0.3};  ///< half the edge of the region at the robot's hand [m]
 };
 
 class Attention {
@@ -65,6 +73,8 @@ class Attention {
   void step(const World& world, TimePoint now);
   AttentionAdvice advice() const;  ///< Returns the advice as of the last step.
   AttentionState state() const;    ///< Returns the state as of the last step.
+  /// Returns how often the sensors are to measure what, in the world of the last step.
+  SensorRequest sensor_request(const World& world) const;
 
  private:
   struct Entry {
@@ -80,8 +90,11 @@ class Attention {
   const Entry* find(const std::string& behaviour) const;
   bool conditions_met(const Entry& entry, const World& world) const;
   double period(const WorkSettings& work) const;
+  /// Returns the period of a work; 0: not described.
+  double period(Work work) const;
 
   AttentionSettings settings_;
+  const Body& body_;
   std::vector<Entry> entries_;
   std::vector<std::size_t> order_;  // order of evaluation of the releasers
   TimePoint now_{}, gaze_since_{};

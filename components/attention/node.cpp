@@ -32,7 +32,8 @@ Node::Node(Bus& bus, const NodeContext& context)
       body_(*robot_, grasp_in_tool(*robot_)),
       core_(settings_, body_),
       advice_(bus.advertise<AttentionAdvice>()),
-      state_(bus.advertise<AttentionState>()) {
+      state_(bus.advertise<AttentionState>()),
+      request_(bus.advertise<SensorRequest>()) {
   bus.subscribe<HumanState>([this](const HumanState& m, const Receipt&) { people_ = m; });
   bus.subscribe<Facts>([this](const Facts& m, const Receipt&) { facts_ = m; });
   bus.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt&) { action_ = m; });
@@ -46,14 +47,16 @@ Node::Node(Bus& bus, const NodeContext& context)
 }
 
 void Node::tick(TimePoint now) {
-  core_.step({get(people_), get(facts_), get(action_), get(active_), get(forecast_), get(scene_)},
-             now);
+  const World world{get(people_), get(facts_),    get(action_),
+                    get(active_), get(forecast_), get(scene_)};
+  core_.step(world, now);
   if (now >= next_advice_) {
     advice_->publish(core_.advice());
     next_advice_ = now + kAdvicePeriod - from_seconds(0.5 * settings_.tick);
   }
   if (now >= next_state_) {
     state_->publish(core_.state());
+    request_->publish(core_.sensor_request(world));
     next_state_ = now + kStatePeriod - from_seconds(0.5 * settings_.tick);
   }
 }

@@ -30,6 +30,7 @@ class Node {
   std::optional<Scene> scene_;
   std::unique_ptr<Publisher<AttentionAdvice>> advice_;
   std::unique_ptr<Publisher<AttentionState>> state_;
+  std::unique_ptr<Publisher<SensorRequest>> request_;
   TimePoint next_advice_{}, next_state_{};
 };
 

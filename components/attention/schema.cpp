@@ -8,6 +8,7 @@
 #include "common/model/human/body_index.hpp"
 #include "common/model/human/body_motion.hpp"
 #include "components/attention/looks.hpp"
+#include "components/attention/object_search.hpp"
 #include "components/attention/watch.hpp"
 
 namespace handsel::attention {
@@ -31,26 +32,41 @@ Vector3 Body::grasp_point(const Vector& q, const Pose& T_world_base) const {
 
 namespace {
 
+// Height from which people and objects are searched for [m].
+constexpr double kEyeHeight = 1.3;
+
+/// Searches for the lost object of the action, else for people.
 class Search : public Schema {
  public:
-  Search(const Body& body, const MotorSettings& motor) : body_(body), motor_(motor) {}
+  Search(const Body& body, const MotorSettings& motor)
+      : body_(body), motor_(motor), object_search_(motor) {}
   Behaviour kind() const override { return Behaviour::search; }
   double perceive(const World& w, TimePoint now) override {
     const bool seen = person_of_interest(w, Vector3::Zero(), motor_.lost_after) != nullptr;
     if (seen || !started_) last_seen_ = now;
     started_ = true;
-    searching_ = !seen;
+    const Vector3 p_eye = w.active ? body_.base_point(*w.active, Vector3(0, 0, kEyeHeight))
+                                   : Vector3(0, 0, kEyeHeight);
+    const auto place = object_search_.target(w, p_eye, now);
+    searches_object_ = place.has_value();
+    searching_ = searches_object_ || !seen;
+    if (place) {
+      target_ = *place;
+      aimed_ = true;
+      return 0;
+    }
     if (seen) return kInfinity;
     const double since = to_seconds(now - last_seen_);
     if (w.active) {
       const double angle = 0.9 * std::sin(0.6 * since);
-      target_ =
-          body_.base_point(*w.active, Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.3));
+      target_ = body_.base_point(*w.active,
+                                 Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), kEyeHeight));
       aimed_ = true;
     }
     return since;
   }
   bool released(const World&) const override { return searching_; }
+  bool needs_gaze() const override { return searches_object_; }
   std::optional<Vector3> gaze() const override {
     return aimed_ ? std::optional(target_) : std::nullopt;
   }
@@ -58,7 +74,8 @@ class Search : public Schema {
  private:
   const Body& body_;
   MotorSettings motor_;
-  bool started_{}, searching_{true}, aimed_{};
+  ObjectSearch object_search_;
+  bool started_{}, searching_{true}, aimed_{}, searches_object_{};
   TimePoint last_seen_{};
   Vector3 target_{Vector3::Zero()};
 };

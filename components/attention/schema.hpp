@@ -113,6 +113,8 @@ class Schema {
   virtual const char* reason() const { return ""; }
   /// Returns the gaze target of the head, world [m]; nullopt: none.
   virtual std::optional<Vector3> gaze() const { return std::nullopt; }
+  /// Returns whether the gaze target has precedence over those of all other behaviours.
+  virtual bool needs_gaze() const { return false; }
   /// Returns the shift of the exchange point, world [m]; nullopt: none.
   virtual std::optional<Vector3> target_shift() const { return std::nullopt; }
   /// Returns the requested change of the running task; nullopt for all but the task's behaviour.

@@ -78,10 +78,15 @@ BehaviourSettings behaviour_of(const settings::AttentionBehaviour& b, const Text
   return s;
 }
 
-WorkSettings work_of(const settings::AttentionWork& w, const TextPlace& place) {
+WorkSettings work_of(const settings::AttentionWork& w, double max_sensed_period,
+                     const TextPlace& place) {
   if (!(w.p_max >= w.p_min))
     throw ConfigError(place.of("p_max") + ": p_max must not be below p_min");
-  return {one_of<Work>(w.name, kWorkNames, place.of("name")), w.p_min, w.p_max, w.period, w.serves};
+  const Work work = one_of<Work>(w.name, kWorkNames, place.of("name"));
+  if ((work == Work::sensed_people || work == Work::sensed_objects) && w.p_max > max_sensed_period)
+    throw ConfigError(place.of("p_max") + ": the guard needs a period of " + w.name +
+                      " of at most max_sensed_period");
+  return {work, w.p_min, w.p_max, w.period, w.serves};
 }
 
 /// Checks the consistency of behaviours and works.
@@ -144,6 +149,8 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
   s.gaze_dwell = read.gaze_dwell;
   s.gaze_advantage = read.gaze_advantage;
   s.near_cost_gain = read.near_cost_gain;
+  s.max_sensed_period = read.max_sensed_period;
+  s.region_size = read.region_size;
   s.zones.limits = {read.contact_zone, read.danger_zone, read.interaction_zone, read.social_zone};
   s.zones.margin = read.zone_margin;
   s.zones.dwell = read.zone_dwell;
@@ -153,7 +160,7 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
     s.behaviours.push_back(behaviour_of(b, text.root().inside("behaviours", place++)));
   place = 0;
   for (const auto& w : read.works)
-    s.works.push_back(work_of(w, text.root().inside("works", place++)));
+    s.works.push_back(work_of(w, read.max_sensed_period, text.root().inside("works", place++)));
   check_together(s, text.root());
   return s;
 }

@@ -36,6 +36,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       topics_(bus),
       people_(settings_),
       objects_(settings_),
+      samples_(settings_),
       joints_(*robot_, settings_),
       conflicts_(robot_->name()),
       output_(*robot_, settings_),
@@ -53,18 +54,24 @@ void Node::open_people_and_objects() {
   topics_.read<ros2::Transforms>(
       settings_.tf_static, Profile::state,
       [this](const ros2::Transforms& m, const Receipt& r) { on(m, r.arrival, true); });
+  if (settings_.people || !settings_.objects.empty())
+    bus_.subscribe<SensorRequest>(
+        [this](const SensorRequest& m, const Receipt& r) { samples_.request(m, r.arrival); });
   if (settings_.people) {
     human_out_ = bus_.advertise<HumanObservation>();
     topics_.read<ros2::Ids>(
         settings_.tracked, Profile::sensor,
         [this](const ros2::Ids& m, const Receipt& r) { people_.on(m, r.arrival); });
     bus_.every(from_seconds(1 / settings_.people_rate), [this](TimePoint now) {
-      if (const auto seen = people_.observe(tree_, now)) human_out_->publish(*seen);
+      if (!samples_.people_due(now)) return;
+      if (const auto seen = people_.observe(tree_, now, samples_.samples_knuckles(now)))
+        human_out_->publish(*seen);
     });
   }
   if (!settings_.objects.empty()) {
     object_out_ = bus_.advertise<ObjectObservation>();
     bus_.every(from_seconds(1 / settings_.objects_rate), [this](TimePoint now) {
+      if (!samples_.objects_due(now)) return;
       if (const auto seen = objects_.observe(tree_, now)) object_out_->publish(*seen);
     });
   }

@@ -13,6 +13,7 @@
 #include "components/ros2_lane/observers.hpp"
 #include "components/ros2_lane/robot_output.hpp"
 #include "components/ros2_lane/ros_topics.hpp"
+#include "components/ros2_lane/sample_plan.hpp"
 #include "components/ros2_lane/trajectory_link.hpp"
 
 namespace handsel::ros2_lane {
@@ -38,6 +39,7 @@ class Node {
   TfTree tree_;
   PeopleObserver people_;
   ObjectsObserver objects_;
+  SamplePlan samples_;
   JointInput joints_;
   FrameConflicts conflicts_;
   RobotOutput output_;

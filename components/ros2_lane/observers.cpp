@@ -45,7 +45,8 @@ void PeopleObserver::on(const ros2::Ids& ids, TimePoint arrival) {
   tracked_at_ = arrival;
 }
 
-std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, TimePoint now) {
+std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, TimePoint now,
+                                                        bool knuckles) {
   HumanObservation out;
   out.source = settings_.people_source;
   out.coverage = {corner(settings_.coverage_low), corner(settings_.coverage_high)};
@@ -60,6 +61,7 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
       const auto place = tree.find(joint + "_" + id, settings_.world_frame);
       if (!place || now - place->arrival > age) continue;
       fresh = true;
+      if (!knuckles && is_knuckle(joint)) continue;
       const bool shoulders = joint == "torso";  // in ROS4HRI
       if (shoulders && joints.contains("neck")) continue;
       person.joints.push_back({shoulders ? "neck" : joint, place->T_root_frame.translation(), 1.0});
@@ -69,8 +71,8 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
       body = bodies_.erase(body);
       continue;
     }
-    const auto knuckles = std::count_if(joints.begin(), joints.end(), is_knuckle);
-    if (joints.size() >= kMinJoints + static_cast<std::size_t>(knuckles) &&
+    const auto of_hands = std::count_if(joints.begin(), joints.end(), is_knuckle);
+    if (joints.size() >= kMinJoints + static_cast<std::size_t>(of_hands) &&
         (!listed || tracked_->contains(id)))
       out.people.push_back(std::move(person));
     ++body;

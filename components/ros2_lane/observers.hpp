@@ -33,8 +33,8 @@ class PeopleObserver {
   /// Takes the list of tracked bodies, which counts for 2 s.
   void on(const ros2::Ids&, TimePoint arrival);
   /// Returns the bodies seen lately, world frame: nullopt while nothing new came, or when presence
-  /// is not known.
-  std::optional<HumanObservation> observe(const TfTree& tree, TimePoint now);
+  /// is not known. `knuckles`: false leaves them out.
+  std::optional<HumanObservation> observe(const TfTree& tree, TimePoint now, bool knuckles = true);
 
  private:
   settings::Ros2LaneSettings settings_;

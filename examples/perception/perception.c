@@ -4,12 +4,14 @@
  * measurement. Replace body_at() and read_objects() with your tracker. See README.md. */
 #include <math.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include <handsel/handsel.h>
+#include <handsel/idl/attention.h>
 #include <handsel/idl/perception.h>
 
 enum { MAX_JOINTS = 64, MAX_OBJECTS = 16, MAX_LINE = 8192 };
@@ -25,6 +27,12 @@ struct options {
   double repeat; /* from this time of the recording on it is played again and again [s]; < 0: it is
                     played once */
   const char *source, *body, *person_file, *object_file;
+};
+
+/* How often samples are wanted now. */
+struct wish {
+  double people, objects; /* [Hz]; 0: as often as this sensor measures */
+  dds_time_t until;       /* end of the request; then 0 again */
 };
 
 static volatile sig_atomic_t stopped = 0;
@@ -140,6 +148,34 @@ static void guess_gaze(handsel_ObservedPerson* person) {
   person->gaze_direction = (handsel_Vector3){ahead.x / norm, ahead.y / norm, ahead.z / norm};
 }
 
+/* What attention requests of this source: fewer samples while nobody is near saves the robot's
+ * side work. A sensor may ignore requests. */
+static void take_requests(dds_entity_t reader, const char* source, struct wish* wish) {
+  void* samples[4] = {NULL};
+  dds_sample_info_t infos[4];
+  const int count = dds_take(reader, samples, infos, 4, 4);
+  for (int i = 0; i < count; ++i) {
+    const handsel_SensorRequest* request = samples[i];
+    if (!infos[i].valid_data) continue;
+    if (request->source[0] != '\0' && strcmp(request->source, source) != 0) continue;
+    wish->people = request->people_rate;
+    wish->objects =
+        request->objects_rate > 0 ? fmax(request->objects_rate, request->region_rate) : 0;
+    wish->until = dds_time() + DDS_MSECS(500);
+  }
+  if (count > 0) dds_return_loan(reader, samples, count);
+  if (dds_time() > wish->until) wish->people = wish->objects = 0;
+}
+
+/* Whether a sample is due at the wanted rate, never below 10 Hz: the guard needs that many. */
+static bool is_due(dds_time_t* last, double wanted, double own_rate) {
+  const double rate = wanted > 0 ? fmin(own_rate, fmax(wanted, 10)) : own_rate;
+  const dds_time_t now = dds_time();
+  if ((double)(now - *last) * 1e-9 < 1 / rate - 0.5 / own_rate) return false;
+  *last = now;
+  return true;
+}
+
 static struct options parse(int argc, char** argv) {
   struct options o = {30, -1, "body_tracker", "visitor", NULL, NULL};
   for (int i = 1; i < argc; ++i) {
@@ -178,7 +214,8 @@ int main(int argc, char** argv) {
   const dds_entity_t humans = handsel_writer(participant, "human_observation");
   const dds_entity_t objects =
       o.object_file ? handsel_writer(participant, "object_observation") : 0;
-  if (participant < 0 || humans < 0 || objects < 0) return 3;
+  const dds_entity_t requests = handsel_reader(participant, "sensor_request");
+  if (participant < 0 || humans < 0 || objects < 0 || requests < 0) return 3;
 
   /* What this sensor looks at: only inside it does "nobody there" mean anything. It must hold the
    * robot's reach. */
@@ -202,7 +239,8 @@ int main(int argc, char** argv) {
   const size_t width = 1 + 3 * person.joints;
   const double begin = person.values[0], end = person.values[(person.rows - 1) * width];
   const dds_duration_t period = (dds_duration_t)(1e9 / o.rate);
-  dds_time_t next = dds_time();
+  dds_time_t next = dds_time(), last_people = 0, last_objects = 0;
+  struct wish wish = {0, 0, 0};
   double t = begin;
   fprintf(stderr, "perception: publishing %s %g times a second\n", o.person_file, o.rate);
   while (!stopped && t <= end) {
@@ -210,8 +248,9 @@ int main(int argc, char** argv) {
     guess_gaze(&body);
     /* when it was measured: a camera's time of exposure, not the time of sending */
     seen.stamp = things.stamp = dds_time();
-    dds_write(humans, &seen);
-    if (objects) dds_write(objects, &things);
+    take_requests(requests, o.source, &wish);
+    if (is_due(&last_people, wish.people, o.rate)) dds_write(humans, &seen);
+    if (objects && is_due(&last_objects, wish.objects, o.rate)) dds_write(objects, &things);
 
     t += 1 / o.rate;
     if (t > end && o.repeat >= 0) t = fmax(begin, o.repeat);

@@ -11,6 +11,9 @@ namespace handsel::sim {
 
 namespace {
 
+// Time for which a request holds [s].
+constexpr double kRequestDuration = 0.5;
+
 // Max distance of a joint outside the surface of a capsule to which it belongs [m].
 constexpr double kMaxOutsideOwnBody = 0.02;
 
@@ -24,10 +27,10 @@ bool inside(const Coverage& c, const Vector3& p) {
 }
 
 /// Returns whether robot, boxes, people other than `own`, or other parts of `own` occlude the
-/// point.
+/// point. The link that contains the eye of a sensor on the robot occludes nothing.
 bool is_occluded(const Sight& sight, std::size_t own, const Vector3& eye, const Vector3& point) {
   for (const SightCapsule& link : sight.robot)
-    if (hides(link, eye, point)) return true;
+    if (!contains(link, eye) && hides(link, eye, point)) return true;
   for (const SightBox& box : sight.boxes)
     if (hides(box, eye, point)) return true;
   for (std::size_t p = 0; p < sight.bodies.size(); ++p) {
@@ -77,17 +80,28 @@ std::string coverage_error(const SensorSettings& s) {
   return "";
 }
 
-template <class M>
-bool SampleStream<M>::due(double now) {
+void SampleClock::request(double rate, double now) {
+  requested_ = rate;
+  requested_at_ = now;
+}
+
+bool SampleClock::due(double now) {
+  const bool is_requested =
+      requested_ > 0 && requested_at_ >= 0 && now - requested_at_ <= kRequestDuration;
+  const double rate = is_requested ? std::clamp(requested_, min_rate_, rate_) : rate_;
+  if (rate != now_) {
+    next_ = std::max(now, next_ + 1 / rate - 1 / now_);
+    now_ = rate;
+  }
   if (now + 1e-9 < next_) return false;
-  next_ += 1 / settings_.rate;
+  next_ += 1 / rate;
   return true;
 }
 
 template <class M>
 bool SampleStream<M>::lost(double now) {
   if (settings_.burst_rate > 0 && now >= burst_until_ &&
-      happens(std::min(1.0, settings_.burst_rate / settings_.rate)))
+      happens(std::min(1.0, settings_.burst_rate / clock_.rate())))
     burst_until_ = now - settings_.burst_length * std::log(1 - uniform());
   const bool is_dropped = happens(settings_.dropout);
   return is_dropped || now < burst_until_ || fault(now, SensorFaultKind::gap) != nullptr;
@@ -157,6 +171,12 @@ HumanSensor::HumanSensor(const SensorSettings& settings, std::uint64_t seed)
       knuckle_random_(seed ^ 0x6a09'e667ULL),
       stream_(settings, seed) {}
 
+void HumanSensor::request(double now, const SensorRequest& request) {
+  if (!request.source.empty() && request.source != settings_.source) return;
+  stream_.clock().request(request.people_rate, now);
+  without_knuckles_until_ = request.hands ? -1 : now + kRequestDuration;
+}
+
 bool HumanSensor::is_tracked(const std::string& joint) const {
   const auto& tracked = settings_.joints;
   return tracked.empty() || std::find(tracked.begin(), tracked.end(), joint) != tracked.end();
@@ -215,7 +235,7 @@ void HumanSensor::add_knuckles(const Sight& sight, std::size_t person, const Vec
 
 void HumanSensor::observe(double now, const Sight& sight) {
   const bool lost = stream_.lost(now);
-  if (stream_.happens(settings_.swap_rate / settings_.rate)) swap_ids(sight);
+  if (stream_.happens(settings_.swap_rate / stream_.clock().rate())) swap_ids(sight);
   HumanObservation seen;
   seen.source = settings_.source;
   if (settings_.gaze != GazeOutput::only) seen.coverage = settings_.coverage;
@@ -240,7 +260,8 @@ void HumanSensor::observe(double now, const Sight& sight) {
       observed.joints.push_back(
           {joint.name, joint.position + shift + noise(random_, normal_, settings_.noise), 0.9});
     }
-    if (settings_.gaze != GazeOutput::only) add_knuckles(sight, p, shift, observed);
+    if (settings_.gaze != GazeOutput::only && now > without_knuckles_until_)
+      add_knuckles(sight, p, shift, observed);
     observed.has_gaze = person.gaze_known && settings_.gaze != GazeOutput::none &&
                         !stream_.happens(settings_.gaze_dropout);
     if (observed.has_gaze && settings_.gaze == GazeOutput::only)
@@ -268,7 +289,31 @@ void HumanSensor::observe(double now, const Sight& sight) {
 }
 
 ObjectSensor::ObjectSensor(const SensorSettings& settings, std::uint64_t seed)
-    : settings_(settings), random_(seed), stream_(settings, seed) {}
+    : settings_(settings),
+      random_(seed),
+      stream_(settings, seed),
+      region_clock_(settings.rate, settings.min_rate) {}
+
+void ObjectSensor::request(double now, const SensorRequest& request) {
+  if (!request.source.empty() && request.source != settings_.source) return;
+  stream_.clock().request(request.objects_rate, now);
+  region_clock_.request(request.region_rate, now);
+  region_until_ = request.region_rate > 0 ? now + kRequestDuration : -1;
+  request_ = request;
+}
+
+bool ObjectSensor::due(double now) {
+  observes_all_ = stream_.clock().due(now);
+  const bool is_region_due = region_clock_.due(now);
+  return observes_all_ || (is_region_due && now <= region_until_);
+}
+
+bool ObjectSensor::is_requested(const TrueObject& object) const {
+  const auto& ids = request_.objects;
+  return std::find(ids.begin(), ids.end(), object.id) != ids.end() ||
+         (request_.region.low != request_.region.high &&
+          inside(request_.region, object.T_world_object.translation()));
+}
 
 void ObjectSensor::observe(double now, const Sight& sight) {
   const bool lost = stream_.lost(now);
@@ -278,6 +323,7 @@ void ObjectSensor::observe(double now, const Sight& sight) {
   const bool blind = stream_.fault(now, SensorFaultKind::blind) != nullptr;
   for (const TrueObject& object : sight.objects) {
     const Vector3 p_world = object.T_world_object.translation();
+    if (!observes_all_ && !is_requested(object)) continue;
     if (blind || !in_reach(settings_, p_world) || !in_view(settings_, p_world)) continue;
     if (settings_.occlusion &&
         is_occluded(sight, sight.people.size(), settings_.T_world_sensor->translation(), p_world))

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/geometry/line_of_sight.hpp"
+#include "common/messages/attention.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/human/human_body.hpp"
@@ -44,7 +45,8 @@ enum class GazeOutput { with_body, none, only };
 /// Fields as in SensorDescription of common/config/schema/scenario.proto.
 struct SensorSettings {
   std::string source;                    ///< name in the observations; not empty
-  double rate{30};                       ///< sample rate [Hz]
+  double rate{30};                       ///< sample rate without a request [Hz]
+  double min_rate{10};                   ///< min sample rate by request, at most `rate` [Hz]
   double latency{0.03};                  ///< from capture to delivery [s]
   double noise{0.0};                     ///< standard deviation of each coordinate [m]
   Coverage coverage;                     ///< box that the sensor claims to observe, world [m]
@@ -100,15 +102,34 @@ struct Sight {
   std::vector<SightBox> boxes;                   ///< furniture, for occlusion; may be empty
 };
 
+/// Times at which a sensor samples: at its own rate, or as requested while requests are received.
+class SampleClock {
+ public:
+  /// Rates [Hz]: without a request, and min by request; min_rate <= rate.
+  SampleClock(double rate, double min_rate) : rate_(rate), min_rate_(min_rate), now_(rate) {}
+
+  /// Sets the requested rate [Hz]; 0: the own rate. The request expires after 0.5 s. Times in [s].
+  void request(double rate, double now);
+  /// Returns true once per period.
+  bool due(double now);
+  /// Returns the rate in force at the last call of due() [Hz].
+  double rate() const { return now_; }
+
+ private:
+  double rate_, min_rate_, now_;
+  double requested_{0}, requested_at_{-1}, next_{0};
+};
+
 /// Times of samples, losses and deliveries, common to all kinds of sensors.
 template <class M>
 class SampleStream {
  public:
   SampleStream(const SensorSettings& settings, std::uint64_t seed)
-      : settings_(settings), chance_(seed ^ 0xd1ce'5eedULL) {}
+      : settings_(settings),
+        clock_(settings.rate, settings.min_rate),
+        chance_(seed ^ 0xd1ce'5eedULL) {}
 
-  /// Returns true once per period of the sensor.
-  bool due(double now);
+  SampleClock& clock() { return clock_; }  ///< Returns the times of the samples.
   /// Returns whether the sample of this instant is lost.
   bool lost(double now);
   /// Queues the sample of the instant `now` [s] with latency, jitter and the faults of that
@@ -129,9 +150,10 @@ class SampleStream {
 
  private:
   SensorSettings settings_;
+  SampleClock clock_;
   std::mt19937_64 chance_;
   std::uniform_real_distribution<double> uniform_{0, 1};
-  double next_{0}, burst_until_{-1}, last_due_{0};
+  double burst_until_{-1}, last_due_{0};
   std::optional<Delivery<M>> last_, empty_;  // last sample sent; sample of repeated_empty
   std::deque<Delivery<M>> pending_;
   std::vector<SensorFault> disturbances_;
@@ -140,7 +162,9 @@ class SampleStream {
 class HumanSensor {
  public:
   HumanSensor(const SensorSettings&, std::uint64_t seed);
-  bool due(double now) { return stream_.due(now); }  ///< Returns true once per period.
+  bool due(double now) { return stream_.clock().due(now); }  ///< Returns true once per period.
+  /// Samples people, and knuckles, as requested; ignores requests to other sources.
+  void request(double now, const SensorRequest&);
   /// Moves a sensor on the robot.
   void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
   /// Adds a fault to the faults of the settings; replaces a disturbance of the same kind.
@@ -169,15 +193,20 @@ class HumanSensor {
   SampleStream<HumanObservation> stream_;
   std::map<std::string, std::string> shown_;  // true id -> tracker's id, where these differ
   int renamed_{0};
+  double without_knuckles_until_{-1};  // [s]
 };
 
 class ObjectSensor {
  public:
   ObjectSensor(const SensorSettings&, std::uint64_t seed);
-  bool due(double now) { return stream_.due(now); }  ///< Returns true once per period.
+  /// Returns true once per period of all objects, and of the requested region.
+  bool due(double now);
+  /// Samples all objects, and those of a region, as requested; ignores requests to other sources.
+  void request(double now, const SensorRequest&);
   /// Moves a sensor on the robot.
   void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
-  /// Takes a sample of objects, observed by their origins; to be called when due.
+  /// Takes a sample of objects, observed by their origins; to be called when due. Between the
+  /// samples of all objects only the requested ones are observed.
   void observe(double now, const Sight&);
   /// Moves the samples due by `now` [s] to the end of `out`.
   void collect(double now, std::vector<Delivery<ObjectObservation>>& out) {
@@ -186,10 +215,17 @@ class ObjectSensor {
   const SensorSettings& settings() const { return settings_; }  ///< with the present pose
 
  private:
+  /// Returns whether the request names the object or its region contains the object.
+  bool is_requested(const TrueObject&) const;
+
   SensorSettings settings_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0, 1};
   SampleStream<ObjectObservation> stream_;
+  SampleClock region_clock_;
+  SensorRequest request_;    // the last one
+  double region_until_{-1};  // end of its region's samples [s]
+  bool observes_all_{true};  // the due sample is of all objects
 };
 
 }  // namespace handsel::sim

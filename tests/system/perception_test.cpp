@@ -204,7 +204,8 @@ class Perception : public testing::Test {
            "C)\nfind_package(handsel REQUIRED)\n"
         << "foreach(name " << names << ")\n  add_executable(${name} ${name}.c)\n"
         << "  target_link_libraries(${name} handsel::idl m)\nendforeach()\n"
-        << "if(TARGET old_idl)\n  target_sources(old_idl PRIVATE old/perception.c old/geometry.c)\n"
+        << "if(TARGET old_idl)\n  target_sources(old_idl PRIVATE old/perception.c old/geometry.c "
+           "old/attention.c)\n"
         << "  target_include_directories(old_idl BEFORE PRIVATE old)\nendif()\n";
     const std::string out = build(source);
     for (std::size_t first = 0; first < variants.size(); first += kAtOnce) {
@@ -249,10 +250,12 @@ class Perception : public testing::Test {
     std::ofstream(source / "idl/perception.idl") << idl;
     const Outcome made =
         shell("cd " + (source / "idl").string() + " && idlc -l c -o " + (source / "old").string() +
-              " geometry.idl && idlc -l c -o " + (source / "old").string() + " perception.idl");
+              " geometry.idl && idlc -l c -o " + (source / "old").string() +
+              " perception.idl && idlc -l c -o " + (source / "old").string() + " attention.idl");
     EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
     for (const Edit& edit :
-         {Edit{"#include <handsel/idl/perception.h>", "#include \"perception.h\""},
+         {Edit{"#include <handsel/idl/attention.h>", "#include \"attention.h\""},
+          Edit{"#include <handsel/idl/perception.h>", "#include \"perception.h\""},
           Edit{kNumbers, ""}})
       text.replace(text.find(edit.find), edit.find.size(), edit.replace);
     return text;

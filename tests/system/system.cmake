@@ -56,6 +56,8 @@ handsel_test(tool_motions GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/motio
 handsel_test_again(whole_robot_fifty OF whole_robot)
 set_tests_properties(whole_robot_fifty PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT HANDSEL_WHOLE_MOTIONS=50)
 handsel_test(cost_gain GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/cost_gain_test.cpp LINK handsel_lockstep LABEL system)
+handsel_test(directed_sensors GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/directed_sensors_test.cpp LINK handsel_lockstep LABEL system)
+handsel_test(moved_object GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/moved_object_test.cpp LINK handsel_lockstep LABEL system)
 handsel_test(margin_law GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/margin_law_test.cpp LINK handsel_lockstep LABEL system)
 handsel_test(exchange_shift GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/exchange_shift_test.cpp LINK handsel_lockstep LABEL system)
 handsel_test(gentler GROUP lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/people/gentler_test.cpp LINK handsel_lockstep LABEL system)

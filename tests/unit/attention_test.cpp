@@ -599,14 +599,14 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   const std::string shipped((std::istreambuf_iterator<char>(in)), {});
   EXPECT_EQ(refusal_of(shipped, "tick", "tick"), "no error");
   const std::string order = refusal_of(shipped, "p_min: 0.04 p_max: 0.8", "p_min: 1.0 p_max: 0.8");
-  EXPECT_THAT(order, HasSubstr("attention.txtpb:35"));
+  EXPECT_THAT(order, HasSubstr("attention.txtpb:40"));
   EXPECT_THAT(order, HasSubstr("behaviour avoid: p_max must not be below p_min"));
   const std::string stranger = refusal_of(shipped, "\"give\"", "\"hug\"");
-  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:38"));
+  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:43"));
   EXPECT_THAT(stranger,
               HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
   EXPECT_THAT(refusal_of(shipped, "\"pick\"    law: LINEAR", "\"pick\" law: MARGIN"),
-              HasSubstr("attention.txtpb:36:law: MARGIN needs the distance to people"));
+              HasSubstr("attention.txtpb:41:law: MARGIN needs the distance to people"));
   EXPECT_EQ(refusal_of(shipped, "\"avoid\"   law: LINEAR", "\"avoid\" law: MARGIN"), "no error");
   EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"),
               HasSubstr("behaviour search: period must be from p_min to p_max"));
@@ -650,7 +650,8 @@ TEST(AttentionSettingsFile, what_a_user_adds_is_refused_where_it_is_wrong) {
   EXPECT_THAT(
       added("works {\nname: \"weather\" p_min: 1 p_max: 2 serves: \"avoid\" }"),
       HasSubstr("attention.txtpb:" + line +
-                ":name: \"weather\" is none of people, objects, forecast, cost_map, replan"));
+                ":name: \"weather\" is none of people, objects, forecast, cost_map, replan, "
+                "sensed_people, sensed_objects, sensed_region"));
   EXPECT_THAT(added("works {\nname: \"people\" p_min: 3 p_max: 2 serves: \"avoid\" }"),
               HasSubstr("attention.txtpb:" + line + ":p_max: p_max must not be below p_min"));
 }

@@ -25,6 +25,7 @@ constexpr double kJump = 0.1;     // min jump of ground truth by a changed exemp
 constexpr Duration kBefore = std::chrono::milliseconds(500);
 
 constexpr const char* kWorks[] = {"people", "objects", "forecast", "cost_map", "replan"};
+constexpr const char* kSensorWorks[] = {"sensed_people", "sensed_objects", "sensed_region"};
 constexpr const char* kChain[] = {
     "spark",        "costmap",       "collision_checker",  "attention",
     "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner"};
@@ -95,6 +96,20 @@ Criteria::Criteria(Bus& bus, LocalNetwork& network) : network_(network) {
     for (std::size_t i = 0; i < periods.size(); ++i)
       rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
     ++advices_;
+  });
+  bus.subscribe<SensorRequest>([this](const SensorRequest& r, const Receipt&) {
+    sensing_.rates[0] += r.people_rate;
+    sensing_.rates[1] += r.objects_rate;
+    sensing_.rates[2] += r.region_rate > 0 ? r.region_rate : r.objects_rate;
+    ++sensing_.requests;
+  });
+  bus.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) {
+    ++sensing_.samples;
+    for (const ObservedPerson& person : m.people) sensing_.values += person.joints.size();
+  });
+  bus.subscribe<ObjectObservation>([this](const ObjectObservation& m, const Receipt&) {
+    ++sensing_.samples;
+    sensing_.values += m.objects.size();
   });
 }
 
@@ -199,6 +214,10 @@ nlohmann::json Criteria::fields() const {
   for (std::size_t i = 0; i < rates_.size(); ++i)
     periods[kWorks[i]] =
         rates_[i] > 0 ? Json(static_cast<double>(advices_) / rates_[i]) : Json(nullptr);
+  for (std::size_t i = 0; i < sensing_.rates.size(); ++i)
+    periods[kSensorWorks[i]] =
+        sensing_.rates[i] > 0 ? Json(static_cast<double>(sensing_.requests) / sensing_.rates[i])
+                              : Json(nullptr);
   return {{"reactions_s", reactions},
           {"reaction_p50_s", reactions.empty() ? Json(nullptr) : Json(quantile(reactions, 0.5))},
           {"reaction_p99_s", reactions.empty() ? Json(nullptr) : Json(quantile(reactions, 0.99))},
@@ -220,7 +239,9 @@ nlohmann::json Criteria::fields() const {
           {"cpu_s", cpu},
           {"cpu_chain_s", chain},
           {"runs", runs},
-          {"work_period_s", periods}};
+          {"work_period_s", periods},
+          {"sensor_samples", sensing_.samples},
+          {"sensor_values", sensing_.values}};
 }
 
 }  // namespace handsel

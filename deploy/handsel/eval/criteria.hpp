@@ -50,7 +50,10 @@ class Criteria {
   ///   carried it; null: it carried nothing
   /// - `cpu_s`: of each component's handlers and jobs, thread CPU time; `cpu_chain_s`: of
   ///   perception and planning
-  /// - `runs`: how often each piece of work was done; `work_period_s`: mean period that was advised
+  /// - `runs`: how often each piece of work was done; `work_period_s`: mean period that was
+  /// advised,
+  ///   or requested of the sensors
+  /// - `sensor_samples`: samples of people and objects; `sensor_values`: joints and objects in them
   nlohmann::json fields() const;
 
  private:
@@ -86,6 +89,11 @@ class Criteria {
   std::optional<double> nearest_angle_;  // at that separation [rad]
   double unseen_approach_{};             // [s]
   std::array<double, 5> rates_{};        // sums of advised rates [Hz]
+  /// What the sensors delivered, and the sums of the rates requested of them.
+  struct Sensing {
+    std::uint64_t samples{}, values{}, requests{};
+    std::array<double, 3> rates{};  // of people, objects, region [Hz]
+  } sensing_;
 };
 
 }  // namespace handsel

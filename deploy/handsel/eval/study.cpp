@@ -28,6 +28,8 @@ struct Measure {
 constexpr Measure kMeasures[] = {{"activations_ratio", 3, false},
                                  {"cpu_chain_s", 3, false},
                                  {"runs", 1, false},
+                                 {"sensor_samples", 0, false},
+                                 {"sensor_values", 0, false},
                                  {"min_separation_m", 4, false},
                                  {"below_separation_s", 3, false},
                                  {"ssm_violations", 2, false},

@@ -323,6 +323,104 @@ TEST(Sensors, in_the_world_the_head_sees_where_it_looks) {
   EXPECT_EQ(gazes(toward + 1.0), 0);
 }
 
+TEST(Sensors, samples_are_as_frequent_as_requested_while_requests_are_received) {
+  SampleClock clock(30, 10);
+  auto samples = [&clock, now = 0.0](double seconds, double requested) mutable {
+    int count = 0;
+    for (int i = 0; i < std::lround(seconds * 1000); ++i, now += 0.001) {
+      if (requested >= 0 && i % 100 == 0) clock.request(requested, now);
+      count += clock.due(now);
+    }
+    return count;
+  };
+  EXPECT_EQ(samples(2, -1), 60) << "own rate without a request";
+  EXPECT_NEAR(samples(2, 15), 30, 1);
+  EXPECT_NEAR(samples(2, 1), 20, 1) << "not below min_rate";
+  EXPECT_NEAR(samples(2, 500), 60, 1) << "not above the own rate";
+  EXPECT_NEAR(samples(2, 12), 24, 1);
+  EXPECT_NEAR(samples(0.1, 30), 3, 1) << "a higher rate applies at once";
+  EXPECT_NEAR(samples(2, 12), 24, 1);
+  EXPECT_NEAR(samples(2.5, -1), 6 + 60, 2) << "a request expires after 0.5 s";
+  EXPECT_NEAR(samples(2, 0), 60, 1) << "0: own rate";
+}
+
+TEST(Sensors, a_request_is_followed_by_the_source_that_it_names) {
+  HumanSensor sensor(plain(), 3);
+  auto due = [&sensor, now = 0.0](const SensorRequest& request) mutable {
+    int count = 0;
+    for (int i = 0; i < 1000; ++i, now += 0.001) {
+      if (i % 100 == 0) sensor.request(now, request);
+      count += sensor.due(now);
+    }
+    return count;
+  };
+  SensorRequest request;
+  request.people_rate = 12;
+  EXPECT_NEAR(due(request), 12, 1) << "every source";
+  request.source = "camera";
+  request.people_rate = 15;
+  EXPECT_NEAR(due(request), 15, 1);
+  request.source = "other";
+  request.people_rate = 10;
+  EXPECT_NEAR(due(request), 23, 2) << "own rate once the last request has expired";
+}
+
+TEST(Sensors, knuckles_are_left_out_where_no_hands_are_wanted) {
+  SensorSettings s = plain();
+  HumanSensor sensor(s, 3);
+  Person person = person_at("anna", 1.4, 0);
+  person.palms = {{"l_hand", -Vector3::UnitZ()}};
+  Sight sight;
+  sight.people = {&person};
+  sight.bodies = {body_capsules(person)};
+  const auto knuckles = [&](bool hands, double now) {
+    SensorRequest request;
+    request.hands = hands;
+    sensor.request(now, request);
+    sensor.observe(now, sight);
+    Stream out;
+    sensor.collect(now + 1, out);
+    const auto& joints = out.back().message.people.at(0).joints;
+    return std::count_if(joints.begin(), joints.end(), [](const ObservedJoint& joint) {
+      return joint.name.ends_with("index") || joint.name.ends_with("pinky");
+    });
+  };
+  EXPECT_EQ(knuckles(true, 1), 2);
+  EXPECT_EQ(knuckles(false, 2), 0);
+  EXPECT_EQ(knuckles(true, 3), 2);
+}
+
+TEST(Sensors, between_samples_of_all_objects_come_those_requested) {
+  SensorSettings s = plain();
+  s.noise = 0;
+  ObjectSensor sensor(s, 3);
+  Sight sight;
+  for (const auto& [id, x] :
+       std::vector<std::pair<std::string, double>>{{"mug", 1.0}, {"can", 2.0}, {"box", 0.5}}) {
+    sight.objects.push_back({id, id, Pose::Identity()});
+    sight.objects.back().T_world_object.translation().x() = x;
+  }
+  SensorRequest request;
+  request.objects_rate = 10;
+  request.region_rate = 30;
+  request.objects = {"can"};
+  request.region = {{0.4, -0.1, -0.1}, {0.6, 0.1, 0.1}};
+  std::map<std::string, int> seen;
+  for (int i = 0; i < 2000; ++i) {
+    const double now = 0.001 * i;
+    if (i % 100 == 0) sensor.request(now, request);
+    if (sensor.due(now)) sensor.observe(now, sight);
+  }
+  std::vector<Delivery<ObjectObservation>> out;
+  sensor.collect(10, out);
+  for (const auto& delivery : out)
+    for (const ObservedObject& object : delivery.message.objects) ++seen[object.id];
+  EXPECT_NEAR(seen["mug"], 20, 2) << "neither named nor in the region";
+  EXPECT_GE(seen["can"], 58);
+  EXPECT_GE(seen["box"], 58);
+  EXPECT_LE(seen["can"], 82);
+}
+
 TEST(Sensors, identity_swaps_happen_as_often_as_asked_and_places_stay) {
   SensorSettings s = plain();
   s.swap_rate = 0.5;
