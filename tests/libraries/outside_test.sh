@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # outside_test.sh <kind> <source> <build> <cmake>: configures, builds and runs examples/cpp outside the tree.
 #   installed  against components installed from the build; also pkg-config, link list and mistakes of find_package
+#   models     the same for model, collision and cost, which need packages of others
 #   shared     against shared libraries built without the rest of the system; also what they export
 #   fetched    with the source tree as a part of the project (FetchContent)
 set -eu
@@ -73,6 +74,21 @@ case $kind in
     run "$work/stop"
     [ "$(pkg-config --modversion handsel-trajectory)" = "$(sed -n 's/^project(handsel VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")" ] ||
       fail "the version of pkg-config is not that of the project"
+    ;;
+  models)
+    for component in trajectory model collision; do
+      run "$cmake" --install "$build" --component $component --prefix "$work/prefix"
+    done
+    refused "handsel-cost, which is not installed" cost
+    run "$cmake" --install "$build" --component cost --prefix "$work/prefix"
+    examples -DCMAKE_PREFIX_PATH="$work/prefix" "-DHANDSEL_EXAMPLES=model;collision;cost" \
+      -DHANDSEL_ROBOT="$source/deploy/robots/jido/jido.txtpb"
+    grep -q '100% tests passed, 0 tests failed out of 3' "$work/log" || fail "not all three examples ran"
+    # The list of pkg-config is complete as well.
+    export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig"
+    # shellcheck disable=SC2046 # the flags are meant to be split
+    run c++ "$work/cpp/build/CMakeFiles/12_costs.dir/12_costs.cpp.o" -o "$work/costs" $(pkg-config --libs handsel-cost)
+    run "$work/costs" "$source/deploy/robots/jido/jido.txtpb"
     ;;
   shared)
     run "$cmake" -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DHANDSEL_LIBRARIES_ONLY=ON -DHANDSEL_SHARED=ON
