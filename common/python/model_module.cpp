@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// handsel._model: what handsel/model.py calls.
+// handsel._model: what handsel/model.py, collision.py and cost.py call. One native module holds the
+// three, since a process may hold the Protobuf types of the models once.
 #include "common/config/search_path.hpp"
 #include "common/model/robot_model.hpp"
-#include "common/python/arguments.hpp"
+#include "common/python/people_arguments.hpp"
 
 #include <pybind11/stl.h>
 
@@ -86,20 +87,6 @@ py::dict all_poses(const RobotModel& robot, py::handle q) {
   return out;
 }
 
-/// Returns a rigid transform from a 4 x 4 matrix. Throws ValueError when it is none.
-Pose pose_of(py::handle value) {
-  const RowMatrix m = rows(value, "pose", 4);
-  require_size(m.rows(), 4, "pose");
-  constexpr double kTolerance = 1e-6;
-  const Eigen::Matrix3d R = m.topLeftCorner<3, 3>();
-  const bool rigid =
-      (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance &&
-      R.determinant() > 0 &&
-      (m.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < kTolerance;
-  if (!rigid) throw py::value_error("pose must be a rigid transform with the last row 0 0 0 1.");
-  return make_pose(m.topRightCorner<3, 1>(), Eigen::Quaterniond(R));
-}
-
 py::object inverse(const RobotModel& robot, py::handle pose, py::handle group, py::handle seed) {
   const Group& axes = group_of(robot, group);
   const Pose T_root_tip = pose_of(pose);
@@ -164,6 +151,9 @@ PYBIND11_MODULE(_model, m) {
              return to_array(RowMatrix(r.jacobian(vector(q, "q", r.dof()), group_of(r, group))));
            })
       .def("inverse", &inverse);
+  add_people(m);
+  add_collision(m);
+  add_costs(m);
 }
 
 }  // namespace handsel::python

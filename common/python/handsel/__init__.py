@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of Handsel for Python: trajectories, robot models, grasps and recordings.
+"""Parts of Handsel for Python: trajectories, robot models, collisions, costs, grasps, recordings.
 
     import handsel
     limits = handsel.trajectory.Limits([1, 1], [2, 2], [10, 10])
     motion = handsel.trajectory.solve([0, 0], [1, -0.5], limits)
 
-The modules trajectory, grasp, recording and model are loaded when they are first
-used. SI units and radians. Wrong arguments raise TypeError or ValueError with one sentence that
-names the argument.
+The modules are loaded when they are first used. SI units and radians. Wrong arguments raise
+TypeError or ValueError with one sentence that names the argument.
 """
 
 import importlib as _importlib
 
 from ._version import __version__
 
-__all__ = ["grasp", "model", "recording", "trajectory"]
+__all__ = ["collision", "cost", "grasp", "model", "recording", "trajectory"]
 
 
 def __getattr__(name: str):

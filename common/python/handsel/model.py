@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots from their descriptions or URDF: forward and inverse kinematics, limits.
+"""Robots from their descriptions or URDF: forward and inverse kinematics, limits. People.
 
 Poses are 4 x 4 matrices T_root_link: coordinates in the link's frame to the frame of the root link.
 Configurations have one number an axis [rad] (or [m]), in the order of Robot.axes.
@@ -8,6 +8,7 @@ Configurations have one number an axis [rad] (or [m]), in the order of Robot.axe
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Optional, Union
 
 import numpy as np
@@ -16,7 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from . import _model
 from .trajectory import Limits
 
-__all__ = ["DescriptionError", "MissingError", "Robot"]
+__all__ = ["DescriptionError", "JOINT_NAMES", "MissingError", "Person", "Robot"]
+
+#: Names of the joints of a body (REP-155), in the order of Person.joints.
+JOINT_NAMES: tuple[str, ...] = _model.joint_names
 
 DescriptionError = _model.DescriptionError
 MissingError = _model.MissingError
@@ -117,3 +121,78 @@ class Robot:
 
     def __repr__(self) -> str:
         return f"<Robot {self.name} with {len(self.axes)} axes>"
+
+
+class Person:
+    """A person as points of the body in the world [m].
+
+    joints: positions by name (REP-155, see JOINT_NAMES), any subset: the others are fitted to those
+    given by proportions of the stature [m]. gaze: direction; left out, the front of the body
+    counts.
+    """
+
+    __slots__ = ("_native",)
+
+    def __init__(self, joints: Mapping[str, ArrayLike], *, gaze: Optional[ArrayLike] = None,
+                 stature: float = 1.75, name: str = "person"):
+        if not isinstance(joints, Mapping):
+            raise TypeError(f"joints must be a dict of points, not {type(joints).__name__}.")
+        if not joints:
+            raise ValueError("joints must have at least one point.")
+        points = [_point(value, key) for key, value in joints.items()]
+        self._set(name, _model.fit_body(list(joints), np.array(points), stature), stature, gaze)
+
+    def _set(self, name: str, joints: NDArray[np.float64], stature: float,
+             gaze: Optional[ArrayLike]) -> None:
+        if not isinstance(name, str):
+            raise TypeError(f"name must be a str, not {type(name).__name__}.")
+        direction = None if gaze is None else _point(gaze, "gaze")
+        if direction is not None and not direction.any():
+            raise ValueError("gaze must not be zero.")
+        self._native = (name, joints, stature, direction)
+
+    @classmethod
+    def _of(cls, position: ArrayLike, yaw: float, stature: float, more: tuple) -> Person:
+        seated, gaze, name = more
+        if stature is True or not 0.5 <= stature <= 2.5:
+            raise ValueError("stature must be in 0.5 .. 2.5 m.")
+        out = object.__new__(cls)
+        out._set(name, _model.body(position, yaw, stature, seated), stature, gaze)
+        return out
+
+    @staticmethod
+    def standing(position: ArrayLike, yaw: float = 0.0, stature: float = 1.75, *,
+                 gaze: Optional[ArrayLike] = None, name: str = "person") -> Person:
+        """Returns a person who stands at a point of the floor, facing yaw [rad] (0: along x), arms
+        hanging."""
+        return Person._of(position, yaw, stature, (False, gaze, name))
+
+    @staticmethod
+    def sitting(position: ArrayLike, yaw: float = 0.0, stature: float = 1.75, *,
+                gaze: Optional[ArrayLike] = None, name: str = "person") -> Person:
+        """Returns a person who sits; position: point of the floor below the hips."""
+        return Person._of(position, yaw, stature, (True, gaze, name))
+
+    @property
+    def name(self) -> str:
+        """Returns the name, which verdicts of collision checks repeat."""
+        return self._native[0]
+
+    @property
+    def joints(self) -> dict[str, NDArray[np.float64]]:
+        """Returns the positions of all joints by name [m], copies."""
+        return {name: point.copy() for name, point in zip(JOINT_NAMES, self._native[1])}
+
+    def __repr__(self) -> str:
+        return f"<Person {self.name}>"
+
+
+def _point(value: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Returns a point of three finite numbers."""
+    try:
+        point = np.array(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} must be a point of three numbers.") from None
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise ValueError(f"{name} must be a point of three finite numbers.")
+    return point
