@@ -90,6 +90,7 @@ int main(int argc, char** argv) {
   handsel::add_doctor_command(app, exit_code);
   handsel::add_record_commands(app, exit_code);
   handsel::add_eval_command(app, exit_code);
+  handsel::add_environment_command(app, exit_code);
   handsel::add_config_commands(app, exit_code);
   handsel::add_object_commands(app, exit_code);
   handsel::add_bench_command(app, exit_code);

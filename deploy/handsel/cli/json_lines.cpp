@@ -61,7 +61,7 @@ int for_each_line(std::istream& in, std::ostream& out,
       bad = true;
       out << json{{"line", number_of_line}, {"error", why}}.dump(-1, ' ', false,
                                                                  json::error_handler_t::replace)
-          << '\n';
+          << std::endl;
     };
     try {
       const json result = answer(parse_line(line));

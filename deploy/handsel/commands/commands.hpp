@@ -28,6 +28,8 @@ void add_doctor_command(CLI::App& app, int& exit_code);
 void add_record_commands(CLI::App& app, int& exit_code);
 /// Adds `eval`: randomised trials in lock-step.
 void add_eval_command(CLI::App& app, int& exit_code);
+/// Adds `environment`: a scenario in lock-step, driven by requests on the standard input.
+void add_environment_command(CLI::App& app, int& exit_code);
 /// Adds `config show` and `config diff`: settings and their sources.
 void add_config_commands(CLI::App& app, int& exit_code);
 /// Adds `object new`: an object of a user's mesh.

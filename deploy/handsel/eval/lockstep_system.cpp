@@ -34,7 +34,7 @@ void LockstepSystem::add(const std::string& component, const NodeContext& contex
   nodes_.push_back(std::make_shared<Node>(network_.add(component), context));
 }
 
-LockstepSystem::LockstepSystem(const NodeContext& context)
+LockstepSystem::LockstepSystem(const NodeContext& context, MotionSource source)
     : network_(context.seed), bus_(network_.add("handsel")), observer_(bus_) {
   add<sim::Node>("sim", context);
   add<spark::Node>("spark", context);
@@ -45,7 +45,8 @@ LockstepSystem::LockstepSystem(const NodeContext& context)
   add<path_planner::Node>("path_planner", context);
   add<grasp_planner::Node>("grasp_planner", context);
   add<trajectory_planner::Node>("trajectory_planner", context);
-  add<manipulation_planner::Node>("manipulation_planner", context);
+  if (source == MotionSource::planner)
+    add<manipulation_planner::Node>("manipulation_planner", context);
   add<supervisor::Node>("supervisor", context);
 }
 

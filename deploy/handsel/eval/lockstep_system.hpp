@@ -13,10 +13,16 @@
 
 namespace handsel {
 
+/// What commands the trajectory controller.
+enum class MotionSource {
+  planner,  ///< the manipulation planner
+  policy,   ///< a component that the caller adds to the network in the place of that planner
+};
+
 class LockstepSystem {
  public:
   /// Throws ConfigError / MissingError as the processes would.
-  explicit LockstepSystem(const NodeContext& context);
+  explicit LockstepSystem(const NodeContext& context, MotionSource source = MotionSource::planner);
   LockstepSystem(const std::string& scenario, const std::string& robot, std::uint64_t seed);
 
   /// Returns the network of all components; run it to advance the virtual time.
