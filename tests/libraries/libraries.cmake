@@ -21,3 +21,4 @@ foreach(part trajectory grasp recording model collision arguments documentation 
   handsel_python_test(${part} ${part} unit)
 endforeach()
 handsel_python_test(environment environment system)
+handsel_python_test(notebooks notebooks system)
