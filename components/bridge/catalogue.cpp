@@ -160,6 +160,17 @@ std::string config_json(const RobotModel& robot, const fs::path& resources,
       json["groups"][group.name].push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
   json["axes"] = Json::array();
   for (const Axis& axis : robot.axes()) json["axes"].push_back(axis.name);
+  const KinematicLimits& guard = robot.guard_limits();
+  for (std::size_t i = 0; i < robot.axes().size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    json["limits"].push_back({{"lower", robot.axes()[i].lower},
+                              {"upper", robot.axes()[i].upper},
+                              {"velocity", guard.velocity[k]},
+                              {"acceleration", guard.acceleration[k]},
+                              {"jerk", guard.jerk[k]}});
+  }
+  json["zones"] = facts.zones;
+  json["attentive_angle"] = facts.attentive_angle;
   json["objects"] = objects(resources);
   json["topics"] = Json::array();
   for (const TopicRow& row : topics())

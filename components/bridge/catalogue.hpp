@@ -3,6 +3,7 @@
 // is not on DDS. Pure.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -18,6 +19,9 @@ struct SystemFacts {
   std::uint32_t domain{};  ///< of DDS; 0 for a bus without DDS
   std::string version;     ///< of this build
   std::string session;     ///< changes with every start
+  /// Outer limits of the attention zones around the robot, ascending [m].
+  std::array<double, 4> zones{};
+  double attentive_angle{};  ///< max angle between gaze and robot of an attentive person [rad]
 };
 
 /// An object of the search path outside the resources, whose mesh the page draws.

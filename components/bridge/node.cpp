@@ -5,7 +5,9 @@
 #include <stdexcept>
 
 #include "common/config/resources.hpp"
+#include "common/config/settings/attention.hpp"
 #include "common/config/settings/bridge.hpp"
+#include "common/config/settings/spark.hpp"
 #include "common/messages/system.hpp"
 #include "components/bridge/catalogue.hpp"
 #include "components/bridge/environment.hpp"
@@ -29,10 +31,15 @@ Node::Node(Bus& bus, const NodeContext& context)
   settings_ = server_settings(settings);
   if (!settings_.token.empty()) steering_.emplace(bus);
 
-  const SystemFacts facts{.scenario = context.scenario.stem(),
-                          .domain = raw_ ? raw_->domain() : 0,
-                          .version = HANDSEL_VERSION,
-                          .session = std::to_string(bus.stamp_now())};
+  const auto zones = settings::read_attention_settings(context.settings / "attention.txtpb");
+  const auto people = settings::read_spark_settings(context.settings / "spark.txtpb");
+  const SystemFacts facts{
+      .scenario = context.scenario.stem(),
+      .domain = raw_ ? raw_->domain() : 0,
+      .version = HANDSEL_VERSION,
+      .session = std::to_string(bus.stamp_now()),
+      .zones = {zones.contact_zone, zones.danger_zone, zones.interaction_zone, zones.social_zone},
+      .attentive_angle = people.attentive_angle};
   catalogue_ = make_catalogue(*context.robot, resource_root(), facts);
   for (Channel& channel : Drawing::channels()) catalogue_.channels.push_back(std::move(channel));
   for (const OwnMesh& own : own_meshes(resource_root())) site_.serve(own.address, own.mesh);

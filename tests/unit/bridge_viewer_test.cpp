@@ -427,9 +427,18 @@ TEST_F(CatalogueTest, has_a_self_contained_schema_for_every_topic) {
 
 TEST_F(CatalogueTest, the_page_learns_where_things_are) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
-  const Json config = Json::parse(
-      config_json(robot, resource_root(),
-                  {.scenario = "give_mug", .domain = 3, .version = "1", .session = "x"}));
+  const Json config = Json::parse(config_json(robot, resource_root(),
+                                              {.scenario = "give_mug",
+                                               .domain = 3,
+                                               .version = "1",
+                                               .session = "x",
+                                               .zones = {0.1, 0.4, 1.2, 3.6},
+                                               .attentive_angle = 0.5}));
+  EXPECT_EQ(config["zones"], Json({0.1, 0.4, 1.2, 3.6}));
+  EXPECT_EQ(config["attentive_angle"], 0.5);
+  ASSERT_EQ(config["limits"].size(), robot.axes().size());
+  EXPECT_EQ(config["limits"][2]["upper"], robot.axes()[2].upper);
+  EXPECT_EQ(config["limits"][2]["jerk"], robot.guard_limits().jerk[2]);
   const Site site({}, resource_root());
   EXPECT_TRUE(site.find(config["urdf"].get<std::string>()));
   EXPECT_EQ(config["axes"].size(), robot.axes().size());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values that the page cannot read from DDS: /config.json of the bridge.
+export interface AxisLimits { lower: number; upper: number; velocity: number; acceleration: number; jerk: number }
+
 export interface Config {
   robot: string;
   scenario: string;
@@ -8,6 +10,9 @@ export interface Config {
   axes: string[];
   tool_link: string;
   groups: Record<string, string[]>;
+  limits: AxisLimits[];     // of each axis
+  zones: number[];          // outer limits of attention's zones around the robot [m]
+  attentive_angle: number;  // max angle between gaze and robot of an attentive person [rad]
   objects: Record<string, { mesh: string }>;
 }
 

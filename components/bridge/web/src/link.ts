@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The connection to the bridge: subscribes, keeps the newest sample of each topic, decodes only
-// used topics, reconnects.
+// The connection to the bridge: subscribes, keeps the newest sample of each instance of a topic,
+// decodes only what is used, reconnects.
 import { Channel, FoxgloveClient, MessageData, SubscriptionId } from "@foxglove/ws-protocol";
 import { Decoder } from "./decoder";
-import { ComponentHealth, kTopics, TopicName, Topics } from "./messages";
+import { keyOf, kKeyed, kLayerTopics, kTopics, TopicName, Topics } from "./messages";
+import { Health, Source } from "./source";
 
 const kRetryFirst = 500, kRetryLongest = 5000;  // [ms]
 
-interface Slot { decoder: Decoder; bytes: ArrayBufferView | undefined; message: unknown; at: number; count: number }
+interface Sample { bytes: DataView | undefined; message: unknown; at: number }
+interface Slot { channel: Channel; decoder: Decoder; newest: string; samples: Map<string, Sample> }
 
-export class Link {
+export class Link implements Source {
   connected = false;
   closedAt = 0;  // [ms] performance clock
   problem = "";  // one sentence
   samples = 0;
-  readonly health = new Map<string, { message: ComponentHealth; at: number }>();
-  private readonly slots = new Map<string, Slot>();
+  // Receives each sample with the stamp of its writer [ns].
+  onSample: (topic: TopicName, key: string, stamp: bigint, bytes: DataView, decoder: Decoder) => void = () => undefined;
+  private readonly slots = new Map<TopicName, Slot>();
+  private readonly subscribed = new Map<SubscriptionId, TopicName>();
+  private client: FoxgloveClient | undefined;
+  private wanted = new Set<TopicName>(kTopics);
+  private readonly counts = new Map<TopicName, number>();
   private readonly words = new Map<string, string[]>();
   private retry = kRetryFirst;
 
@@ -23,22 +30,50 @@ export class Link {
     this.open();
   }
 
-  // Returns the newest sample; undefined before the first one.
-  newest<T extends TopicName>(topic: T): Topics[T] | undefined {
-    const slot = this.slots.get(topic);
-    if (!slot) return undefined;
-    if (slot.bytes) {
-      const bytes = slot.bytes;
-      slot.bytes = undefined;
-      slot.message = this.decode(topic, slot.decoder, bytes) ?? slot.message;
+  newest<T extends TopicName>(topic: T, key?: string): Topics[T] | undefined {
+    const slot = this.slots.get(topic), sample = slot?.samples.get(key ?? slot.newest);
+    if (!slot || !sample) return undefined;
+    if (sample.bytes) {
+      sample.message = this.decode(topic, slot.decoder, sample.bytes) ?? sample.message;
+      sample.bytes = undefined;
     }
-    return slot.message as Topics[T] | undefined;
+    return sample.message as Topics[T] | undefined;
   }
 
-  // Returns the time since the newest sample arrived [s]; infinite before the first one.
   age(topic: TopicName): number {
-    const slot = this.slots.get(topic);
-    return slot && slot.count > 0 ? (performance.now() - slot.at) / 1000 : Infinity;
+    const slot = this.slots.get(topic), sample = slot?.samples.get(slot.newest);
+    return sample ? (performance.now() - sample.at) / 1000 : Infinity;
+  }
+
+  // Returns the number of samples of a topic so far.
+  received(topic: TopicName): number {
+    return this.counts.get(topic) ?? 0;
+  }
+
+  keys(topic: TopicName): string[] {
+    return [...(this.slots.get(topic)?.samples.keys() ?? [])];
+  }
+
+  health(): Health[] {
+    const now = performance.now(), topic = "handsel/component_health" as const;
+    return this.keys(topic).flatMap((key) => {
+      const message = this.newest(topic, key), at = this.slots.get(topic)?.samples.get(key)?.at ?? 0;
+      return message ? [{ message, age: (now - at) / 1000 }] : [];
+    });
+  }
+
+  // Reads these large topics too, and no others of them.
+  want(topics: Iterable<TopicName>): void {
+    this.wanted = new Set([...kTopics, ...topics]);
+    for (const [id, topic] of this.subscribed) {
+      if (this.wanted.has(topic)) continue;
+      this.client?.unsubscribe(id);
+      this.subscribed.delete(id);
+      this.slots.get(topic)?.samples.clear();
+    }
+    const read = new Set(this.subscribed.values());
+    for (const [topic, { channel }] of this.slots)
+      if (this.connected && this.wanted.has(topic) && !read.has(topic)) this.subscribe(channel, topic);
   }
 
   word(enumeration: string, value: number): string {
@@ -50,7 +85,8 @@ export class Link {
 
   private open(): void {
     const client = new FoxgloveClient({ ws: new WebSocket(this.address, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-    const topicOf = new Map<SubscriptionId, TopicName>();
+    this.client = client;
+    this.subscribed.clear();
     client.on("open", () => {
       this.connected = true;
       this.problem = "";
@@ -59,29 +95,29 @@ export class Link {
     });
     client.on("advertise", (channels: Channel[]) => {
       for (const channel of channels) {
-        const topic = kTopics.find((name) => name === channel.topic);
+        const topic = [...kTopics, ...kLayerTopics].find((name) => name === channel.topic);
         if (!topic) continue;
         try {
           const decoder = new Decoder(channel.schemaName, channel.schema);
           for (const [name, words] of decoder.enumerations()) this.words.set(name, words);
-          this.slots.set(topic, { decoder, bytes: undefined, message: this.slots.get(topic)?.message, at: 0, count: 0 });
-          topicOf.set(client.subscribe(channel.id), topic);
+          this.slots.set(topic, { channel, decoder, newest: "", samples: this.slots.get(topic)?.samples ?? new Map() });
+          if (this.wanted.has(topic)) this.subscribe(channel, topic);
         } catch (error) {
           this.problem = `The schema of ${topic} cannot be read: ${(error as Error).message}.`;
         }
       }
     });
     client.on("message", (event: MessageData) => {
-      const topic = topicOf.get(event.subscriptionId), slot = topic && this.slots.get(topic);
+      const topic = this.subscribed.get(event.subscriptionId), slot = topic && this.slots.get(topic);
       if (!topic || !slot) return;
-      slot.at = performance.now();
-      slot.count += 1;
+      const bytes = new DataView(event.data.buffer, event.data.byteOffset, event.data.byteLength);
+      const key = kKeyed.has(topic) ? keyOf(bytes) : "";
+      slot.newest = key;
+      const sample = slot.samples.get(key);
+      slot.samples.set(key, { bytes, message: sample?.message, at: performance.now() });
       this.samples += 1;
-      slot.bytes = event.data;
-      if (topic === "handsel/component_health") {
-        const health = this.newest(topic);
-        if (health) this.health.set(health.component, { message: health, at: slot.at });
-      }
+      this.counts.set(topic, this.received(topic) + 1);
+      this.onSample(topic, key, event.timestamp, bytes, slot.decoder);
       this.onChange();
     });
     client.on("error", () => undefined);  // a close follows
@@ -92,6 +128,10 @@ export class Link {
       this.retry = Math.min(2 * this.retry, kRetryLongest);
       this.onChange();
     });
+  }
+
+  private subscribe(channel: Channel, topic: TopicName): void {
+    if (this.client) this.subscribed.set(this.client.subscribe(channel.id), topic);
   }
 
   private decode(topic: string, decoder: Decoder, bytes: ArrayBufferView): unknown {

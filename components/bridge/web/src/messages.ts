@@ -30,6 +30,7 @@ export interface Person {
   gaze_direction: Vector3;
   age: number;
   inflation: number;
+  hands: { joint: string; ahead: { time: number; position: Vector3; uncertainty: number }[] }[];
 }
 export interface OtherRobot { name: string; parts: { a: Vector3; b: Vector3; radius: number }[]; age: number }
 export interface HumanState { people: Person[]; covered: boolean; robots: OtherRobot[] }
@@ -45,6 +46,8 @@ export interface ActiveTrajectory {
   time: number;
   speed_factor: number;
   position: ArrayLike<number>;
+  velocity: ArrayLike<number>;
+  acceleration: ArrayLike<number>;
   axes: ArrayLike<number>;
   rest: { axes: AxisTrajectory[] };
 }
@@ -92,6 +95,9 @@ export interface ActionStatus {
   holding: boolean;
   exchange_engaged: boolean;
   exchange_point: Vector3;
+  has_partner: boolean;
+  partner_side: number;
+  T_world_partner_wrist: Pose;
   reason: string;
 }
 
@@ -105,6 +111,25 @@ export interface ComponentHealth {
   uptime: number;
   topics: { rate: number; deadline_misses: bigint; rejected: bigint }[];
   left_out: { name: string; count: bigint }[];
+}
+
+export interface Grasp {
+  id: bigint;
+  T_object_hand: Pose;
+  contacts: { position: Vector3; normal: Vector3; friction: number }[];
+  partners: { side: number; T_object_wrist: Pose }[];
+}
+export interface GraspCandidates { object: string; grasps: Grasp[] }
+
+export interface Costmap {
+  layer: string;
+  revision: bigint;
+  origin: Vector3;
+  resolution: number;
+  nx: number;
+  ny: number;
+  nz: number;
+  values: ArrayLike<number>;  // cost * 254; 255: forbidden or out of reach
 }
 
 export interface Facts { holding: { kind: number; subject: string; object: string; since: number }[] }
@@ -122,6 +147,8 @@ export interface Topics {
   "handsel/action_status": ActionStatus;
   "handsel/component_health": ComponentHealth;
   "handsel/facts": Facts;
+  "handsel/grasp_candidates": GraspCandidates;
+  "handsel/costmap": Costmap;
 }
 export type TopicName = keyof Topics;
 export const kTopics: TopicName[] = [
@@ -129,3 +156,13 @@ export const kTopics: TopicName[] = [
   "handsel/execution_status", "handsel/attention_state", "handsel/attention_advice", "handsel/task_status", "handsel/action_status",
   "handsel/component_health", "handsel/facts",
 ];
+// Large topics, read only while a layer shows them.
+export const kLayerTopics: TopicName[] = ["handsel/grasp_candidates", "handsel/costmap"];
+// Topics with several instances, whose key is the text with which a sample begins.
+export const kKeyed: ReadonlySet<TopicName> = new Set(["handsel/component_health", "handsel/grasp_candidates", "handsel/costmap"]);
+
+// Returns the text with which a sample begins after its encapsulation header.
+export function keyOf(bytes: DataView): string {
+  const length = bytes.byteLength > 8 ? Math.min(bytes.getUint32(4, true), bytes.byteLength - 8) : 0;
+  return new TextDecoder().decode(new Uint8Array(bytes.buffer, bytes.byteOffset + 8, Math.max(0, length - 1)));
+}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tables beside the 3-D view.
+import { byId, put } from "./elements";
 import { Link } from "./link";
+import { causesOf, Source } from "./source";
 import { nearness } from "./nearness";
 
 const kSilent = 0.6;    // max time without a heartbeat [s]
@@ -8,17 +10,6 @@ const kNobody = 1e8;    // larger distances mean that no person is present [m]
 const kDrives: Record<string, string> = { enabled: "drives on", braked: "brakes closed", off: "drives off" };
 
 type Cell = string | { text: string; kind?: string; ratio?: number };
-
-const byId = (id: string): HTMLElement => {
-  const element = document.getElementById(id);
-  if (!element) throw new Error(`the page has no #${id}`);
-  return element;
-};
-
-function put(id: string, text: string): void {
-  const element = byId(id);
-  if (element.textContent !== text) element.textContent = text;
-}
 
 // Returns a bar from 0 to 1.
 function bar(element: HTMLElement, ratio: number, kind = ""): void {
@@ -58,9 +49,15 @@ function phaseText(word: string, human: string): string {
 }
 
 export class Panels {
-  constructor(private readonly link: Link, private readonly axes: string[]) {}
+  private source: Source;
 
-  show(angles: (axis: string) => number): void {
+  constructor(private readonly link: Link, private readonly axes: string[]) {
+    this.source = link;
+  }
+
+  // Shows what `source` has; `angles`: of each axis [rad].
+  show(source: Source, angles: (axis: string) => number): void {
+    this.source = source;
     this.connection();
     this.mode();
     this.task();
@@ -82,7 +79,7 @@ export class Panels {
   }
 
   private mode(): void {
-    const { link } = this;
+    const link = this.source;
     const execution = link.newest("handsel/execution_status"), robot = link.newest("handsel/robot_state");
     const silent = link.age("handsel/execution_status") > kSilent;
     const mode = !execution ? "waiting" : silent ? "silent" : link.word("Mode", execution.mode);
@@ -91,18 +88,18 @@ export class Panels {
     const drive = robot ? link.word("DriveMode", robot.mode) : "";
     put("drive", !robot ? "no robot yet" : link.age("handsel/robot_state") > kSilent ? "robot silent" : (kDrives[drive] ?? drive));
     byId("drive").dataset.drive = drive;
-    const causes = execution && !silent ? link.enumeration("Cause").filter((_, bit) => execution.causes & (1 << bit)) : [];
+    const causes = execution && !silent ? causesOf(link, execution.causes) : [];
     const list = byId("causes");
     list.replaceChildren(...causes.map((cause) => {
       const chip = document.createElement("li");
-      chip.textContent = cause.replaceAll("_", " ");
+      chip.textContent = cause;
       return chip;
     }));
     put("reason", silent && execution ? "The trajectory controller is silent." : (execution?.reason ?? ""));
   }
 
   private task(): void {
-    const { link } = this;
+    const link = this.source;
     const task = link.newest("handsel/task_status"), action = link.newest("handsel/action_status");
     const state = task ? link.word("TaskState", task.state) : "none";
     put("task-title", task ? (task.plan[Math.min(task.step, task.plan.length - 1)] ?? link.word("TaskKind", task.kind)) : "no task yet");
@@ -121,7 +118,7 @@ export class Panels {
   }
 
   private motion(): void {
-    const { link } = this;
+    const link = this.source;
     const active = link.newest("handsel/active_trajectory"), execution = link.newest("handsel/execution_status");
     const factor = active && active.trajectory !== 0n ? active.speed_factor : undefined;
     put("speed", factor === undefined ? "at rest" : `${(100 * factor).toFixed(0)} %`);
@@ -139,8 +136,8 @@ export class Panels {
   }
 
   private distance(): void {
-    const execution = this.link.newest("handsel/execution_status"), humans = this.link.newest("handsel/human_state");
-    const forecast = this.link.newest("handsel/trajectory_forecast");
+    const execution = this.source.newest("handsel/execution_status"), humans = this.source.newest("handsel/human_state");
+    const forecast = this.source.newest("handsel/trajectory_forecast");
     const distance = execution?.separation ?? forecast?.clearance;
     if (distance === undefined || distance >= kNobody) {
       put("separation", humans && humans.people.length === 0 ? (humans.covered ? "nobody present" : "nobody observed, not all of the space in view") : "unknown");
@@ -159,7 +156,7 @@ export class Panels {
   }
 
   private attention(): void {
-    const attention = this.link.newest("handsel/attention_state"), advice = this.link.newest("handsel/attention_advice");
+    const attention = this.source.newest("handsel/attention_state"), advice = this.source.newest("handsel/attention_advice");
     const limiting = advice && advice.speed_factor < 0.999 ? advice.limiting : "";
     rows("clocks", (attention?.behaviours ?? []).map((b) => {
       const fastest = Number(b.activations_at_fastest), ratio = fastest > 0 ? Number(b.activations) / fastest : 0;
@@ -176,11 +173,10 @@ export class Panels {
   }
 
   private health(): void {
-    const now = performance.now();
-    const sorted = [...this.link.health.values()].sort((a, b) => a.message.component.localeCompare(b.message.component));
-    rows("health", sorted.map(({ message: h, at }) => {
-      const silent = (now - at) / 1000 > kSilent;
-      const said = this.link.word("HealthState", h.state);
+    const sorted = this.source.health().sort((a, b) => a.message.component.localeCompare(b.message.component));
+    rows("health", sorted.map(({ message: h, age }) => {
+      const silent = age > kSilent;
+      const said = this.source.word("HealthState", h.state);
       // Reported by the launcher while the process is restarting.
       const word = silent ? "silent" : said === "stopping" && h.pid === 0 ? "restarting" : said;
       const rate = h.topics.reduce((sum, topic) => sum + topic.rate, 0);
@@ -192,7 +188,7 @@ export class Panels {
         number(String(misses), misses > 0), number(String(rejected), rejected > 0), number(`${(100 * h.cpu).toFixed(0)} %`),
         number(`${h.memory_mb.toFixed(0)} MB`), { text: [h.reason, ...leftOut].filter(Boolean).join("; "), kind: "why" }];
     }));
-    const alive = sorted.filter(({ message, at }) => (now - at) / 1000 <= kSilent && this.link.word("HealthState", message.state) === "ok").length;
+    const alive = sorted.filter(({ message, age }) => age <= kSilent && this.source.word("HealthState", message.state) === "ok").length;
     put("health-count", sorted.length > 0 ? `${alive} of ${sorted.length} healthy` : "");
   }
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// People as rounded limbs between their REP-155 joints, with their gaze.
+// People as rounded limbs between their REP-155 joints.
 import * as THREE from "three";
 import { Hand } from "./hand_drag";
 import { Person } from "./messages";
-import { dispose, kCylinder, kSphere, Rod, span, vector } from "./shapes";
+import { dispose, kCylinder, kSphere, span, vector } from "./shapes";
 
 const kLost = 0.25;       // min time without an observation after which a person is drawn faint [s]
-const kGazeLength = 0.9;  // length of the gaze ray [m]
 const kSeen = 2e-3;       // min step of a joint that is redrawn [m]
 const kSkin = 0xd9a078, kShirt = 0x2f7f86, kTrousers = 0x3d4663;
 
@@ -33,13 +32,12 @@ class Body {
   private readonly material = new THREE.MeshLambertMaterial({ transparent: true });
   private readonly tubes = new THREE.InstancedMesh(kCylinder, this.material, kLimbs.length);
   private readonly balls = new THREE.InstancedMesh(kSphere, this.material, kBalls.length + 2 * kLimbs.length);
-  private readonly gaze = new Rod(0.006, 0x8a5cf6, 0.75);
   private drawn: THREE.Vector3[] = [];
 
   constructor() {
     this.tubes.castShadow = this.balls.castShadow = true;
     this.tubes.frustumCulled = this.balls.frustumCulled = false;
-    this.group.add(this.tubes, this.balls, this.gaze.mesh);
+    this.group.add(this.tubes, this.balls);
   }
 
   show(person: Person): boolean {
@@ -51,7 +49,6 @@ class Body {
       if (hand) this.hands.set(side, hand);
       else this.hands.delete(side);
     }
-    if (person.gaze_known) points.push(vector(person.gaze_direction).multiplyScalar(0.1));
     const still = points.length === this.drawn.length && points.every((p, i) => p.distanceToSquared(this.drawn[i]) < kSeen * kSeen);
     if (still && opacity === this.material.opacity) return false;
     this.drawn = points;
@@ -81,11 +78,6 @@ class Body {
     for (const mesh of [this.tubes, this.balls]) {
       mesh.instanceMatrix.needsUpdate = true;
       if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
-    }
-    this.gaze.mesh.visible = false;
-    if (person.gaze_known) {
-      const from = vector(person.gaze_origin);
-      this.gaze.place(from, vector(person.gaze_direction).multiplyScalar(kGazeLength).add(from));
     }
     this.head.copy(joints.get("head") ?? points[0] ?? this.head);
     return true;

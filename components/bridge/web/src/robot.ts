@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot from its URDF, and the future path of its tool.
+// The robot from its URDF.
 import * as THREE from "three";
 import URDFLoader, { URDFRobot } from "urdf-loader";
 import { Config } from "./config";
-import { ActiveTrajectory, RobotState } from "./messages";
-import { dispose, kSphere, setPose } from "./shapes";
-import { sample } from "./soft_motion";
+import { RobotState } from "./messages";
+import { setPose } from "./shapes";
 
-const kPathPoints = 72;
 const kSeen = 2e-4;  // min step of an axis that is redrawn [rad]
 const kShades = { base: 0x55606e, light: 0xe9ecef, accent: 0xe8871e, hand: 0x343b45 };
 
 export class Robot {
   readonly group = new THREE.Group();
-  readonly path = new THREE.Group();
   // The state drawn now: stamp of its sample and angle of each axis of the model.
   stamp = 0n;
   private readonly model: URDFRobot;
   private readonly ghost: URDFRobot;  // never drawn: computes the tool path
   private drawn: number[] = [];
-  private trajectory = 0n;
-  private tube: THREE.Mesh<THREE.TubeGeometry, THREE.MeshLambertMaterial[]> | undefined;
-  private total = 0;
 
   constructor(urdf: string, private readonly config: Config) {
     const loader = new URDFLoader();
@@ -54,62 +48,35 @@ export class Robot {
     return Object.fromEntries(this.config.axes.map((axis) => [axis, this.model.joints[axis]?.angle ?? NaN]));
   }
 
-  // Returns true if the path, or the arm's progress along it, has changed.
-  showPath(active: ActiveTrajectory | undefined): boolean {
-    const moving = active !== undefined && active.trajectory !== 0n && active.rest.axes.length > 0 && this.moves(active);
-    if (!moving) {
-      if (!this.tube) return false;
-      this.clearPath();
-      return true;
-    }
-    if (active.trajectory !== this.trajectory) {
-      this.clearPath();
-      this.trajectory = active.trajectory;
-      this.tube = this.drawPath(active);
-    }
-    if (!this.tube) return false;
-    const indices = this.tube.geometry.index?.count ?? 0, each = indices / kPathPoints;
-    const past = each * Math.round(kPathPoints * Math.min(1, active.time / Math.max(this.total, 1e-6)));
-    if (this.tube.geometry.groups.length === 2 && this.tube.geometry.groups[0].count === past) return false;
-    this.tube.geometry.clearGroups();
-    this.tube.geometry.addGroup(0, past, 1);
-    this.tube.geometry.addGroup(past, indices - past, 0);
-    return true;
-  }
-
-  private moves(active: ActiveTrajectory): boolean {
+  // Returns true if one of these axes, by their index, moves the arm or the platform.
+  movesTool(axes: ArrayLike<number>): boolean {
     const { arm, platform } = this.config.groups;
     const drawn = new Set([...(arm ?? this.config.axes), ...(platform ?? [])]);
-    return Array.from(active.axes).some((axis) => drawn.has(this.config.axes[axis]));
+    return Array.from(axes).some((axis) => drawn.has(this.config.axes[axis]));
   }
 
-  private drawPath(active: ActiveTrajectory): typeof this.tube {
-    const tool = this.ghost.links[this.config.tool_link];
-    if (!tool) return undefined;
-    this.config.axes.forEach((axis, i) => this.ghost.setJointValue(axis, active.position[i] ?? 0));
-    const moving = active.rest.axes.map((axis) => sample(axis, kPathPoints));
-    this.total = active.rest.axes[0].segments.reduce((sum, segment) => sum + segment.duration, 0);
-    const points: THREE.Vector3[] = [];
-    for (let i = 0; i <= kPathPoints; ++i) {
-      moving.forEach((values, k) => this.ghost.setJointValue(this.config.axes[active.axes[k]], values[i]));
+  // Returns the positions of the tool, world [m], while `axes` take these positions one after the
+  // other and the other axes stay at `position`; empty for a robot without a tool.
+  toolPath(position: ArrayLike<number>, axes: ArrayLike<number>, positions: number[][]): THREE.Vector3[] {
+    const tool = this.ghost.links[this.config.tool_link], points: THREE.Vector3[] = [];
+    if (!tool) return points;
+    this.config.axes.forEach((axis, i) => this.ghost.setJointValue(axis, position[i] ?? 0));
+    this.group.updateMatrixWorld(true);
+    for (let i = 0; i < (positions[0]?.length ?? 0); ++i) {
+      positions.forEach((values, k) => this.ghost.setJointValue(this.config.axes[axes[k]], values[i]));
       this.ghost.updateMatrixWorld(true);
       points.push(tool.getWorldPosition(new THREE.Vector3()).applyMatrix4(this.group.matrixWorld));
     }
-    const geometry = new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points), kPathPoints, 0.007, 6);
-    const ahead = new THREE.MeshLambertMaterial({ color: 0x12a150, emissive: 0x0a6b34 });
-    const past = new THREE.MeshLambertMaterial({ color: 0x12a150, transparent: true, opacity: 0.25 });
-    const tube = new THREE.Mesh(geometry, [ahead, past]);
-    const end = new THREE.Mesh(kSphere, ahead);
-    end.scale.setScalar(0.018);
-    end.position.copy(points[points.length - 1]);
-    this.path.add(tube, end);
-    return tube;
+    return points;
   }
 
-  private clearPath(): void {
-    for (const part of [...this.path.children]) dispose(part);
-    this.tube = undefined;
-    this.trajectory = 0n;
+  // Returns both ends of each link as drawn, world [m]: its own frame and that of the next link.
+  bones(): [THREE.Vector3, THREE.Vector3][] {
+    this.group.updateMatrixWorld(true);
+    return Object.values(this.model.joints).map((joint) => {
+      const above = joint.parent ?? this.model;
+      return [above.getWorldPosition(new THREE.Vector3()), joint.getWorldPosition(new THREE.Vector3())];
+    });
   }
 
   private paint(): void {

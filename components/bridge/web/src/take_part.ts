@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card with which a visitor takes part: tasks, requests, and actions of simulated people.
+import { byId } from "./elements";
 import { Link } from "./link";
+import { causesOf } from "./source";
 import { Command, Steering } from "./steering";
 
 type Field = "object" | "human" | "surface" | "onto";
@@ -12,12 +14,6 @@ const kTasks: Record<string, string[]> = {
 const kEmpty: Record<Field, string> = { object: "what is offered", human: "anybody", surface: "", onto: "where there is room" };
 const kSilent = 1;    // max time without a heartbeat of the simulator [s]
 const kNobody = 1e8;  // larger distances mean that no person is present [m]
-
-const byId = <T extends HTMLElement>(id: string): T => {
-  const element = document.getElementById(id);
-  if (!element) throw new Error(`the page has no #${id}`);
-  return element as T;
-};
 
 // Gives a list these values, and keeps what is chosen.
 function offer(list: HTMLSelectElement, values: string[], empty?: string): void {
@@ -47,7 +43,7 @@ export class TakePart {
   show(): void {
     const { link, steering } = this;
     const scene = link.newest("handsel/scene"), people = (link.newest("handsel/human_state")?.people ?? []).map(({ id }) => id).sort();
-    const simulated = (performance.now() - (link.health.get("sim")?.at ?? -Infinity)) / 1000 < kSilent;
+    const simulated = link.health().some(({ message, age }) => message.component === "sim" && age < kSilent);
     const fields = kTasks[this.task.value] ?? [];
     const values: Record<Field, string[]> = {
       object: (scene?.objects ?? []).map(({ id }) => id).sort(), human: people,
@@ -96,7 +92,7 @@ export class TakePart {
     const execution = link.newest("handsel/execution_status"), active = link.newest("handsel/active_trajectory");
     if (!execution || execution.separation >= kNobody) return "";
     const speed = !active || active.trajectory === 0n ? "at rest" : `at ${(100 * Math.abs(active.speed_factor)).toFixed(0)} %`;
-    const causes = link.enumeration("Cause").filter((_, bit) => execution.causes & (1 << bit)).map((cause) => cause.replaceAll("_", " "));
+    const causes = causesOf(link, execution.causes);
     const limit = execution.separation_limit > 0 ? ` of at least ${execution.separation_limit.toFixed(2)} m` : "";
     return [`Robot ${speed}`, `${execution.separation.toFixed(2)} m${limit}`, causes.join(", ")].filter(Boolean).join(" · ");
   }

@@ -3,15 +3,25 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Config } from "./config";
+import { byId } from "./elements";
 import { HandDrag } from "./hand_drag";
 import { Labels } from "./labels";
-import { Link } from "./link";
+import { CostmapLayer } from "./layers/costmap_layer";
+import { ForecastLayer } from "./layers/forecast_layer";
+import { GazeLayer } from "./layers/gaze_layer";
+import { GraspLayer } from "./layers/grasp_layer";
+import { HandoverLayer } from "./layers/handover_layer";
+import { Layers } from "./layers/layers";
+import { PathLayer } from "./layers/path_layer";
+import { ZoneLayer } from "./layers/zone_layer";
 import { nearness } from "./nearness";
 import { OtherRobots } from "./other_robots";
 import { People } from "./people";
 import { Robot } from "./robot";
-import { kSphere, Rod, vector } from "./shapes";
+import { Rod, vector } from "./shapes";
+import { Source } from "./source";
 import { Steering } from "./steering";
+import { Surroundings } from "./surroundings";
 import { Things } from "./things";
 
 const kNobody = 1e8;  // larger distances mean that no person is present [m]
@@ -25,6 +35,7 @@ export class World {
   frames = 0;
   cost = 0;  // duration of the last picture [ms]
   readonly robot: Robot;
+  readonly layers: Layers;
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.05, 40);
@@ -33,8 +44,8 @@ export class World {
   private readonly others = new OtherRobots();
   private readonly things: Things;
   private readonly separation = new Rod(0.005, kCalm);
-  private readonly exchange = new THREE.Mesh(kSphere, new THREE.MeshBasicMaterial({ color: 0x8a5cf6, transparent: true, opacity: 0.45 }));
   private readonly labels: Labels;
+  private readonly surroundings: Surroundings;
   private fence: WebGLSync | null = null;
   private begun = 0;
   private framed = false;
@@ -52,7 +63,6 @@ export class World {
     // which are half of the work.
     this.renderer.shadowMap.enabled = !software;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
-    this.floor.visible = !software;
     this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "The robot, the people around it and what it handles, in three dimensions");
@@ -60,11 +70,13 @@ export class World {
     this.labels = new Labels(stage);
     this.robot = new Robot(urdf, config);
     this.things = new Things(config, () => this.touch(), onProblem);
-    this.exchange.scale.setScalar(0.03);
-    this.exchange.visible = false;
+    this.surroundings = new Surroundings(!software);
+    this.layers = new Layers(
+      [new PathLayer(this.robot), new HandoverLayer(), new GazeLayer(config.attentive_angle), new ForecastLayer(), new GraspLayer(), new CostmapLayer(),
+        new ZoneLayer(this.robot, config.zones)],
+      byId("layer-list"), () => this.touch());
     this.camera.up.set(0, 0, 1);
-    this.scene.add(this.robot.group, this.robot.path, this.people.group, this.others.group, this.things.group, this.separation.mesh, this.exchange);
-    this.light();
+    this.scene.add(this.robot.group, this.people.group, this.others.group, this.things.group, this.separation.mesh, this.layers.group, this.surroundings.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI * 0.495;
     this.controls.minDistance = 0.4;
@@ -77,22 +89,21 @@ export class World {
     this.theme();
   }
 
-  // Lets the visitor drag hands of people; `say` shows why that was refused.
-  letDrag(steering: Steering, say: (refusal: string) => void): void {
-    const drag = new HandDrag(this.renderer.domElement, this.camera, this.controls, steering, () => this.people.hands(), () => this.touch(), say);
+  // Lets the visitor drag hands of people while `present` is true; `say` shows why that was refused.
+  letDrag(steering: Steering, present: () => boolean, say: (refusal: string) => void): void {
+    const drag = new HandDrag(this.renderer.domElement, this.camera, this.controls, steering, () => (present() ? this.people.hands() : []), () => this.touch(), say);
     this.scene.add(drag.marker);
   }
 
   // Takes the newest samples; returns true if the picture would change.
-  update(link: Link): boolean {
-    const state = link.newest("handsel/robot_state"), scene = link.newest("handsel/scene"), humans = link.newest("handsel/human_state");
+  update(source: Source): boolean {
+    const state = source.newest("handsel/robot_state"), scene = source.newest("handsel/scene"), humans = source.newest("handsel/human_state");
     let changed = state ? this.robot.show(state) : false;
     if (scene) changed = this.things.show(scene) || changed;
     if (humans) changed = this.people.show(humans.people) || changed;
     if (humans) changed = this.others.show(humans.robots ?? []) || changed;
-    changed = this.robot.showPath(link.newest("handsel/active_trajectory")) || changed;
-    if (changed) this.showDistance(link);
-    this.showExchange(link);
+    changed = this.layers.show(source) || changed;
+    if (changed) this.showDistance(source);
     if (!this.framed && state && scene && humans) this.frame();
     this.dirty ||= changed;
     return this.dirty;
@@ -147,14 +158,18 @@ export class World {
     this.touch();
   }
 
-  // Returns the position of a part in the page [CSS pixels]; undefined if absent or out of view.
-  region(name: Part): Region | undefined {
+  // Returns the position of a part or layer in the page [CSS pixels]; undefined if absent or out of
+  // view.
+  region(name: string): Region | undefined {
     const box = new THREE.Box3();
     if (name === "robot") box.setFromObject(this.robot.group, true);
     if (name === "person") box.copy(this.people.first()?.box ?? box);
-    const object = this.things.first();
-    if (name === "object" && object) box.setFromObject(object, true);
-    if (box.isEmpty()) return undefined;
+    const object = name === "object" ? this.things.first() : this.layers.find(name)?.group;
+    object?.traverseVisible((part) => (part as THREE.Mesh).geometry && box.expandByObject(part, true));
+    return box.isEmpty() ? undefined : this.onPage(box);
+  }
+
+  private onPage(box: THREE.Box3): Region | undefined {
     const view = this.renderer.domElement.getBoundingClientRect(), flat = new THREE.Box2();
     for (const corner of corners(box)) {
       corner.project(this.camera);
@@ -186,9 +201,9 @@ export class World {
     this.touch();
   }
 
-  private showDistance(link: Link): void {
-    const execution = link.newest("handsel/execution_status");
-    const known = execution?.nearest_on_robot !== undefined && execution.separation < kNobody && link.age("handsel/execution_status") < 1;
+  private showDistance(source: Source): void {
+    const execution = source.newest("handsel/execution_status");
+    const known = execution?.nearest_on_robot !== undefined && execution.separation < kNobody && source.age("handsel/execution_status") < 1;
     this.separation.mesh.visible = false;
     const legend = this.stage.querySelector<HTMLElement>(".legend .near");
     if (legend) legend.hidden = !known;
@@ -202,15 +217,6 @@ export class World {
     this.separation.mesh.material.color.setHex(how === "calm" ? kCalm : how === "near" ? kNear : kTooNear);
     this.separation.place(a, b);
     this.labels.add(`${execution.separation.toFixed(2)} m`, a.add(b).multiplyScalar(0.5), `distance ${how.replace(" ", "-")}`);
-  }
-
-  private showExchange(link: Link): void {
-    const action = link.newest("handsel/action_status");
-    const giving = action && ["give", "receive"].includes(link.word("ActionKind", action.kind)) && link.word("ActionState", action.state) === "running";
-    const at = action?.exchange_point, there = Boolean(giving && at && (at.x || at.y || at.z));
-    if (there !== this.exchange.visible) this.touch();
-    this.exchange.visible = there;
-    if (there && at) vector(at, this.exchange.position);
   }
 
   private touch(): void {
@@ -229,29 +235,8 @@ export class World {
   }
 
   private theme(): void {
-    const colour = (name: string): THREE.Color => new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
-    this.scene.background = colour("--stage");
-    this.grid.material.color.copy(colour("--grid"));
+    this.scene.background = this.surroundings.theme();
     this.touch();
-  }
-
-  private readonly floor = new THREE.Mesh(new THREE.PlaneGeometry(12, 12), new THREE.ShadowMaterial({ opacity: 0.22 }));
-  private readonly grid = new THREE.LineSegments(gridLines(4, 0.5), new THREE.LineBasicMaterial({ vertexColors: true, transparent: true }));
-
-  private light(): void {
-    const sun = new THREE.DirectionalLight(0xffffff, 2.1);
-    sun.position.set(-1.2, -2.4, 4);
-    sun.target.position.set(0.7, -0.2, 0.6);
-    sun.castShadow = true;
-    sun.shadow.mapSize.set(1024, 1024);
-    sun.shadow.radius = 3;
-    sun.shadow.bias = -0.0006;
-    sun.shadow.normalBias = 0.02;
-    Object.assign(sun.shadow.camera, { left: -2, right: 2, top: 2, bottom: -2, near: 1, far: 8 });
-    this.scene.add(sun, sun.target, new THREE.HemisphereLight(0xffffff, 0x9aa3ad, 1.5));
-    this.floor.position.z = -0.002;
-    this.floor.receiveShadow = true;
-    this.scene.add(this.floor, this.grid);
   }
 }
 
@@ -260,25 +245,6 @@ function drawsInSoftware(): boolean {
   const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
   gl?.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
-}
-
-// Returns a square grid that fades out toward its edge.
-function gridLines(half: number, step: number): THREE.BufferGeometry {
-  const points: number[] = [], shades: number[] = [];
-  const add = (x: number, y: number): void => {
-    points.push(x, y, 0);
-    shades.push(1, 1, 1, Math.max(0, 1 - Math.hypot(x, y) / half) ** 0.7);
-  };
-  for (let u = -half; u <= half; u += step) {
-    for (let v = -half; v < half; v += step) {
-      add(u, v);
-      add(u, v + step);
-      add(v, u);
-      add(v + step, u);
-    }
-  }
-  return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(points, 3))
-    .setAttribute("color", new THREE.Float32BufferAttribute(shades, 4));
 }
 
 function corners(box: THREE.Box3): THREE.Vector3[] {
