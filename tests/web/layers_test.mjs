@@ -2,7 +2,7 @@
 // The layers of the 3-D view over a running system: each changes the pixels of its region when it is switched on, the choice is kept, and large topics are read only while they are shown.
 import assert from "node:assert/strict";
 import test, { after, before } from "node:test";
-import { difference, launchBrowser, pixels, Program, settled, startSystem, until } from "./stage.mjs";
+import { difference, launchBrowser, picture, Program, settled, startSystem, until } from "./stage.mjs";
 
 const kDomain = process.env.HANDSEL_TEST_DOMAIN ?? "41";
 const kSize = { width: 640, height: 620 };  // [px] without a GPU a small picture is drawn more often
@@ -53,11 +53,11 @@ async function isSeen(id, least) {
   let layer = 0, noise = 1;
   for (let i = 0; i < kTries && !(layer >= least && layer > 3 * noise); ++i) {
     await drawn({ [id]: true });
-    const on = await pixels(page, grown);
+    const on = await picture(page, grown);
     await drawn({ [id]: false });
-    const without = await pixels(page, grown);
-    layer = difference(on, without);
-    noise = difference(without, await pixels(page, grown));
+    const without = await picture(page, grown);
+    layer = await difference(page, on, without);
+    noise = await difference(page, without, await picture(page, grown));
   }
   console.log(`${id}: ${(100 * layer).toFixed(1)} % of ${Math.round(width)}x${Math.round(height)} pixels, ${(100 * noise).toFixed(1)} % without it`);
   assert.ok(layer >= least && layer > 3 * noise, `${id}: ${layer} of its region, ${noise} without it`);

@@ -5,7 +5,7 @@ import { mkdir } from "node:fs/promises";
 import { dirname } from "node:path";
 import test, { after, before } from "node:test";
 import { setTimeout as delay } from "node:timers/promises";
-import { difference, kNoGl, launchBrowser, pixels, Program, settled, startSystem, until } from "./stage.mjs";
+import { difference, kNoGl, launchBrowser, picture, Program, settled, startSystem, until } from "./stage.mjs";
 
 const kDomain = process.env.HANDSEL_TEST_DOMAIN ?? "38";
 const kAngle = 1e-3;       // [rad] what is shown may differ from DDS by so much
@@ -93,10 +93,10 @@ test("robot, person and object are drawn where they are said to be", async () =>
     const region = await page.evaluate((name) => window.handsel.region(name), part);
     const others = ["robot", "person", "object"].filter((name) => name !== part);
     await drawn(others);
-    const shown = await pixels(page, region);
+    const shown = await picture(page, region);
     await drawn([...others, part]);
-    const background = await pixels(page, region);
-    const ratio = difference(shown, background);
+    const background = await picture(page, region);
+    const ratio = await difference(page, shown, background);
     console.log(`${part}: ${(100 * ratio).toFixed(0)} % of ${Math.round(region.width)}x${Math.round(region.height)} pixels are not background`);
     assert.ok(region.width > 8 && region.height > 8, `${part} is too small to see`);
     assert.ok(ratio >= least, `${part}: only ${ratio} of its region`);

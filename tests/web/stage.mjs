@@ -79,29 +79,33 @@ export function launchBrowser(gl = kSoftwareGl) {
 
 const decoders = new Map();  // by browser: an empty page that decodes pictures
 
-// The part of the page in `region` as RGBA bytes.
-export async function pixels(page, region) {
-  const clip = { x: Math.floor(region.x), y: Math.floor(region.y), width: Math.ceil(region.width), height: Math.ceil(region.height) };
-  const picture = (await page.screenshot({ clip })).toString("base64");
+async function decoder(page) {
   const browser = page.context().browser();
   if (!decoders.has(browser)) decoders.set(browser, await browser.newPage());
-  return await decoders.get(browser).evaluate(async (data) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${data}`;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.width, image.height];
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    return Array.from(context.getImageData(0, 0, image.width, image.height).data);
-  }, picture);
+  return decoders.get(browser);
+}
+
+// The part of the page in `region` as PNG, base64.
+export async function picture(page, region) {
+  const clip = { x: Math.floor(region.x), y: Math.floor(region.y), width: Math.ceil(region.width), height: Math.ceil(region.height) };
+  return (await page.screenshot({ clip })).toString("base64");
 }
 
 // Share of the pixels of two pictures of one region that clearly differ.
-export function difference(a, b) {
-  let differing = 0;
-  for (let i = 0; i < a.length; i += 4) {
-    if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) > 24) ++differing;
-  }
-  return differing / (a.length / 4);
+export async function difference(page, first, second) {
+  return (await decoder(page)).evaluate(async (pictures) => {
+    const [a, b] = await Promise.all(pictures.map(async (data) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, image.width, image.height).data;
+    }));
+    let differing = 0;
+    for (let i = 0; i < a.length; i += 4) if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) > 24) ++differing;
+    return differing / (a.length / 4);
+  }, [first, second]);
 }

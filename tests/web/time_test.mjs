@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The time axis over a running system: what the page shows of an earlier instant is what was recorded then, field by field; the present is back with one button; what happened stands beside the axis.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -144,4 +144,28 @@ test("velocity, acceleration, jerk, force and separation are plotted against the
   }
   const [distance, limit] = curves.find(({ id }) => id === "separation").points;
   assert.ok(distance.some((value, i) => value > 0 && limit[i] > 0), "no separation is plotted");
+});
+
+test("a recording opens up to its last complete record, and Live returns to the system", async () => {
+  const bytes = readFileSync(file), cut = join(folder, "cut.mcap"), found = recorded(bytes);
+  writeFileSync(cut, bytes.subarray(0, Math.floor(0.7 * bytes.length)));
+  for (const [name, sentence] of [[file, /^task\.mcap is shown; Live returns to the running system\.$/], [cut, /^cut\.mcap does not end as a complete recording; it is shown up to its last complete record\.$/]]) {
+    await page.setInputFiles("#recording-file", name);
+    await until(page, (pattern) => new RegExp(pattern).test(document.getElementById("recording-note").textContent), sentence.source);
+    assert.ok(await page.evaluate(() => document.body.classList.contains("recorded")));
+    const samples = await page.evaluate((topics) => Object.fromEntries(topics.map((topic) => [topic, window.handsel.sample(topic)])), kTopics);
+    for (const topic of kTopics) {
+      const record = found.get(topic).get(samples[topic].stamp);
+      assert.deepEqual(leavesOf(samples[topic]), leavesOf(record.decoder.readMessage(record.data)), `${name}: ${topic}`);
+    }
+    const stamps = [...found.get("handsel/execution_status").keys()].map(Number), [begin, end] = await page.evaluate(() => window.handsel.kept);
+    const whole = (Math.max(...stamps) - Math.min(...stamps)) / 1e6;
+    console.log(`${name.split("/").at(-1)}: ${((end - begin) / 1000).toFixed(1)} of ${(whole / 1000).toFixed(1)} s`);
+    assert.ok(end - begin > (name === file ? 0.95 : 0.4) * whole, "too little of the recording is shown");
+  }
+  writeFileSync(cut, "no recording");
+  await page.setInputFiles("#recording-file", cut);
+  await until(page, () => /^cut\.mcap holds no samples of a robot/.test(document.getElementById("recording-note").textContent));
+  await page.click("#live");
+  await until(page, () => !document.body.classList.contains("recorded") && document.getElementById("shown-time").textContent === "live");
 });
