@@ -2,12 +2,18 @@
 // The samples of a recording, read with the MCAP project's own reader.
 import { createRequire } from "node:module";
 import { join } from "node:path";
+import { leavesOf } from "./leaves.mjs";
 import { root } from "./stage.mjs";
 
 const require = createRequire(join(root, "components/bridge/web/package.json"));
 const { McapStreamReader } = require("@mcap/core");
 const { parseIDL } = require("@foxglove/omgidl-parser");
 const { MessageReader } = require("@foxglove/omgidl-serialization");
+
+// Returns the leaves of a sample without the sign of zero, which JSON does not keep.
+export function plainLeaves(sample) {
+  return Object.fromEntries(Object.entries(leavesOf(sample)).map(([path, value]) => [path, Object.is(value, -0) ? 0 : value]));
+}
 
 // Returns, for each topic, functions that decode its samples, by their stamps as text.
 export function recordedSamples(bytes, topics) {

@@ -114,6 +114,14 @@ test("a task is started, paused, resumed and cancelled", async () => {
   await page.click("#requests button[value=resume]");
   await shows(page, "running");
   await onDds(() => execution.newest?.mode === "normal" || execution.newest?.mode === "slow", "still held");
+  await page.evaluate(() => {
+    const slider = document.getElementById("speed-override");
+    slider.value = "60";
+    slider.dispatchEvent(new Event("change"));
+  });
+  await onDds(() => goals.samples.some(({ kind, value }) => kind === "speed" && Math.abs(value - 0.6) < 1e-6), "the speed slider sends nothing");
+  assert.equal((await post({ Authorization: `Bearer ${token}` }, { task: "speed", value: 1 })).status, 202);
+  await until(page, () => document.getElementById("speed-wanted").textContent === "100 %");
   await page.click("#requests button[value=cancel]");
   await shows(page, "cancelled");
   await onDds(() => tasks.samples.some(({ id, state }) => id === goal.id && state === "cancelled"), "not cancelled");

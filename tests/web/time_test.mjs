@@ -5,8 +5,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test, { after, before } from "node:test";
-import { leavesOf } from "./leaves.mjs";
-import { recordedSamples } from "./recorded.mjs";
+import { plainLeaves, recordedSamples } from "./recorded.mjs";
 import { launchBrowser, Program, startSystem, until } from "./stage.mjs";
 
 const kDomain = process.env.HANDSEL_TEST_DOMAIN ?? "42";
@@ -67,8 +66,8 @@ test("an earlier instant is shown as it was recorded, field by field", async () 
       if (!topic.endsWith("task_status")) assert.ok(stamp > instants[i] - kLate, `${topic} is ${instants[i] - stamp} ms old`);
       const record = found.get(topic).get(sample.stamp);
       assert.ok(record, `${topic}: the sample ${sample.stamp} was not recorded`);
-      const expected = leavesOf(record());
-      assert.deepEqual(leavesOf(sample), expected, topic);
+      const expected = plainLeaves(record());
+      assert.deepEqual(plainLeaves(sample), expected, topic);
       fields += Object.keys(expected).length;
     }
     assert.equal(texts["task-state"], "running");

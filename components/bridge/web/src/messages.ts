@@ -132,6 +132,8 @@ export interface Costmap {
   values: ArrayLike<number>;  // cost * 254; 255: forbidden or out of reach
 }
 
+export interface SafetyState { paused: boolean; override_factor: number; fault: boolean; awaits_person: boolean; reason: string }
+
 export interface Facts { holding: { kind: number; subject: string; object: string; since: number }[] }
 
 export interface Topics {
@@ -147,6 +149,7 @@ export interface Topics {
   "handsel/action_status": ActionStatus;
   "handsel/component_health": ComponentHealth;
   "handsel/facts": Facts;
+  "handsel/safety_state": SafetyState;
   "handsel/grasp_candidates": GraspCandidates;
   "handsel/costmap": Costmap;
 }
@@ -154,7 +157,7 @@ export type TopicName = keyof Topics;
 export const kTopics: TopicName[] = [
   "handsel/robot_state", "handsel/scene", "handsel/human_state", "handsel/active_trajectory", "handsel/trajectory_forecast",
   "handsel/execution_status", "handsel/attention_state", "handsel/attention_advice", "handsel/task_status", "handsel/action_status",
-  "handsel/component_health", "handsel/facts",
+  "handsel/component_health", "handsel/facts", "handsel/safety_state",
 ];
 // Large topics, read only while a layer shows them.
 export const kLayerTopics: TopicName[] = ["handsel/grasp_candidates", "handsel/costmap"];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card with which a visitor takes part: tasks, requests, and actions of simulated people.
-import { byId } from "./elements";
+import { byId, put } from "./elements";
 import { Link } from "./link";
 import { causesOf } from "./source";
 import { Command, Steering } from "./steering";
@@ -27,6 +27,7 @@ function offer(list: HTMLSelectElement, values: string[], empty?: string): void 
 export class TakePart {
   private readonly task = byId<HTMLSelectElement>("task-kind");
   private readonly person = byId<HTMLSelectElement>("person-id");
+  private readonly speed = byId<HTMLInputElement>("speed-override");
 
   constructor(private readonly link: Link, private readonly steering: Steering) {
     offer(this.task, Object.keys(kTasks));
@@ -36,12 +37,15 @@ export class TakePart {
     });
     for (const button of document.querySelectorAll<HTMLButtonElement>("#requests button"))
       button.addEventListener("click", () => void this.say({ task: button.value }, `${button.value}: asked for`));
+    this.speed.addEventListener("input", () => put("speed-wanted", `${this.speed.value} %`));
+    this.speed.addEventListener("change", () => void this.say({ task: "speed", value: Number(this.speed.value) / 100 }, `max speed ${this.speed.value} %: asked for`));
     for (const button of document.querySelectorAll<HTMLButtonElement>("#person-actions button"))
       button.addEventListener("click", () => void this.say({ person: this.person.value, action: button.value }, `${this.person.value}: ${button.textContent}`));
   }
 
   show(): void {
     const { link, steering } = this;
+    this.showSpeed();
     const scene = link.newest("handsel/scene"), people = (link.newest("handsel/human_state")?.people ?? []).map(({ id }) => id).sort();
     const simulated = link.health().some(({ message, age }) => message.component === "sim" && age < kSilent);
     const fields = kTasks[this.task.value] ?? [];
@@ -68,6 +72,15 @@ export class TakePart {
   // Shows an answer of the bridge.
   answer(text: string): void {
     byId("steer-answer").textContent = text;
+  }
+
+  // Shows the speed override in force, unless the viewer is choosing another.
+  private showSpeed(): void {
+    this.speed.disabled = !this.steering.allowed;
+    const safety = this.link.newest("handsel/safety_state");
+    if (!safety || document.activeElement === this.speed) return;
+    this.speed.value = String(Math.round(100 * safety.override_factor));
+    put("speed-wanted", `${this.speed.value} %`);
   }
 
   private async say(command: Command, done: string): Promise<void> {
