@@ -158,6 +158,7 @@ test("at rest the angles drawn and written are those on DDS", async () => {
 
 test("every process is listed and healthy", async () => {
   await until(page, (count) => document.querySelectorAll("#health .dot.ok").length === count, kProcesses);
+  assert.equal(await page.locator("#health tr:has(.dot.ok) td:nth-child(5).warn").count(), 0, "a healthy process has a warning for past misses");
   assert.equal(await page.textContent("#mode"), "normal");
   assert.equal(await page.textContent("#drive"), "drives on");
   assert.equal(await page.locator("#clocks tr").count(), 7);

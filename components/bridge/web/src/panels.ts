@@ -185,7 +185,7 @@ export class Panels {
       const leftOut = h.left_out.map(({ name, count }) => `left out ${count}: ${name}`);
       const number = (text: string, bad = false): Cell => ({ text, kind: bad ? "number warn" : "number" });
       return [{ text: "", kind: `dot ${word}` }, h.component.replaceAll("_", " "), { text: word, kind: word }, number(rate.toFixed(0)),
-        number(String(misses), misses > 0), number(String(rejected), rejected > 0), number(`${(100 * h.cpu).toFixed(0)} %`),
+        number(String(misses), misses > 0 && word !== "ok"), number(String(rejected), rejected > 0), number(`${(100 * h.cpu).toFixed(0)} %`),
         number(`${h.memory_mb.toFixed(0)} MB`), { text: [h.reason, ...leftOut].filter(Boolean).join("; "), kind: "why" }];
     }));
     const alive = sorted.filter(({ message, age }) => age <= kSilent && this.source.word("HealthState", message.state) === "ok").length;
