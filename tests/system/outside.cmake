@@ -7,3 +7,7 @@ handsel_test(own_object GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/outside/own
 target_compile_definitions(tests_live PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
 add_dependencies(tests_live product)
 set_tests_properties(own_object PROPERTIES TIMEOUT 600)
+handsel_test(own_model GROUP live SOURCES ${CMAKE_CURRENT_LIST_DIR}/outside/own_model_test.cpp LINK nlohmann_json::nlohmann_json LABEL system)
+target_compile_definitions(tests_live PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(tests_live product)
+set_tests_properties(own_model PROPERTIES TIMEOUT 600)

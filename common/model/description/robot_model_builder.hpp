@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,7 @@ class RobotModelBuilder {
   void add_group(const std::string& name, const std::vector<std::string>& joints,
                  const std::string& tip, const std::filesystem::path& source);
   /// Groups (when wanted) and disabled pairs. Unknown names are errors when strict, else passed
-  /// over.
+  /// over; pairs with a link that is left out are passed over.
   void read_srdf(const std::filesystem::path& srdf, bool groups, bool strict);
   /// Takes name, axes, groups, SRDF, roles and limits from the description, which stands in `file`.
   /// Throws ConfigError naming file and field, also when comfort exceeds guard / 1.1 or stop
@@ -74,6 +75,7 @@ class RobotModelBuilder {
   std::filesystem::path urdf_;
   RobotModel model_;
   std::vector<int> document_order_;  // joints as they stand in the URDF
+  std::set<std::string> left_out_;   // links of the URDF that are left out
 };
 
 /// The builder of the URDF that a description of a robot or hand names.

@@ -69,7 +69,7 @@ class SrdfReader {
 
   int link(const XMLElement& e, const char* key) const {
     const int index = builder_.model_.link_index(attribute(e, key));
-    if (index < 0 && strict_)
+    if (index < 0 && strict_ && !builder_.left_out_.contains(attribute(e, key)))
       throw ConfigError(where(e) + "no link \"" + attribute(e, key) + "\" in " +
                         builder_.urdf_.string());
     return index;

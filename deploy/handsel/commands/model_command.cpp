@@ -5,14 +5,18 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
+#include "common/config/described.hpp"
 #include "common/config/resources.hpp"
-#include "common/geometry/segments.hpp"
+#include "common/model/description/robot_text.hpp"
 #include "common/model/hand_model.hpp"
 #include "common/model/manipulator.hpp"
-#include "common/model/robot_capsules.hpp"
 #include "deploy/handsel/cli/json_lines.hpp"
 #include "deploy/handsel/cli/terminal.hpp"
+#include "deploy/handsel/own_robot/collision_matrix.hpp"
+#include "deploy/handsel/own_robot/model_sweep.hpp"
+#include "deploy/handsel/own_robot/srdf_pairs.hpp"
 
 namespace handsel {
 namespace {
@@ -45,25 +49,10 @@ const char* kind_name(JointKind kind) {
 }
 
 void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
-  const auto capsules = robot_capsules(robot);
-  std::vector<Pose> T;
-  robot.forward(robot.rest_configuration(), T);
-  std::vector<std::pair<int, int>> seen;
-  Vector3 p, q;
-  for (std::size_t i = 0; i < capsules.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      const auto &a = capsules[i], &b = capsules[k];
-      if (a.link == b.link || robot.pair_disabled(a.link, b.link)) continue;
-      const double apart = std::sqrt(
-          nearest_points(T[a.link] * a.a, T[a.link] * a.b, T[b.link] * b.a, T[b.link] * b.b, p, q));
-      const std::pair pair(b.link, a.link);
-      if (apart >= a.radius + b.radius || std::find(seen.begin(), seen.end(), pair) != seen.end())
-        continue;
-      seen.push_back(pair);
-      lacks.push_back("the rest configuration brings the hulls of links " +
-                      robot.links()[b.link].name + " and " + robot.links()[a.link].name +
-                      " together; if they cannot collide, disable the pair in the SRDF");
-    }
+  const auto name = [&](int link) { return robot.links()[static_cast<std::size_t>(link)].name; };
+  for (const auto& [a, b] : overlapping_hulls(robot, robot.rest_configuration()))
+    lacks.push_back("the rest configuration brings the hulls of links " + name(a) + " and " +
+                    name(b) + " together; if they cannot collide, disable the pair in the SRDF");
 }
 
 /// Returns whether the pads of a pinching hand oppose each other in some configuration.
@@ -161,12 +150,41 @@ void check_other_arms(const std::filesystem::path& description, const RobotModel
   }
 }
 
-int check(const std::string& name, bool as_json) {
+/// Adds what sampled configurations show to be wrong.
+void check_sweep(const RobotModel& robot, std::vector<std::string>& lacks) {
+  std::optional<HandModel> hand;
+  try {
+    if (!robot.hand().empty()) hand = HandModel::load(hand_description(robot.hand()));
+  } catch (const ConfigError&) {  // lacks_of() reports it
+  }
+  for (const std::string& fault : sweep_faults(robot, hand ? &*hand : nullptr))
+    lacks.push_back(fault);
+}
+
+/// Names the links of the SRDF that the robot does not have, because the description leaves them
+/// out.
+void note_left_out(const std::filesystem::path& description, const RobotModel& robot) {
+  const config::RobotDescription text = read_robot_text(description);
+  if (text.srdf().empty()) return;
+  for (const std::string& link :
+       links_of(read_srdf_pairs(described_path(description, text.srdf()))))
+    if (robot.link_index(link) < 0)
+      std::fprintf(
+          stderr,
+          "note: the SRDF names link %s, which is left out; pairs with it are passed over\n",
+          link.c_str());
+}
+
+int check(const std::string& name, bool as_json, bool sweep) {
   std::vector<std::string> lacks;
   try {
     const RobotModel robot = load_any(name, Meshes::load);
     lacks = lacks_of(robot);
-    if (!is_urdf(name)) check_other_arms(robot_description(name), robot, lacks);
+    if (!is_urdf(name)) {
+      check_other_arms(robot_description(name), robot, lacks);
+      note_left_out(robot_description(name), robot);
+    }
+    if (sweep) check_sweep(robot, lacks);
   } catch (const ConfigError& error) {
     lacks.push_back(error.what());
   }
@@ -279,12 +297,14 @@ class ForwardKinematics {
 void add_model_commands(CLI::App& app, int& exit_code) {
   struct Options {
     std::string robot;
-    bool as_json{};
+    bool as_json{}, sweep{};
   };
   const auto options = std::make_shared<Options>();
   CLI::App* model = app.add_subcommand(
-      "model", "checks and prints robot descriptions and URDFs; computes forward kinematics");
+      "model",
+      "creates, checks and prints robot descriptions and URDFs; computes forward kinematics");
   model->require_subcommand(1);
+  add_model_new_command(*model, exit_code);
   const auto add = [&](const char* name, const char* what) {
     CLI::App* command = model->add_subcommand(name, what);
     command
@@ -293,10 +313,14 @@ void add_model_commands(CLI::App& app, int& exit_code) {
     command->add_flag("--json", options->as_json, "print JSON Lines");
     return command;
   };
-  add("check", "prints what is missing in a robot description; exit code 1: something is missing")
-      ->callback([options, &exit_code] {
-        exit_code = check(options->robot, json_wanted(options->as_json));
-      });
+  CLI::App* checked = add(
+      "check", "prints what is missing in a robot description; exit code 1: something is missing");
+  checked->add_flag("--sweep", options->sweep,
+                    "also check sampled configurations: pairs of links that always touch, signs of "
+                    "mimic joints, the tool frame, limits");
+  checked->callback([options, &exit_code] {
+    exit_code = check(options->robot, json_wanted(options->as_json), options->sweep);
+  });
   add("info", "prints links, axes, limits and groups")->callback([options, &exit_code] {
     const json info = describe(load_any(options->robot, Meshes::load));
     if (json_wanted(options->as_json))
