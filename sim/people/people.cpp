@@ -93,6 +93,7 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   Body person{PersonModel(person_settings),
               Grip(settings.person_grip),
               TwoHandHold(settings.person_two_hand_grip),
+              std::nullopt,
               -1,
               object_index(objects_, start.fetches),
               false,
@@ -220,7 +221,7 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.held_by_robot = gripped == person.object;
     view.held_firmly = view.held_by_robot && robot_hand.holds_firmly;
     view.pressed_by_robot = robot_hand.pressed == person.object;
-    feel(person, view);
+    feel(person, dt, view);
     view.p_hand_object =
         person.hand().state().T_world_body.inverse() * view.T_world_object.translation();
     if (person.model.needs_finger_distance())
@@ -239,19 +240,34 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
 }
 
 /// Writes the forces that a person feels on the object and in the arms. Of a load in both hands the
-/// person expects the weight, and feels what is beyond.
-void People::feel(const Body& person, PersonView& view) const {
-  const Vector3 weight = objects_[person.object].model().mass * from_bt(world_.getGravity());
+/// person expects the weight and, while drawing it back, the force that accelerates it; the person
+/// feels what is beyond.
+void People::feel(Body& person, double dt, PersonView& view) const {
+  const ObjectBody& object = objects_[person.object];
+  const double mass = object.model().mass;
+  const Vector3 weight = mass * from_bt(world_.getGravity());
   if (!person.both.holding()) {
+    person.velocities.reset();
     view.grip_force = person.grip.wrench().force;
     view.arm_force = person.hand().arm_force();
     if (person.grip.holding()) view.arm_force += weight;
     return;
   }
+  const std::array<Vector3, 3> now{object.state().velocity, person.hands[0]->state().velocity,
+                                   person.hands[1]->state().velocity};
+  const std::array<Vector3, 3> before = person.velocities.value_or(now);
+  person.velocities = now;
   view.grip_force = person.both.on_object().force;
+  view.arm_force = person.hands[0]->arm_force() + person.hands[1]->arm_force() + weight;
+  if (dt > 0 && person.model.phase() == PersonPhase::withdrawing) {
+    const Vector3 of_load = mass / dt * (now[0] - before[0]);
+    view.grip_force -= of_load;
+    view.arm_force -= of_load;
+    for (std::size_t s = 0; s < 2; ++s)
+      view.arm_force -= person.hands[s]->mass() / dt * (now[s + 1] - before[s + 1]);
+  }
   double& up = view.grip_force.z();
   up = up > 0 ? std::max(0.0, up + weight.z()) : up;
-  view.arm_force = person.hands[0]->arm_force() + person.hands[1]->arm_force() + weight;
 }
 
 void People::hold_or_release(Body& person) {

@@ -89,7 +89,9 @@ class People {
     PersonModel model;
     Grip grip;         // of the handover hand
     TwoHandHold both;  // of both hands, in place of `grip`
-    int object{-1};    // index of the object of the handover, or of the fetched object
+    // Velocity of the object in both hands and of each hand, world [m/s]; nullopt: not held so.
+    std::optional<std::array<Vector3, 3>> velocities;
+    int object{-1};  // index of the object of the handover, or of the fetched object
     int fetches{-1};
     bool broke{false};
     std::vector<BodyCapsule> capsules;
@@ -107,7 +109,7 @@ class People {
   void hold_or_release(Body&);
   void pull(Body&, double dt);
   void pull_with_both(Body&, double dt);
-  void feel(const Body&, PersonView&) const;
+  void feel(Body&, double dt, PersonView&) const;
   void move_in_hand(Body&, const Vector3& p_hand_object, double dt) const;
   double hand_gap(const Body&) const;
   double hand_gap(const Body&, int side) const;

@@ -34,8 +34,9 @@ class PersonHand {
   PersonHand(const PersonHand&) = delete;
   PersonHand& operator=(const PersonHand&) = delete;
 
-  btRigidBody& body() { return *body_; }  ///< body, for its owner and contact flags
-  BodyState state() const;                ///< state after the last physics step, world
+  btRigidBody& body() { return *body_; }          ///< body, for its owner and contact flags
+  BodyState state() const;                        ///< state after the last physics step, world
+  double mass() const { return settings_.mass; }  ///< [kg]
   /// Returns the last force of the arm on the hand, world [N].
   const Vector3& arm_force() const { return spring_.wrench().force; }
   /// Moves the hand to a pose in no time, with these velocities.
