@@ -52,6 +52,13 @@ double distance_of(const std::vector<HandPart>& parts, const ObjectModel& model,
   return min_distance;
 }
 
+/// Returns how many hands of the robot hold an object.
+std::size_t hands_on(int object, const std::vector<RobotHandState>& robot_hands) {
+  return static_cast<std::size_t>(
+      std::count_if(robot_hands.begin(), robot_hands.end(),
+                    [object](const RobotHandState& hand) { return hand.gripped == object; }));
+}
+
 bool is_hand(BodyPart part) { return part == BodyPart::hand_left || part == BodyPart::hand_right; }
 int hand_number(BodyPart part) { return part == BodyPart::hand_left ? 0 : 1; }
 
@@ -127,12 +134,18 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   if (!start.holds.empty()) {
     person.object = object_index(objects_, start.holds);
     ObjectBody& object = objects_[person.object];
-    const Pose hand = person.hand().state().T_world_body;
     const Eigen::Quaterniond turn = start.hand_turn.value_or(Eigen::Quaterniond::Identity());
     const auto T_hand_object = person.model.hold_from_beginning(object.model(), turn);
+    for (int s = 0; s < 2; ++s) person.hands[s]->place(person.model.hand(s));
+    const Pose hand = person.hand().state().T_world_body;
     object.put(hand * T_hand_object.value_or(held_pose(object.model(), start.hand_turn,
                                                        manners_.giving_object_ahead)));
-    person.grip.hold(hand.inverse() * object.state().T_world_body);
+    if (person.model.uses_both_hands())
+      person.both.hold(
+          {person.hands[0]->state().T_world_body, person.hands[1]->state().T_world_body},
+          object.state().T_world_body);
+    else
+      person.grip.hold(hand.inverse() * object.state().T_world_body);
   }
   people_.push_back(std::move(person));
 }
@@ -220,6 +233,11 @@ void People::observe(Body& person, double dt, const std::vector<RobotHandState>&
     view.object_velocity = object.state().velocity;
     view.held_by_robot = gripped == person.object;
     view.held_firmly = view.held_by_robot && robot_hand.holds_firmly;
+    // Who holds an object with both hands releases it to as many hands.
+    if (person.both.holding())
+      view.held_firmly =
+          view.held_firmly && hands_on(person.object, robot_hands) >=
+                                  std::min<std::size_t>(person.hands.size(), robot_hands.size());
     view.pressed_by_robot = robot_hand.pressed == person.object;
     feel(person, dt, view);
     view.p_hand_object =

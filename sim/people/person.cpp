@@ -110,7 +110,6 @@ void PersonModel::step(double dt, const PersonView& view) {
     } else if (settings_.kind != PersonKind::still) {
       run_phase(dt, view);
     }
-    move_second_hand();
     move_guided_hands(dt);
     if (settings_.steps_in.speed > 0)
       feet_ = home_ - distance_from_place(settings_.steps_in, settings_.approach_from, clock_,
@@ -127,6 +126,7 @@ void PersonModel::step(double dt, const PersonView& view) {
     bend_arm(hand_index(), hand_target_);
     hand_target_ = points_[kHand[hand_index()]];
   }
+  if (!frozen_ && dt > 0) move_second_hand();
   if (second_hand_.is_active()) bend_arm(1 - hand_index(), second_hand_.target());
   bend_guided_arms();
   command_hands(dt);
@@ -461,7 +461,7 @@ void PersonModel::give_up() {
   from_ = hand_active_ ? hand_target_ : hand_point();
   hand_active_ = true;
   hand_target_ = from_;
-  second_hand_.begin_return();
+  second_hand_.begin_return(settings_.manners.taking_curve);
   lean_from_ = lean_;
   duration_ = settings_.manners.person_retract_time;
   warp_.setConstant(playback_);

@@ -150,9 +150,10 @@ class PersonModel {
   void look_away(double duration);
   /// Ends all reaching for objects and all offers.
   void refuse() { refusing_ = true; }
-  /// Chooses how the handover hand holds an object from the beginning, the object's end toward the
-  /// robot left free; returns the pose of the object in the frame of hand(), nullopt: the object
-  /// has no place for the hand. `turn`: orientation of the object in this frame.
+  /// Chooses how the person holds an object from the beginning, with both hands what needs them:
+  /// the object's end toward the robot is left free, what is wide is held across. Returns the pose
+  /// of the object in the frame of hand(), nullopt: the object has no place for the hands. `turn`:
+  /// orientation of the object in this frame.
   std::optional<Pose> hold_from_beginning(const ObjectModel& object,
                                           const Eigen::Quaterniond& turn);
   /// Takes an announcement of the robot: a partner takes an object only if the robot offers it, and
@@ -257,6 +258,8 @@ class PersonModel {
   Eigen::Quaterniond hand_at_rest(int side) const;
   void move_second_hand();
   std::optional<Vector3> choose_place_to_give(const ObjectModel&, const Eigen::Quaterniond& turn);
+  std::optional<Pose> hold_with_both(const ObjectModel&, const Eigen::Quaterniond& turn);
+  Vector3 middle_of_reach() const;
   void hold_to_give_back(const PersonView&);
   void hold_otherwise(const PersonView&);
   void repeat_offer(const PersonView&);

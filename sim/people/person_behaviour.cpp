@@ -62,6 +62,12 @@ Vector3 PersonModel::offer_from_shoulder(const PersonView& view, const Vector3& 
   const PersonManners& manners = settings_.manners;
   const Vector3 root = shoulder(hand_index()),
                 to_hand = view.robot_hand - root - (home_ + step_to_place() - feet_) - step;
+  if (uses_both_hands()) {
+    // The middle between the hands is straight ahead.
+    const Vector3 middle = middle_of_reach() - root;
+    const double shortfall = manners.giving_min_hand_distance - (to_hand - middle).norm();
+    return middle - std::max(0.0, shortfall) * forward() - second_hand_.offset() / 2;
+  }
   Vector3 arm = comfortable_reach(body_, side_) - root;
   const double turn =
       std::remainder(std::atan2(to_hand.y(), to_hand.x()) - std::atan2(arm.y(), arm.x()), 2 * M_PI);

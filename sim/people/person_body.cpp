@@ -86,7 +86,9 @@ void PersonModel::command_hands(double dt) {
 
 Vector3 PersonModel::carry_position() const {
   const PersonManners& manners = settings_.manners;
-  const double beside = manners.person_carry_beside;
+  // Of two hands each is as far beside the middle of the trunk.
+  const double beside = uses_both_hands() ? std::abs(second_hand_.offset().dot(left())) / 2
+                                          : manners.person_carry_beside;
   return points_[kTorso] + manners.person_carry_ahead * forward() +
          (side_ == Side::left ? beside : -beside) * left() -
          Vector3(0, 0, manners.person_carry_below);

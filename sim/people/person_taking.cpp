@@ -149,9 +149,51 @@ std::optional<Vector3> PersonModel::choose_place_to_give(const ObjectModel& obje
 std::optional<Pose> PersonModel::hold_from_beginning(const ObjectModel& object,
                                                      const Eigen::Quaterniond& turn) {
   if (settings_.kind != PersonKind::giver && !settings_.holds) return std::nullopt;
+  if (needs_both_hands(object)) return hold_with_both(object, turn);
   const auto p_hand_object = choose_place_to_give(object, turn);
   if (!p_hand_object) return std::nullopt;
   return make_pose(*p_hand_object, turn);
+}
+
+/// Returns where both hands offer an object: between the comfortable places of the hands [m].
+Vector3 PersonModel::middle_of_reach() const {
+  return 0.5 * (comfortable_reach(body_, Side::left) + comfortable_reach(body_, Side::right));
+}
+
+/// Chooses a place for each hand and raises the object before the trunk; returns the pose of the
+/// object in the frame of hand(), nullopt: a hand has no place.
+std::optional<Pose> PersonModel::hold_with_both(const ObjectModel& object,
+                                                const Eigen::Quaterniond& turn) {
+  const auto arm = human_arm(body_, side_), other_arm = human_arm(body_, other_side(side_));
+  if (!arm || !other_arm) return std::nullopt;
+  Eigen::AlignedBox3d box;
+  for (const Vector3& vertex : object.mesh.vertices) box.extend(vertex);
+  const bool is_along = box.sizes().x() > box.sizes().y();
+  const Eigen::Quaterniond across(Eigen::AngleAxisd(is_along ? M_PI_2 : 0, Vector3::UnitZ()));
+  const int s = 1 - hand_index();
+  PersonView view;
+  view.object = &object;
+  view.T_world_object = make_pose(middle_of_reach(), facing() * turn * across);
+  TakingHand leading;
+  if (!leading.hold(place_query_of_both(view, *arm), hand_shape(hand_index()), settings_.taking) ||
+      !second_hand_.taking().hold(place_query_of_both(view, *other_arm), hand_shape(s),
+                                  settings_.taking))
+    return std::nullopt;
+  taking_ = leading;
+  R_world_rest_ = hand_at_rest(hand_index());
+  const Pose T_world_hand = taking_.goal(view.T_world_object);
+  second_hand_.begin(second_hand_.taking().goal(view.T_world_object).translation(),
+                     hand_at_rest(s));
+  second_hand_.join(T_world_hand.translation());
+  hand_configuration_ = taking_.configuration(R_world_rest_, 1, 1, view.T_world_object);
+  second_hand_.configure(1, 1, view.T_world_object);
+  bend_ = 1;
+  hand_target_ = from_ = carry_position();
+  second_hand_.follow(hand_target_);
+  step(0, PersonView{});
+  return make_pose(
+      facing().inverse() * (view.T_world_object.translation() - T_world_hand.translation()),
+      turn * across);
 }
 
 /// Returns whether the robot's hand is so far from the object that a person holds it anew.
@@ -165,6 +207,7 @@ bool PersonModel::is_robot_hand_far(const PersonView& view) const {
 /// another place.
 void PersonModel::hold_to_give_back(const PersonView& view) {
   p_hand_object_to_give_.reset();
+  if (uses_both_hands()) return;
   const bool gives_anew = settings_.kind == PersonKind::partner || !held_in_vain_.empty();
   if (!gives_anew || !taking_.has_place() || view.held_by_robot || !is_robot_hand_far(view)) return;
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
@@ -182,7 +225,7 @@ void PersonModel::remember_hold() {
 /// Changes the grasp of an object that the robot has not taken; keeps it where the hand has
 /// no other place.
 void PersonModel::hold_otherwise(const PersonView& view) {
-  if (!gives_from_place() || !is_robot_hand_far(view)) return;
+  if (!gives_from_place() || uses_both_hands() || !is_robot_hand_far(view)) return;
   remember_hold();
   const Eigen::Quaterniond turn(facing().inverse() * view.T_world_object.linear());
   const auto p_hand_object = choose_place_to_give(*view.object, turn);

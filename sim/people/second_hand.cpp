@@ -15,8 +15,15 @@ void SecondHand::reach(double s, double curve, const Pose& T_world_object) {
   if (active_) target_ = taking_.position_at(from_, s, curve, T_world_object);
 }
 
+void SecondHand::begin_return(double curve) {
+  from_ = target_;
+  behind_.reset();
+  if (configuration_) behind_ = TakingHand::behind(from_, curve, configuration_->R_world_hand);
+}
+
 void SecondHand::come_back(double s, const Vector3& rest) {
-  target_ = from_ + s * (rest - from_);
+  const Vector3 control = behind_.value_or((from_ + rest) / 2);
+  target_ = (1 - s) * (1 - s) * from_ + 2 * s * (1 - s) * control + s * s * rest;
   if (s >= 1) active_ = false;
 }
 

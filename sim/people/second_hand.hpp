@@ -30,8 +30,11 @@ class SecondHand {
   void join(const Vector3& p_leading) { offset_ = target_ - p_leading; }
   /// Moves the hand as the leading hand moves.
   void follow(const Vector3& p_leading) { target_ = p_leading + offset_; }
-  /// Begins the motion back to rest.
-  void begin_return() { from_ = target_; }
+  /// Returns where the hand is from the leading hand, as of join(), world [m].
+  const Vector3& offset() const { return offset_; }
+  /// Begins the motion back to rest, against the palm's normal. `curve`: as of
+  /// TakingHand::behind().
+  void begin_return(double curve);
   /// Moves the hand to the fraction s of the motion to `rest`, world [m]; at 1 it takes part no
   /// more.
   void come_back(double s, const Vector3& rest);
@@ -46,6 +49,7 @@ class SecondHand {
   TakingHand taking_;
   bool active_{false};
   Vector3 from_{Vector3::Zero()}, target_{Vector3::Zero()}, offset_{Vector3::Zero()};
+  std::optional<Vector3> behind_;  // control point of the curve back to rest [m]; nullopt: straight
   Eigen::Quaterniond R_world_rest_{Eigen::Quaterniond::Identity()};
   std::optional<HandConfiguration> configuration_;
 };

@@ -90,6 +90,68 @@ TEST_F(TrayTest, one_hand_takes_what_is_neither_wide_nor_heavy) {
   EXPECT_FALSE(person.hand_configuration(0));
 }
 
+/// A giver of a tray at (1.25, 0); nothing of the robot is near.
+class TrayGiverTest : public testing::Test {
+ protected:
+  TrayGiverTest() {
+    PersonSettings settings = taker();
+    settings.feet = Vector3(1.25, 0, 0);
+    settings.kind = PersonKind::giver;
+    person_.emplace(settings);
+    T_hand_object_ = person_->hold_from_beginning(tray(), Eigen::Quaterniond::Identity());
+    view_.object = &tray();
+    view_.robot = &robot_;
+    view_.robot_hand = Vector3(0.2, 0, 1.2);
+    view_.finger_distance = 1;
+  }
+  /// Lets the person live for a while [s]; the tray moves with the leading hand.
+  void live(double time) {
+    for (int i = 0; i < 1000 * time; ++i) {
+      view_.T_world_object = person_->hand().T_world_body * *T_hand_object_;
+      person_->step(0.001, view_);
+    }
+  }
+  double gap(int side) const {
+    return surface_distance(
+        tray(), view_.T_world_object.inverse() * person_->hand(side).T_world_body.translation());
+  }
+
+  PersonView view_;
+  std::vector<HandPart> robot_;
+  std::optional<PersonModel> person_;
+  std::optional<Pose> T_hand_object_;
+};
+
+TEST_F(TrayGiverTest, holds_what_is_wide_across_with_both_hands_and_offers_it_level) {
+  ASSERT_TRUE(T_hand_object_);
+  EXPECT_TRUE(person_->uses_both_hands());
+  live(4);
+  ASSERT_EQ(person_->phase(), PersonPhase::offering);
+  EXPECT_TRUE(person_->is_offering());
+  for (const int side : {0, 1}) {
+    EXPECT_NEAR(gap(side), kPalmDistance, 0.013) << side;
+    EXPECT_TRUE(person_->hand_configuration(side)) << side;
+  }
+  const Vector3 long_axis = view_.T_world_object.linear().col(0);
+  EXPECT_NEAR(std::abs(long_axis.y()), 1, 0.01) << "across before a person who faces -x";
+  const Vector3 p = view_.T_world_object.translation();
+  EXPECT_NEAR(p.y(), 0, 0.05) << "before the middle of the trunk";
+  EXPECT_LT(p.x(), 1.25 - 0.35);
+}
+
+TEST_F(TrayGiverTest, releases_with_both_hands_what_the_robot_bears) {
+  live(4);
+  ASSERT_EQ(person_->phase(), PersonPhase::offering);
+  view_.held_by_robot = true;
+  live(2);
+  EXPECT_TRUE(person_->wants_grip()) << "fingers that touch it do not bear it yet";
+  view_.held_firmly = true;
+  live(1);
+  EXPECT_FALSE(person_->wants_grip());
+  live(4);
+  EXPECT_FALSE(person_->uses_both_hands()) << "both hands are back at rest";
+}
+
 TEST(TwoHandHold, bears_a_load_beside_the_hands_and_breaks_at_twice_the_force_of_one) {
   constexpr double kMass = 3.0, kInertia = 0.02, kStep = 0.001;
   GripSettings settings;
