@@ -207,8 +207,9 @@ TEST_F(OwnModel, that_cannot_be_is_refused_in_one_sentence) {
 TEST_F(OwnModel, of_a_xacro_is_expanded_by_the_program_of_the_user) {
   folder.write("arm.urdf.xacro", "not read by this test's program");
   const test::Outcome without = handsel("model new arm.urdf.xacro");
-  if (without.exit_code == 3)  // no xacro is installed here
+  if (without.exit_code == 3) {  // no xacro is installed here
     EXPECT_THAT(without.err, HasSubstr("xacro is not installed here; expand the file"));
+  }
   folder.write("expanded", test::urdf("arm", test::ur5e()));
   const auto program = folder.write("xacro", "#!/bin/sh\ncat expanded\n");
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
