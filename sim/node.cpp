@@ -49,13 +49,10 @@ Node::Node(Bus& bus, const NodeContext& context)
         {.wakes = false});
   }
   if (world_->follows())
-    bus.subscribe<HumanObservation>(
-        [this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
+    bus.subscribe<HumanObservation>([this](const auto& m, const Receipt&) { world_->observe(m); });
   if (world_->listens())
-    bus.subscribe<ActionStatus>(
-        [this](const ActionStatus& m, const Receipt&) { world_->announce(m); });
-  bus.subscribe<SensorRequest>(
-      [this](const SensorRequest& m, const Receipt&) { world_->request(m); });
+    bus.subscribe<ActionStatus>([this](const auto& m, const Receipt&) { world_->announce(m); });
+  bus.subscribe<SensorRequest>([this](const auto& m, const Receipt&) { world_->request(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
   bus.every(keeper_ ? kTickPeriod : from_seconds(settings_.step),
             [this](TimePoint now) { tick(now); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the lane samples people and objects: at its own rates, or as attention requests. Pure.
+// When people and objects are sampled from TF: at the rates of the settings, or as attention
+// requests. Pure.
 #pragma once
 
 #include <string>

@@ -8,10 +8,9 @@
 namespace handsel::sim {
 
 const char* name(PersonPhase phase) {
-  static constexpr const char* kNames[] = {"arriving", "watching",    "reaching", "closing",
-                                           "pulling",  "withdrawing", "keeping",  "retracting",
-                                           "offering", "darting",     "leaving",  "guided",
-                                           "putting"};
+  static constexpr const char* kNames[] = {
+      "arriving",   "watching", "reaching", "closing", "pulling", "withdrawing", "keeping",
+      "retracting", "offering", "darting",  "leaving", "guided",  "putting"};
   return kNames[static_cast<int>(phase)];
 }
 
@@ -227,12 +226,7 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
         hold_object(view);
       } else {
         hand_target_ = carry_position();
-        if (settings_.kind == PersonKind::fetcher && phase_time() > manners.fetcher_keep_time) {
-          if (settings_.puts_at)
-            begin_to_put(view);
-          else
-            leave();
-        }
+        if (settings_.kind == PersonKind::fetcher) end_keeping(view);
       }
       break;
     case PersonPhase::retracting:
@@ -244,13 +238,9 @@ void PersonModel::run_phase(double dt, const PersonView& view) {
     case PersonPhase::darting:
       continue_dart(dt, view);
       break;
-    case PersonPhase::leaving: {
-      const double length = manners.person_leave_distance;
-      feet_ =
-          home_ - length * min_jerk(phase_time() * manners.person_walk_speed / length) * forward();
-      if (wants_grip_) hand_target_ = carry_position();
+    case PersonPhase::leaving:
+      walk_away();
       break;
-    }
     case PersonPhase::putting:
       put_down();
       break;

@@ -70,7 +70,7 @@ struct PersonSettings {
   std::string external;  ///< source of observations that an external person follows
   /// Max distance at which an external person's hand is guided to an offered object [m].
   double correction{0.15};
-  double fetches_at{};           ///< time from which a fetcher reaches for the object [s]
+  double fetches_at{};  ///< time from which a fetcher reaches for the object [s]
   /// Where a fetcher puts the object down: its origin, world [m]; nullopt: keeps the object.
   std::optional<Vector3> puts_at;
   StepInSettings steps_in;       ///< walk of an otherwise resting person toward the robot and back
@@ -221,6 +221,8 @@ class PersonModel {
   void retract(double dt);
   void continue_dart(double dt, const PersonView&);
   void give_up();
+  void end_keeping(const PersonView&);
+  void walk_away();
   void begin_to_put(const PersonView&);
   void put_down();
   bool may_guide(Side side) const;

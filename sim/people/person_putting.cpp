@@ -1,9 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a person who has fetched an object puts it down elsewhere.
+// What a person does with a fetched object: puts it down elsewhere, or walks away with it.
 #include "sim/people/person.hpp"
 #include "sim/people/person_parts.hpp"
 
 namespace handsel::sim {
+
+/// Ends the time for which a fetcher keeps the object in the hand.
+void PersonModel::end_keeping(const PersonView& view) {
+  if (phase_time() <= settings_.manners.fetcher_keep_time) return;
+  if (settings_.puts_at)
+    begin_to_put(view);
+  else
+    leave();
+}
+
+/// Walks backward; a held object stays in the hand.
+void PersonModel::walk_away() {
+  const PersonManners& manners = settings_.manners;
+  const double length = manners.person_leave_distance;
+  feet_ = home_ - length * min_jerk(phase_time() * manners.person_walk_speed / length) * forward();
+  if (wants_grip_) hand_target_ = carry_position();
+}
 
 /// Begins the motion of the hand that brings the held object to where it is put down.
 void PersonModel::begin_to_put(const PersonView& view) {

@@ -261,20 +261,16 @@ void TaskRun::send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id
   dispatch_.send(goal, now, wishes.action_goals);
 }
 
-/// Returns how long a running action may be invalid before it is stopped [s]. A person who has the
-/// only object of the task may put it down again.
-double TaskRun::patience(const PlannedAction& running) {
-  const bool may_come_back = running.kind == ActionKind::pick &&
-                             running.object == problem_.goal().object &&
-                             !situation_.person_with(running.object).empty();
-  return may_come_back ? settings_.taken_timeout : settings_.settle_time;
-}
-
 /// Checks whether the running action and the following actions are still valid.
 void TaskRun::watch(TimePoint now, TaskWishes& wishes) {
   const PlannedAction& running = *progress_.current();
   const std::string why = problem_.why_broken(running);
-  if (broken_.lasts(!why.empty(), now, patience(running))) {
+  // A person who has the only object of the task may put it down again.
+  const bool may_come_back = running.kind == ActionKind::pick &&
+                             running.object == problem_.goal().object &&
+                             !situation_.person_with(running.object).empty();
+  const double max_invalid = may_come_back ? settings_.taken_timeout : settings_.settle_time;
+  if (broken_.lasts(!why.empty(), now, max_invalid)) {
     const std::string fate = running.object.empty() ? "" : situation_.fate_of(running.object);
     dispatch_.stop(fate.empty() ? why : fate, now, wishes.action_goals);
     return;

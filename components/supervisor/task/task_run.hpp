@@ -69,7 +69,6 @@ class TaskRun {
   bool replan(TimePoint now);
   void send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
   void follow(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
-  double patience(const PlannedAction& running);
   void watch(TimePoint now, TaskWishes& wishes);
   void ended(TimePoint now);
   void answer_failure(ActionFailure failure, const std::string& reason, TimePoint now);

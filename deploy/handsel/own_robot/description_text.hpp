@@ -40,7 +40,7 @@ struct FirstScene {
   std::string name, robot;  ///< of scenario and robot
   std::string object;       ///< name of its model
   ArmSize arm;              ///< in the root frame
-  double footprint{};  ///< max distance of what stands still from the root axis, to the right [m]
+  double footprint{};  ///< max distance of the links at rest from the root axis, to the right [m]
 };
 
 /// Returns a scenario in which the robot takes an object from a table and gives it to a person.

@@ -358,6 +358,7 @@ TEST(SimWorld, what_a_fetcher_puts_down_stands_where_the_scenario_says) {
   const Vector3 goal = p_mug + Vector3(0.05, 0.35, 0);
   config::BoxDescription* bench = scenario.add_boxes();
   bench->set_id("bench");
+  bench->set_supports(true);
   bench->mutable_pose()->mutable_xyz()->set_x(goal.x());
   bench->mutable_pose()->mutable_xyz()->set_y(goal.y());
   bench->mutable_pose()->mutable_xyz()->set_z(0.5 * (goal.z() - 0.07));
@@ -370,12 +371,12 @@ TEST(SimWorld, what_a_fetcher_puts_down_stands_where_the_scenario_says) {
   SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
   while (world.time() < 14 && world.person_phase(0) != PersonPhase::putting) world.step();
   ASSERT_EQ(world.person_phase(0), PersonPhase::putting);
-  while (world.time() < 16) world.step();
+  while (world.time() < 18) world.step();
   GroundTruth ground_truth;
   world.ground_truth(ground_truth);
   const Vector3 p = world.T_world_object("mug").translation();
   EXPECT_LT((p - goal).head<2>().norm(), 0.05) << p.transpose();
-  EXPECT_EQ(ground_truth.carrier, "surface");
+  EXPECT_EQ(ground_truth.carrier, "surface") << p.transpose() << " for " << goal.transpose();
   EXPECT_FALSE(ground_truth.dropped);
 }
 
