@@ -164,8 +164,10 @@ export class World {
     const box = new THREE.Box3();
     if (name === "robot") box.setFromObject(this.robot.group, true);
     if (name === "person") box.copy(this.people.first()?.box ?? box);
-    const object = name === "object" ? this.things.first() : this.layers.find(name)?.group;
-    object?.traverseVisible((part) => (part as THREE.Mesh).geometry && box.expandByObject(part, true));
+    const object = name === "object" ? this.things.first() : undefined;
+    if (object) box.setFromObject(object, true);
+    const layer = this.layers.find(name)?.group;
+    layer?.traverseVisible((part) => (part as THREE.Mesh).geometry && box.expandByObject(part, true));
     return box.isEmpty() ? undefined : this.onPage(box);
   }
 
