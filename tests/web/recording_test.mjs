@@ -15,6 +15,7 @@ const kSize = { width: 640, height: 760 };  // [px] without a GPU a small pictur
 const kOld = 1500;                          // [ms] max age of a sample at the instant shown, for topics sent all the time
 const kStill = 0.003;                       // max ratio of pixels that differ between two pictures of one instant
 const kLayers = ["path", "handover", "gaze", "forecast", "grasps", "costs", "zones"];
+const kCarry = readFileSync(new URL("../../idl/task.idl", import.meta.url), "utf8").match(/ACTION_PHASE_\w+/g).indexOf("ACTION_PHASE_CARRY");
 const folder = mkdtempSync(join(tmpdir(), "handsel-test-")), file = join(folder, "trial.mcap"), killed = join(folder, "killed.mcap");
 let bridge, address, browser, page, found, begin, killedAt;
 
@@ -126,9 +127,12 @@ test("events and plots have what happened", async () => {
   for (const expected of [/^task: give: running/, /^task: approach$/, /^task: carry$/, /^task: offer$/, /^mode: slow/, /^mode: normal/, /^cause: separation begins/, /^cause: separation ends/, /^fact: .* holds/, /^attention: /])
     assert.ok(texts.some((text) => expected.test(text)), `${expected} is missing in ${texts.slice(0, 40).join("; ")}`);
   const carry = events.find(({ text }) => text === "carry");
-  assert.ok(Math.abs(carry.time - begin - 14_860) < 300, `carry begins after ${carry.time - begin} ms`);
+  const recorded = [...found.get("handsel/action_status").entries()].map(([stamp, record]) => ({ time: Number(stamp) / 1e6, phase: record().phase }));
+  const begun = recorded.filter(({ phase }, i) => phase !== recorded[i - 1]?.phase).map(({ time }) => Math.abs(carry.time - time));
+  assert.ok(recorded.some(({ time, phase }) => Math.abs(carry.time - time) < 300 && phase === kCarry), `no recorded action carries at ${carry.time - begin} ms`);
+  assert.ok(Math.min(...begun) < 300, `no phase of the recorded action begins near ${carry.time - begin} ms`);
   await page.click("#event-card summary");
-  await show(15);
+  await show((carry.time - begin) / 1000 + 0.1);
   await until(page, () => [...document.querySelectorAll("#events li")].some((row) => / {2}carry$/.test(row.textContent)));
   const curves = await page.evaluate(() => window.handsel.curves), largest = (id) => Math.max(...curves.find((one) => one.id === id).points.flat().filter(Number.isFinite).map(Math.abs));
   for (const id of ["position", "velocity", "acceleration", "jerk"]) assert.ok(largest(id) > 0.02 && largest(id) <= 1.001, `${id}: ${largest(id)} of its limit`);
