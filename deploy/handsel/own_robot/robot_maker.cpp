@@ -335,7 +335,7 @@ class Maker {
 
 MadeRobot make_robot(const RobotWishes& wishes, const MakerProgress& progress) {
   std::error_code error;
-  fs::create_directories(wishes.folder, error);
+  const bool is_new = fs::create_directories(wishes.folder, error);
   if (!fs::is_directory(wishes.folder, error))
     throw ConfigError("cannot make the folder " + wishes.folder.string() +
                       "; --out names another one");
@@ -344,6 +344,7 @@ MadeRobot make_robot(const RobotWishes& wishes, const MakerProgress& progress) {
     return maker.make();
   } catch (...) {
     fs::remove(wishes.folder / (wishes.name + ".txtpb"), error);
+    if (is_new) fs::remove(wishes.folder, error);  // only while it is empty
     throw;
   }
 }

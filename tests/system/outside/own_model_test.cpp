@@ -196,6 +196,7 @@ TEST_F(OwnModel, that_cannot_be_is_refused_in_one_sentence) {
   const test::Outcome missing = handsel("model new nothing.urdf");
   EXPECT_EQ(missing.exit_code, 3) << missing.err;
   EXPECT_THAT(missing.err, HasSubstr("nothing.urdf"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "nothing")) << "a folder is left behind";
   folder.write("arm.urdf", good);
   EXPECT_EQ(handsel("model new arm.urdf --configurations 1000").exit_code, 0);
   EXPECT_THAT(handsel("model new arm.urdf").err,
