@@ -18,7 +18,9 @@
 
 namespace handsel {
 namespace {
+// Processor time of a job without a sign of life, and real time for a job that waits.
 constexpr Duration kJobSilence = std::chrono::seconds(2);
+constexpr Duration kJobStandstill = std::chrono::seconds(10);
 // Max delay up to which all granted ticks are served. A process that the simulator waits for is
 // less late, as the simulator grants only two periods of 10 ms ahead.
 constexpr Duration kMaxBurst = std::chrono::milliseconds(40);
@@ -31,6 +33,14 @@ timespec to_timespec(Duration d) {
           static_cast<long>(d.count() % 1'000'000'000)};
 }
 }  // namespace
+
+static Duration processor_time(std::thread& thread) {
+  clockid_t clock{};
+  timespec used{};
+  if (!thread.joinable() || pthread_getcpuclockid(thread.native_handle(), &clock) != 0) return {};
+  clock_gettime(clock, &used);
+  return Duration(used.tv_sec * 1'000'000'000LL + used.tv_nsec);
+}
 
 TimePoint monotonic_now() {
   timespec t{};
@@ -312,9 +322,10 @@ bool Executor::job_silent(TimePoint now) {
   if (!running_ || beats != seen_beats_) {
     seen_beats_ = beats;
     seen_at_ = now;
+    seen_used_ = running_ ? processor_time(worker_) : Duration{};
     return false;
   }
-  return now - seen_at_ > kJobSilence;
+  return processor_time(worker_) - seen_used_ > kJobSilence || now - seen_at_ > kJobStandstill;
 }
 
 }  // namespace handsel

@@ -79,8 +79,10 @@ class Executor {
   /// at work after `limit`.
   bool end_jobs(Duration limit);
 
-  /// Returns whether the running job has not called CancelToken::cancelled() for two seconds. To be
-  /// asked regularly: the count of calls is compared with that of the last time. `now`: monotonic.
+  /// Returns whether the running job has not called CancelToken::cancelled() for two seconds of its
+  /// own processor time, or for ten seconds of real time. (A busy machine gives a job little of its
+  /// processors.) To be asked regularly: the count of calls is compared with that of the last time.
+  /// `now`: monotonic.
   bool job_silent(TimePoint now);
 
  private:
@@ -132,6 +134,7 @@ class Executor {
   bool worker_gone_{false};
   std::uint64_t seen_beats_{0};
   TimePoint seen_at_{};
+  Duration seen_used_{};  // processor time of worker_ at seen_at_
 };
 
 }  // namespace handsel

@@ -43,7 +43,7 @@ struct ComponentHealth {
   std::uint32_t pid{};                       ///< operating-system process; 0: none
   HealthState state{HealthState::starting};  ///< degraded: `reason` says why
   std::string reason;                        ///< why the state is degraded, one sentence
-  bool job_silent{};   ///< a job in the background has given no sign of life for two seconds
+  bool job_silent{};   ///< a job in the background gives no sign of life (Executor::job_silent())
   double cpu{};        ///< load of one core, 1: fully used
   double memory_mb{};  ///< resident memory [MB]
   double uptime{};     ///< since the start of the process [s]

@@ -342,7 +342,7 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
     others.add(reader->intake);
   }
   m.job_silent = executor.job_silent(wall);
-  m.reason = m.job_silent ? "a job has given no sign of life for two seconds" : "";
+  m.reason = m.job_silent ? "a job in the background gives no sign of life" : "";
   for (const std::string& reason : {others.reason(), degraded})
     if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
   if (m.reason.empty()) m.reason = refusal.text(wall);

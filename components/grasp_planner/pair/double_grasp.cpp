@@ -154,12 +154,13 @@ Refusals DoubleList::refusals() const {
   return out;
 }
 
-DoubleList list_double_grasps(const HandSide& a, const HandSide& b,
-                              const DoubleSettings& settings) {
+DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings,
+                              const std::function<bool()>& cancelled) {
   Side first(a, settings), second(b, settings);
   DoubleList out;
   const double max_cosine = std::cos(settings.min_opposition);
   for (std::size_t i = 0; i < first.size(); ++i) {
+    if (cancelled && cancelled()) break;
     const Vector3 wrist = first.wrist(i);
     for (std::size_t k = 0; k < second.size(); ++k) {
       ++out.pairs;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "components/grasp_planner/list/grasp_list.hpp"
@@ -67,9 +68,11 @@ struct DoubleList {
   Refusals refusals() const;
 };
 
-/// All pairs that do not collide.
+/// Returns all pairs that do not collide. `cancelled` is asked for each grasp of `a`; if true, the
+/// list is incomplete.
 DoubleList list_double_grasps(const HandSide& a, const HandSide& b,
-                              const DoubleSettings& settings = {});
+                              const DoubleSettings& settings = {},
+                              const std::function<bool()>& cancelled = {});
 
 /// Returns the nearness of an arm to its rest configuration, [0, 1]: one minus the mean fraction of
 /// the ranges its axes are away from there.

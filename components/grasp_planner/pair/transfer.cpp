@@ -32,7 +32,8 @@ std::vector<Eigen::Matrix3d> tilted(double tilt) {
 }  // namespace
 
 TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object,
-                             const TransferSettings& settings)
+                             const TransferSettings& settings,
+                             const std::function<bool()>& cancelled)
     : settings_(settings), partners_(robot.list->grasps.size()) {
   DoubleSettings pairs;
   pairs.max_of_each = settings.max_of_each;
@@ -42,7 +43,7 @@ TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const
   pairs.passed = &object;
   pairs.taken = Taken::spread;
   pairs.p_object_middle = object.box().center();
-  doubles_ = list_double_grasps(robot, human, pairs);
+  doubles_ = list_double_grasps(robot, human, pairs, cancelled);
   std::vector<std::vector<TransferPartner>> all(partners_.size());
   for (const DoubleGrasp& d : doubles_.grasps)
     all[d.first].push_back({d.second, human.list->grasps[d.second].grasp.id,

@@ -41,8 +41,9 @@ struct TransferPartner {
 /// All double grasps of robot and person on one object; made once for an object and kept.
 class TransferTable {
  public:
+  /// `cancelled`: as of list_double_grasps().
   TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object,
-                const TransferSettings& settings = {});
+                const TransferSettings& settings = {}, const std::function<bool()>& cancelled = {});
 
   /// Returns the person's grasps for grasp `robot_grasp` of the robot's list, best first; empty:
   /// nothing is left for the person.

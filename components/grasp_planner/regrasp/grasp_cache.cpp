@@ -48,11 +48,11 @@ std::shared_ptr<const TransferTable> TransferCache::table(const ObjectModel& obj
   if (auto made = known(object.name)) return made;
   const auto taken = taker_entry(object, cancelled);
   if (!taken) return nullptr;
-  auto& entry = tables_[object.name];
-  entry = std::make_shared<const TransferTable>(HandSide{robot_.get(), &page.list},
-                                                HandSide{taker_.get(), &taken->list}, *page.object,
-                                                settings_);
-  return entry;
+  const auto made = std::make_shared<const TransferTable>(HandSide{robot_.get(), &page.list},
+                                                          HandSide{taker_.get(), &taken->list},
+                                                          *page.object, settings_, cancelled);
+  if (cancelled && cancelled()) return nullptr;
+  return tables_[object.name] = made;
 }
 
 std::shared_ptr<const TransferTable> TransferCache::known(const std::string& object) const {

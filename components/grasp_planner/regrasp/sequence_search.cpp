@@ -14,8 +14,6 @@ SequenceSearch::SequenceSearch(StepCheck& check, CheckedPasses& passes, const Re
   check_task();
   add_places();
   add_grasps();
-  if (check_.arms().size() == 2) add_passes();
-  out_.double_grasps = doubles_.grasps.size();
 }
 
 void SequenceSearch::check_task() const {
@@ -78,7 +76,7 @@ void SequenceSearch::add_grasps() {
 }
 
 /// Adds passes with the pairs of grasps that do not collide.
-void SequenceSearch::add_passes() {
+void SequenceSearch::add_passes(const std::function<bool()>& cancelled) {
   DoubleSettings pairs;
   pairs.max_of_each = check_.settings().max_of_each;
   pairs.taken = Taken::spread;
@@ -86,7 +84,8 @@ void SequenceSearch::add_passes() {
   pairs.clearance = check_.settings().clearance;
   pairs.passed = &check_.object();
   pairs.stand_off = check_.settings().stand_off;
-  doubles_ = list_double_grasps(sides_[0], sides_[1], pairs);
+  doubles_ = list_double_grasps(sides_[0], sides_[1], pairs, cancelled);
+  out_.double_grasps = doubles_.grasps.size();
   for (std::size_t n = 0; n < doubles_.grasps.size(); ++n) {
     const DoubleGrasp& d = doubles_.grasps[n];
     const double margin =
@@ -172,6 +171,7 @@ RegraspPlan SequenceSearch::finish() {
 }
 
 RegraspPlan SequenceSearch::run(const std::function<bool()>& cancelled) {
+  if (check_.arms().size() == 2) add_passes(cancelled);
   while (true) {
     const std::vector<GraphNode> path =
         graph_.shortest(start_, [this](const GraphNode& node) { return at_goal(node); });

@@ -34,7 +34,7 @@ class SequenceSearch {
   void check_task() const;
   void add_places();
   void add_grasps();
-  void add_passes();
+  void add_passes(const std::function<bool()>& cancelled);
   bool at_goal(const GraphNode& node) const;
   const CheckedStep& pick(const GraphNode& held, std::size_t place);
   CheckedStep pass(const GraphNode& from, const GraphNode& to);

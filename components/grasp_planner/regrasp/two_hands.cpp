@@ -33,7 +33,7 @@ class TwoHandSearch {
 
  private:
   bool find_grasps(std::size_t a);
-  DoubleList list_pairs() const;
+  DoubleList list_pairs(const std::function<bool()>& cancelled) const;
   std::vector<LoadShare> shares_of(const DoubleGrasp& pair) const;
   std::optional<std::pair<Vector, Vector>> both_along(const DoubleGrasp& pair, std::string& why);
   std::optional<std::vector<RegraspStep>> check_pair(const DoubleGrasp& pair, std::string& why);
@@ -89,13 +89,13 @@ bool TwoHandSearch::find_grasps(std::size_t a) {
 }
 
 /// Returns the pairs of grasps that do not collide, the one with the largest margin first.
-DoubleList TwoHandSearch::list_pairs() const {
+DoubleList TwoHandSearch::list_pairs(const std::function<bool()>& cancelled) const {
   DoubleSettings pairs;
   pairs.max_of_each = check_.settings().max_of_each;
   pairs.taken = Taken::spread;
   pairs.p_object_middle = check_.object().box().center();
   pairs.clearance = check_.settings().clearance;
-  DoubleList doubles = list_double_grasps(sides_[0], sides_[1], pairs);
+  DoubleList doubles = list_double_grasps(sides_[0], sides_[1], pairs, cancelled);
   for (DoubleGrasp& d : doubles.grasps)
     d.first = index_[0][d.first], d.second = index_[1][d.second];
   for (DoubleGrasp& d : doubles.grasps) {
@@ -199,7 +199,7 @@ std::optional<std::vector<RegraspStep>> TwoHandSearch::check_pair(const DoubleGr
 RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
   for (std::size_t a = 0; a < 2; ++a)
     if (!find_grasps(a)) return std::move(out_);
-  const DoubleList doubles = list_pairs();
+  const DoubleList doubles = list_pairs(cancelled);
   out_.double_grasps = doubles.grasps.size();
   std::map<std::string, std::uint64_t> rejected;
   for (const DoubleGrasp& d : doubles.grasps) {
