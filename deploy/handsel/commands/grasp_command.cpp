@@ -265,6 +265,7 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   add_grasp_choose(*grasp, exit_code);
   add_grasp_pairs(*grasp, exit_code);
   add_grasp_show(*grasp, exit_code);
+  add_grasp_prepare(*grasp, exit_code);
 }
 
 }  // namespace handsel
