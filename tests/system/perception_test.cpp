@@ -12,6 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/bus/dds/dds_bus.hpp"
+#include "common/messages/attention.hpp"
+#include "common/messages/perception.hpp"
 #include "tests/support/processes/background.hpp"
 #include "tests/support/processes/shell.hpp"
 
@@ -262,6 +265,26 @@ class Perception : public testing::Test {
   }
 };
 
+/// Returns the number of samples of people a second over three seconds on `domain` while attention
+/// asks `source` for `people_rate` [Hz].
+double rate_of_people(int domain, const std::string& source, double people_rate) {
+  DdsBus bus(
+      {.component = "tester", .domain = static_cast<std::uint32_t>(domain), .health = false});
+  int samples = 0;
+  bool counting = false;
+  bus.subscribe<HumanObservation>(
+      [&](const HumanObservation&, const Receipt&) { samples += counting ? 1 : 0; });
+  const auto requests = bus.advertise<SensorRequest>();
+  SensorRequest request;
+  request.source = source;
+  request.people_rate = people_rate;
+  bus.every(std::chrono::milliseconds(100), [&](TimePoint) { requests->publish(request); });
+  bus.run_until([] { return false; }, std::chrono::seconds(1));
+  counting = true;
+  bus.run_until([] { return false; }, std::chrono::seconds(3));
+  return samples / 3.0;
+}
+
 TEST_F(Perception, robot_hands_the_mug_to_the_person_published_from_outside) {
   const fs::path mine = folder() / "my_perception";
   fs::create_directories(mine);
@@ -271,6 +294,8 @@ TEST_F(Perception, robot_hands_the_mug_to_the_person_published_from_outside) {
   const auto [code, said] = doctor(kDomain, "--inputs-only");  // the person has arrived
   EXPECT_EQ(code, 0) << said;
   EXPECT_THAT(said, HasSubstr("from body_tracker"));
+  EXPECT_NEAR(rate_of_people(kDomain, "body_tracker", 12), 12, 3);
+  EXPECT_GT(rate_of_people(kDomain, "another_tracker", 12), 24) << "its own rate is 30 Hz";
   const std::string report = (folder() / "report.json").string();
   Background robot({(prefix() / "bin/handsel").string(), "run", "--scenario", "give_mug_external",
                     "--headless", "--port", "0", "--domain", std::to_string(kDomain), "--report",

@@ -210,6 +210,55 @@ TEST_F(Lane, turns_frames_of_a_body_into_an_observation) {
   EXPECT_TRUE(seen.back().people.empty());
 }
 
+SensorRequest request_of(const std::string& source, double people_rate) {
+  SensorRequest request;
+  request.source = source;
+  request.people_rate = people_rate;
+  return request;
+}
+
+/// A person whose frames arrive often, and how often the bridge sends observations of them.
+class RequestedRate : public Lane {
+ protected:
+  RequestedRate() {
+    ours.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) {
+      ++samples_;
+      last_ = m;
+    });
+  }
+  /// Returns the number of observations in two seconds in which attention repeats `request`.
+  int samples_with(const std::optional<SensorRequest>& request) {
+    samples_ = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Stamp now = ros.stamp_now();
+      tf_->publish({{frame("world", "waist_7", Vector3(2, 0.5, 1), now),
+                     frame("world", "torso_7", Vector3(2, 0.5, 1.45), now),
+                     frame("world", "head_7", Vector3(2, 0.5, 1.7), now),
+                     frame("world", "l_wrist_7", Vector3(1.8, 0.7, 1), now)}});
+      if (request && i % 5 == 0) requests_->publish(*request);
+      run(0.02);
+    }
+    return samples_;
+  }
+
+  std::unique_ptr<Publisher<ros2::Transforms>> tf_ = write<ros2::Transforms>("tf");
+  std::unique_ptr<Publisher<SensorRequest>> requests_ = ours.advertise<SensorRequest>();
+  HumanObservation last_;
+
+ private:
+  int samples_{};
+};
+
+TEST_F(RequestedRate, people_are_sampled_as_often_as_attention_asks) {
+  EXPECT_NEAR(samples_with(std::nullopt), 60, 4) << "own rate of the setting people_rate";
+  EXPECT_NEAR(samples_with(request_of("ros2", 15)), 30, 3);
+  EXPECT_NEAR(samples_with(request_of("", 15)), 30, 3) << "every source is asked";
+  EXPECT_NEAR(samples_with(request_of("ros2", 1)), 20, 3) << "not below the setting min_rate";
+  run(0.4);
+  EXPECT_NEAR(samples_with(request_of("camera", 15)), 60, 4) << "another source is asked";
+  EXPECT_NEAR(samples_with(std::nullopt), 60, 4) << "requests expire";
+}
+
 TEST_F(Lane, leaves_out_a_frame_from_outside_that_is_called_like_a_link_of_our_robot) {
   std::vector<HumanObservation> seen;
   ours.subscribe<HumanObservation>(
