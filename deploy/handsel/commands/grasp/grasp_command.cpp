@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/handsel/commands/grasp_command.hpp"
+#include "deploy/handsel/commands/grasp/grasp_command.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -13,8 +13,8 @@
 #include "deploy/handsel/cli/above_zero.hpp"
 #include "deploy/handsel/cli/json_lines.hpp"
 #include "deploy/handsel/cli/terminal.hpp"
-#include "deploy/handsel/commands/grasp_pair_command.hpp"
-#include "deploy/handsel/commands/grasp_show_command.hpp"
+#include "deploy/handsel/commands/grasp/grasp_pair_command.hpp"
+#include "deploy/handsel/commands/grasp/grasp_show_command.hpp"
 #include "deploy/handsel/offline/grasp_input.hpp"
 #include "deploy/handsel/offline/grasp_table.hpp"
 

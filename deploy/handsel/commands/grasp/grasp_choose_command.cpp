@@ -7,7 +7,7 @@
 #include "common/model/platform.hpp"
 #include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "deploy/handsel/cli/terminal.hpp"
-#include "deploy/handsel/commands/grasp_pair_command.hpp"
+#include "deploy/handsel/commands/grasp/grasp_pair_command.hpp"
 #include "deploy/handsel/offline/grasp_stage.hpp"
 #include "deploy/handsel/pictures/pair_picture.hpp"
 

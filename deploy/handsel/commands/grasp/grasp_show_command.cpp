@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/handsel/commands/grasp_show_command.hpp"
+#include "deploy/handsel/commands/grasp/grasp_show_command.hpp"
 
 #include <cmath>
 #include <cstdio>

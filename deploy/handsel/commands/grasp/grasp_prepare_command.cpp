@@ -6,7 +6,7 @@
 #include "common/config/resources.hpp"
 #include "common/config/scenario.hpp"
 #include "components/grasp_planner/load.hpp"
-#include "deploy/handsel/commands/grasp_pair_command.hpp"
+#include "deploy/handsel/commands/grasp/grasp_pair_command.hpp"
 #include "deploy/handsel/eval/lockstep_system.hpp"
 
 namespace handsel {
