@@ -3,7 +3,7 @@
 // decodes only what is used, reconnects.
 import { Channel, FoxgloveClient, MessageData, SubscriptionId } from "@foxglove/ws-protocol";
 import { Decoder } from "./decoder";
-import { keyOf, kKeyed, kLayerTopics, kTopics, TopicName, Topics } from "./messages";
+import { keyOf, kLayerTopics, kTopics, TopicName, Topics } from "./messages";
 import { Health, Source } from "./source";
 
 const kRetryFirst = 500, kRetryLongest = 5000;  // [ms]
@@ -18,6 +18,8 @@ export class Link implements Source {
   samples = 0;
   // Receives each sample with the stamp of its writer [ns].
   onSample: (topic: TopicName, key: string, stamp: bigint, bytes: DataView, decoder: Decoder) => void = () => undefined;
+  // Called when the connection opens and when it closes, however slowly the page draws.
+  onConnection: () => void = () => undefined;
   private readonly slots = new Map<TopicName, Slot>();
   private readonly subscribed = new Map<SubscriptionId, TopicName>();
   private client: FoxgloveClient | undefined;
@@ -91,6 +93,7 @@ export class Link implements Source {
       this.connected = true;
       this.problem = "";
       this.retry = kRetryFirst;
+      this.onConnection();
       this.onChange();
     });
     client.on("advertise", (channels: Channel[]) => {
@@ -111,7 +114,7 @@ export class Link implements Source {
       const topic = this.subscribed.get(event.subscriptionId), slot = topic && this.slots.get(topic);
       if (!topic || !slot) return;
       const bytes = new DataView(event.data.buffer, event.data.byteOffset, event.data.byteLength);
-      const key = kKeyed.has(topic) ? keyOf(bytes) : "";
+      const key = keyOf(topic, bytes);
       slot.newest = key;
       const sample = slot.samples.get(key);
       slot.samples.set(key, { bytes, message: sample?.message, at: performance.now() });
@@ -124,6 +127,7 @@ export class Link implements Source {
     client.on("close", () => {
       if (this.connected) this.closedAt = performance.now();
       this.connected = false;
+      this.onConnection();
       setTimeout(() => this.open(), this.retry);
       this.retry = Math.min(2 * this.retry, kRetryLongest);
       this.onChange();

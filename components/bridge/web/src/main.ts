@@ -93,6 +93,7 @@ async function start(): Promise<void> {
   new Chooser(config, past);
   const steering = new Steering(), takePart = new TakePart(link, steering);
   const panels = new Panels(link, config.groups.arm ?? config.axes);
+  link.onConnection = () => panels.connection();
   const angleOf = (axis: string): number =>
     world ? (world.robot.angles()[axis] ?? NaN) : (past.source(link).newest("handsel/robot_state")?.position[config.axes.indexOf(axis)] ?? NaN);
 

@@ -162,10 +162,21 @@ export const kTopics: TopicName[] = [
 // Large topics, read only while a layer shows them.
 export const kLayerTopics: TopicName[] = ["handsel/grasp_candidates", "handsel/costmap"];
 // Topics with several instances, whose key is the text with which a sample begins.
-export const kKeyed: ReadonlySet<TopicName> = new Set(["handsel/component_health", "handsel/grasp_candidates", "handsel/costmap"]);
+const kKeyed: ReadonlySet<TopicName> = new Set(["handsel/component_health", "handsel/grasp_candidates", "handsel/costmap"]);
+// Instances of handsel/task_status: of tasks, and of requests such as pause and speed.
+export const kOfTasks = "task";
+const kOfRequests = "request";
+const kKind = 20;                             // offset of the kind of a task status [bytes]
+const kFirstRequest = 9, kLastRequest = 14;  // pause and clear_person of TaskKind
 
-// Returns the text with which a sample begins after its encapsulation header.
-export function keyOf(bytes: DataView): string {
+// Returns the instance of a topic to which a sample belongs, from its bytes with encapsulation
+// header; empty for a topic with one instance.
+export function keyOf(topic: TopicName, bytes: DataView): string {
+  if (topic === "handsel/task_status" && bytes.byteLength >= kKind + 4) {
+    const kind = bytes.getUint32(kKind, true);
+    return kind >= kFirstRequest && kind <= kLastRequest ? kOfRequests : kOfTasks;
+  }
+  if (!kKeyed.has(topic)) return "";
   const length = bytes.byteLength > 8 ? Math.min(bytes.getUint32(4, true), bytes.byteLength - 8) : 0;
   return new TextDecoder().decode(new Uint8Array(bytes.buffer, bytes.byteOffset + 8, Math.max(0, length - 1)));
 }

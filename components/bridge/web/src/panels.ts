@@ -2,6 +2,7 @@
 // The tables beside the 3-D view.
 import { byId, put } from "./elements";
 import { Link } from "./link";
+import { kOfTasks } from "./messages";
 import { causesOf, Source } from "./source";
 import { nearness } from "./nearness";
 
@@ -67,7 +68,8 @@ export class Panels {
     rows("joints", this.axes.map((axis) => [axis, { text: angles(axis).toFixed(4), kind: "number" }]));
   }
 
-  private connection(): void {
+  // Shows whether the page is connected.
+  connection(): void {
     const { link } = this;
     const lost = link.closedAt > 0 ? `lost ${((performance.now() - link.closedAt) / 1000).toFixed(0)} s ago, ` : "";
     const text = link.connected ? "live" : `not connected: ${lost}trying again`;
@@ -100,7 +102,7 @@ export class Panels {
 
   private task(): void {
     const link = this.source;
-    const task = link.newest("handsel/task_status"), action = link.newest("handsel/action_status");
+    const task = link.newest("handsel/task_status", kOfTasks), action = link.newest("handsel/action_status");
     const state = task ? link.word("TaskState", task.state) : "none";
     put("task-title", task ? (task.plan[Math.min(task.step, task.plan.length - 1)] ?? link.word("TaskKind", task.kind)) : "no task yet");
     put("task-state", task ? state : "");

@@ -3,7 +3,7 @@
 import { McapStreamReader } from "@mcap/core";
 import { Config } from "../config";
 import { Decoder } from "../decoder";
-import { keyOf, kKeyed, kLayerTopics, kTopics, TopicName } from "../messages";
+import { keyOf, kLayerTopics, kTopics, TopicName } from "../messages";
 import { Tape } from "./tape";
 
 const kSlice = 4_000_000;         // read at once [bytes]
@@ -58,7 +58,7 @@ class Reading {
     const channel = this.channels.get(record.channelId);
     if (!channel) return;
     const bytes = new DataView(record.data.slice().buffer);
-    this.tape.take(channel.topic, kKeyed.has(channel.topic) ? keyOf(bytes) : "", record.logTime, bytes, channel.decoder);
+    this.tape.take(channel.topic, keyOf(channel.topic, bytes), record.logTime, bytes, channel.decoder);
     this.messages += 1;
   }
 
