@@ -25,6 +25,7 @@ settings::ManipulationPlannerSettings load_settings(const NodeContext& context) 
     text.refuse("otp_max_ahead", "must be at least otp_min_ahead");
   if (s.otp_max_below < s.otp_min_below)
     text.refuse("otp_max_below", "must be at least otp_min_below");
+  if (s.place_min_gap > s.place_gap) text.refuse("place_min_gap", "must be at most place_gap");
   const double longest_rest = std::max({s.offer_rest, s.offer_detour_rest, s.offer_long_rest,
                                         s.offer_max_turn_time, s.offer_retreat_end});
   if (s.offer_trail <= longest_rest)
