@@ -91,7 +91,7 @@ void add_components(BadFiles& table) {
       .key("cone_edges", "3", "is 3, must be");
   Settings(table, "manipulation_planner", "manipulation_planner.txtpb")
       .key("otp_max_ahead", "0.3", "otp_max_ahead: must be at least otp_min_ahead")
-      .key("place_min_gap", "0.06", "place_min_gap: must be at most place_gap")
+      .text("sparse_crowd", "place_min_gap: 0.06\n", "place_min_gap: must be at most place_gap")
       .text("short_trail", "offer_trail: 1.0\n", "offer_trail: must be above offer_rest")
       .key("planning_time", "nan", "is nan, must be")
       .key("carry_speed", "7", "is 7, must be")
