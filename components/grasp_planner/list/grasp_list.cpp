@@ -311,6 +311,8 @@ struct GraspLister::Impl {
     for (const SurfacePoint& p : object->points()) {
       free += std::all_of(rounds.begin(), rounds.end(), [&](const HandShape::Round& r) {
         const double reach = r.radius + settings.free_distance;
+        const double ball = reach + 0.5 * (r.b - r.a).norm();  // around the round and its margin
+        if ((p.position - 0.5 * (r.a + r.b)).squaredNorm() > ball * ball) return true;
         Vector3 on_round, on_point;
         return nearest_points(r.a, r.b, p.position, p.position, on_round, on_point) > reach * reach;
       });

@@ -7,40 +7,61 @@
 
 namespace handsel::grasp_planner {
 
-PointTree::PointTree(const std::vector<Vector3>& points) : points_(points) {
-  if (points_.empty()) return;
-  std::vector<std::uint32_t> order(points_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  nodes_.reserve(2 * points_.size());
-  build(order, 0, order.size());
+namespace {
+
+constexpr std::uint32_t kPointsOfLeaf = 8;
+
+// Returns whether a ball, given by its squared radius, contains a box.
+bool ball_contains(const Vector3& centre, double squared_radius, const Eigen::AlignedBox3d& box) {
+  const Vector3 farthest = (centre - box.min()).cwiseMax(box.max() - centre);
+  return farthest.squaredNorm() <= squared_radius;
+}
+
+}  // namespace
+
+PointTree::PointTree(const std::vector<Vector3>& points) {
+  if (points.empty()) return;
+  index_.resize(points.size());
+  std::iota(index_.begin(), index_.end(), 0U);
+  nodes_.reserve(points.size());
+  build(points, 0, static_cast<std::uint32_t>(points.size()));
+  points_.reserve(points.size());
+  for (const std::uint32_t i : index_) points_.push_back(points[i]);
   box_ = nodes_.front().box;
 }
 
-std::uint32_t PointTree::build(std::vector<std::uint32_t>& order, std::size_t begin,
-                               std::size_t end) {
+std::uint32_t PointTree::build(const std::vector<Vector3>& points, std::uint32_t begin,
+                               std::uint32_t end) {
   const auto id = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   Eigen::AlignedBox3d box;
-  for (std::size_t i = begin; i < end; ++i) box.extend(points_[order[i]]);
+  for (std::uint32_t i = begin; i < end; ++i) box.extend(points[index_[i]]);
   nodes_[id].box = box;
-  if (end - begin == 1) {
-    nodes_[id].left = order[begin];
+  nodes_[id].begin = begin;
+  nodes_[id].end = end;
+  if (end - begin == 1) return id;
+  const std::uint32_t middle = split(points, box, begin, end);
+  const std::uint32_t left = build(points, begin, middle);
+  const std::uint32_t right = build(points, middle, end);
+  if (end - begin <= kPointsOfLeaf) {  // its points are in the order of the nodes below, which go
+    nodes_.resize(id + 1);
     return id;
   }
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const double middle = box.center()[axis];
-  const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin),
-             last = order.begin() + static_cast<std::ptrdiff_t>(end);
-  auto cut = std::stable_partition(first, last,
-                                   [&](std::uint32_t i) { return points_[i][axis] <= middle; });
-  if (cut == first || cut == last) cut = first + (last - first) / 2;
-  const auto split = static_cast<std::size_t>(cut - order.begin());
-  const std::uint32_t left = build(order, begin, split);
-  const std::uint32_t right = build(order, split, end);
   nodes_[id].left = left;
   nodes_[id].right = right;
   return id;
+}
+
+std::uint32_t PointTree::split(const std::vector<Vector3>& points, const Eigen::AlignedBox3d& box,
+                               std::uint32_t begin, std::uint32_t end) {
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const double middle = box.center()[axis];
+  const auto first = index_.begin() + begin, last = index_.begin() + end;
+  auto cut = std::stable_partition(first, last,
+                                   [&](std::uint32_t i) { return points[i][axis] <= middle; });
+  if (cut == first || cut == last) cut = first + (last - first) / 2;
+  return static_cast<std::uint32_t>(cut - index_.begin());
 }
 
 void PointTree::inside_ball(const Vector3& centre, double radius,
@@ -64,8 +85,11 @@ void PointTree::inside_ball(const Vector3& centre, double radius,
     }
     const Node& node = nodes_[id];
     if (node.box.squaredExteriorDistance(centre) > limit) continue;
-    if (node.right == 0) {
-      out.push_back(node.left);
+    if (ball_contains(centre, limit, node.box)) {
+      out.insert(out.end(), index_.begin() + node.begin, index_.begin() + node.end);
+    } else if (node.right == 0) {
+      for (std::uint32_t i = node.begin; i < node.end; ++i)
+        if ((points_[i] - centre).squaredNorm() <= limit) out.push_back(index_[i]);
     } else {
       push(node.right);
       push(node.left);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hierarchy of axis-aligned boxes over points, split along the longer side down to single points
-// (chapter section 3.2.4).
+// Hierarchy of axis-aligned boxes over points, split along the longer side down to a few points
+// (chapter section 3.2.4, which splits down to single points).
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,18 @@ class PointTree {
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    std::uint32_t left{}, right{};  // right == 0: leaf, left is the point
+    std::uint32_t begin{}, end{};   // of its points in points_ and index_
+    std::uint32_t left{}, right{};  // right == 0: leaf
   };
-  std::uint32_t build(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end);
+  /// Appends the node of points `begin` to `end` and those below; returns its index.
+  std::uint32_t build(const std::vector<Vector3>& points, std::uint32_t begin, std::uint32_t end);
+  /// Orders points by the middle of the longer side of their box; returns where the second half
+  /// begins.
+  std::uint32_t split(const std::vector<Vector3>& points, const Eigen::AlignedBox3d& box,
+                      std::uint32_t begin, std::uint32_t end);
 
-  std::vector<Vector3> points_;
+  std::vector<Vector3> points_;       // in the order of the tree
+  std::vector<std::uint32_t> index_;  // of each of them, as given
   std::vector<Node> nodes_;
   Eigen::AlignedBox3d box_;
 };
