@@ -22,8 +22,9 @@ class GraspPrepare : public testing::Test {
   }
   ~GraspPrepare() override { std::filesystem::remove_all(folder_); }
 
-  Outcome prepare(const std::string& scenario) const {
-    return shell("XDG_CACHE_HOME=" + folder_.string() + " " HANDSEL_COMMAND " grasp prepare " +
+  Outcome prepare(const std::string& scenario) const { return prepare_in(folder_, scenario); }
+  static Outcome prepare_in(const std::filesystem::path& cache, const std::string& scenario) {
+    return shell("XDG_CACHE_HOME=" + cache.string() + " " HANDSEL_COMMAND " grasp prepare " +
                  scenario);
   }
   /// Returns the lists on disk with the times at which they were written.
@@ -79,6 +80,18 @@ TEST_F(GraspPrepare, a_scenario_that_is_not_there_is_named) {
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, testing::HasSubstr("nowhere"));
   EXPECT_TRUE(lists().empty());
+}
+
+TEST_F(GraspPrepare, what_prevents_lists_from_being_kept_is_said) {
+  const std::string scenario = (folder_ / "cans.txtpb").string();
+  const Outcome outcome = prepare_in(scenario, scenario);  // a file is no folder
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("cannot be written to"));
+  EXPECT_EQ(outcome.out, "");
+  std::ofstream(folder_ / "empty.txtpb") << "name: \"empty\"";
+  const Outcome empty = prepare((folder_ / "empty.txtpb").string());
+  EXPECT_NE(empty.exit_code, 0);
+  EXPECT_THAT(empty.err, testing::HasSubstr("objects: none is given"));
 }
 
 }  // namespace

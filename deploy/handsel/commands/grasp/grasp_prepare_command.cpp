@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <set>
 
 #include "common/config/resources.hpp"
@@ -18,6 +21,20 @@ struct PrepareOptions {
   std::vector<std::string> scenarios{"give_mug"};
   std::string robot;
 };
+
+/// Throws ConfigError if lists cannot be kept on disk.
+void require_store(const settings::GraspPlannerSettings& settings) {
+  if (!settings.store)
+    throw ConfigError("grasp_planner.store is false; lists are kept only if it is true");
+  const std::filesystem::path folder = default_store();
+  if (folder.empty())
+    throw ConfigError("neither XDG_CACHE_HOME nor HOME is set; one must name a folder for lists");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || access(folder.c_str(), W_OK) != 0)
+    throw ConfigError(folder.string() +
+                      " cannot be written to; XDG_CACHE_HOME must name a folder for lists");
+}
 
 void print_list(const std::function<std::shared_ptr<const CachedGrasps>()>& make) {
   const auto begin = std::chrono::steady_clock::now();
@@ -43,13 +60,15 @@ int prepare(const PrepareOptions& o) {
     const NodeContext context =
         system_context(scenario_file(scenario).string(), o.robot, 1, resource("config"));
     const auto settings = load_settings(context.settings);
-    if (!settings.store)
-      throw ConfigError("grasp_planner.store is false; lists are kept only if it is true");
+    require_store(settings);
+    const config::Scenario drawn = read_scenario(context.scenario, 1);
+    if (drawn.objects().empty())
+      throw ConfigError(context.scenario.string() +
+                        ": objects: none is given; lists need at least one");
     const auto arms = load_arms(*context.robot, context.description, settings);
     if (!headed) std::printf("%-14s %-14s %8s %9s\n", "hand", "object", "grasps", "seconds");
     headed = true;
     std::set<std::string> prepared;
-    const config::Scenario drawn = read_scenario(context.scenario, 1);
     for (const config::ObjectPlacement& placed : drawn.objects())
       if (prepared.insert(placed.model()).second)
         prepare_object(arms, *context.objects(placed.model()));
