@@ -2,7 +2,9 @@
 #include "common/bus/paced_clock.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
+#include <atomic>
 #include <vector>
 
 #include "common/bus/executor.hpp"
@@ -196,6 +198,49 @@ TEST(Executor, heartbeats_go_on_while_time_stands_still) {
   executor.run_until([] { return false; }, from_seconds(0.3));
   EXPECT_GE(beats, 10);
   EXPECT_EQ(ticks, 0);
+}
+
+/// A job that is at work until the test ends, and whether it gives no sign of life.
+class SilentJob : public testing::Test {
+ protected:
+  ~SilentJob() override {
+    stop_ = true;
+    executor_.end_jobs(from_seconds(5));
+  }
+
+  /// Runs a job that only calls `step` until the test ends; returns when the job has begun.
+  void begin(std::function<void()> step) {
+    executor_.run_job(
+        [this, step = std::move(step)](const CancelToken&) {
+          begun_ = true;
+          while (!stop_) step();
+          return Duration{};
+        },
+        [] {});
+    while (!begun_) sched_yield();
+    EXPECT_FALSE(executor_.job_silent(begin_)) << "the begin of the silence";
+  }
+
+  Executor executor_{[](const std::string&) {}};
+  std::atomic<bool> stop_{false}, begun_{false};
+  TimePoint begin_ = monotonic_now();
+};
+
+TEST_F(SilentJob, is_one_that_waits_only_after_ten_seconds) {
+  begin([] {
+    timespec nap{0, 1'000'000};
+    nanosleep(&nap, nullptr);  // has no processor
+  });
+  EXPECT_FALSE(executor_.job_silent(begin_ + from_seconds(9)));
+  EXPECT_TRUE(executor_.job_silent(begin_ + from_seconds(11)));
+}
+
+TEST_F(SilentJob, is_one_that_computes_for_two_seconds) {
+  begin([] {});
+  EXPECT_FALSE(executor_.job_silent(begin_ + from_seconds(1)));
+  executor_.run_until([&] { return executor_.job_silent(begin_ + from_seconds(1)); },
+                      from_seconds(60));
+  EXPECT_TRUE(executor_.job_silent(begin_ + from_seconds(1)));
 }
 
 }  // namespace
